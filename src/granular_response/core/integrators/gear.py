@@ -1,0 +1,75 @@
+"""Gear's 5-value predictor-corrector, the paper's check of its integrator (Sec. III)."""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+
+from ..forces import accelerations
+from .record import LOOK_EVERY, Integrator, moved_beyond, ramp
+
+# Corrector coefficients for second-order equations whose forces depend on velocity
+# (Allen & Tildesley, Computer Simulation of Liquids, App. E).
+_C0, _C1, _C3, _C4 = 19.0 / 90.0, 3.0 / 4.0, 1.0 / 2.0, 1.0 / 12.0
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _predict(q, v, a, b, c, dt):
+    h2 = dt * dt / 2.0
+    h3 = h2 * dt / 3.0
+    h4 = h3 * dt / 4.0
+    for k in range(q.size):
+        q[k] += v[k] * dt + a[k] * h2 + b[k] * h3 + c[k] * h4
+        v[k] += a[k] * dt + b[k] * h2 + c[k] * h3
+        a[k] += b[k] * dt + c[k] * h2
+        b[k] += c[k] * dt
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _correct(q, v, a, b, c, a_new, dt):
+    h0 = _C0 * dt * dt / 2.0
+    h1 = _C1 * dt / 2.0
+    h3 = _C3 * 3.0 / dt
+    h4 = _C4 * 12.0 / (dt * dt)
+    for k in range(q.size):
+        change = a_new[k] - a[k]
+        q[k] += h0 * change
+        v[k] += h1 * change
+        a[k] = a_new[k]
+        b[k] += h3 * change
+        c[k] += h4 * change
+
+
+@nb.njit(cache=True, error_model="numpy", nogil=True)
+def advance(steps, dt, schedule, limit, q, v, history, velocity, model):
+    """See the package docstring; history rows: second, third and fourth derivative, scratch."""
+    time, g0, g1, gt, l0, l1, lt = schedule
+    n = model[0]
+    a = history[0]
+    b = history[1]
+    c = history[2]
+    a_new = history[3]
+    for step in range(steps):
+        if step % LOOK_EVERY == 0 and limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
+            return step
+        _predict(q, v, a, b, c, dt)
+        now = time + (step + 1) * dt
+        accelerations(q, v, a_new, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
+        _correct(q, v, a, b, c, a_new, dt)
+    return steps
+
+
+def start(q, v, history, dt):
+    """Third and fourth derivatives are unknown at the start and settle within a few steps."""
+    history[1:3] = 0.0
+
+
+RECORD = Integrator(
+    name="gear",
+    title="Gear 5-value predictor-corrector",
+    order=4,
+    rows=4,
+    reference="C. W. Gear, Argonne report ANL-7126 (1966); the paper, Sec. III",
+    advance=advance,
+    start=start,
+)

@@ -1,0 +1,48 @@
+"""What an integrator says of itself, and what all integrators share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numba as nb
+
+#: Steps between two looks at how far disks have moved.
+LOOK_EVERY = 8
+
+
+@dataclass(frozen=True)
+class Integrator:
+    """One time integrator.
+
+    ``rows`` is the number of history rows, ``order`` the global order of its positions on a smooth problem,
+    ``start(q, v, history, dt)`` fills the history from its row 0.
+    """
+
+    name: str
+    title: str
+    order: int
+    rows: int
+    reference: str
+    advance: Callable
+    start: Callable
+
+
+@nb.njit(cache=True, error_model="numpy")
+def ramp(time, start, end, duration):
+    """Linear ramp from ``start`` at time 0 to ``end`` at ``duration``, constant after."""
+    if time >= duration:
+        return end
+    return start + (end - start) * (time / duration)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def moved_beyond(q, v, n, limit, horizon):
+    """Whether a disk may be farther than ``limit`` from its reference position within ``horizon``."""
+    for i in range(n):
+        reach = math.sqrt(q[i] * q[i] + q[n + i] * q[n + i])
+        reach += horizon * math.sqrt(v[i] * v[i] + v[n + i] * v[n + i])
+        if reach > limit:
+            return True
+    return False

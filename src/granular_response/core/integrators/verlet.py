@@ -1,0 +1,55 @@
+"""Velocity Verlet with a full-step predicted velocity for the dashpots."""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+
+from ..forces import accelerations
+from .record import LOOK_EVERY, Integrator, moved_beyond, ramp
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _drift(q, v, a, predicted, dt):
+    for k in range(q.size):
+        q[k] += v[k] * dt + a[k] * (0.5 * dt * dt)
+        predicted[k] = v[k] + a[k] * dt
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _kick(v, a, a_new, dt):
+    for k in range(v.size):
+        v[k] += (a[k] + a_new[k]) * (0.5 * dt)
+        a[k] = a_new[k]
+
+
+@nb.njit(cache=True, error_model="numpy", nogil=True)
+def advance(steps, dt, schedule, limit, q, v, history, velocity, model):
+    """See the package docstring; history rows: a(t), scratch."""
+    time, g0, g1, gt, l0, l1, lt = schedule
+    n = model[0]
+    a = history[0]
+    a_new = history[1]
+    for step in range(steps):
+        if step % LOOK_EVERY == 0 and limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
+            return step
+        _drift(q, v, a, velocity, dt)
+        now = time + (step + 1) * dt
+        accelerations(q, velocity, a_new, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
+        _kick(v, a, a_new, dt)
+    return steps
+
+
+def start(q, v, history, dt):
+    """Needs nothing beyond the present acceleration."""
+
+
+RECORD = Integrator(
+    name="verlet",
+    title="velocity Verlet",
+    order=2,
+    rows=2,
+    reference="W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
+    advance=advance,
+    start=start,
+)

@@ -1,0 +1,50 @@
+"""The contact law of Sec. III.A for one contact: scalars in, scalars out.
+
+The law's constants travel as one tuple
+``(normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force)``.
+``least_force`` bounds the normal force of a closed contact from below: ``-inf`` lets the dashpot pull for a
+moment, as eq. (2) says; ``0`` cuts that off.
+"""
+
+from __future__ import annotations
+
+import numba as nb
+
+#: How the Coulomb limit acts on the tangential spring.
+CUT, LITERAL = 0, 1
+
+
+@nb.njit(cache=True, error_model="numpy", inline="never")
+def normal_force(overlap, approach_velocity, law):
+    """Eq. (2): spring plus dashpot of a closed contact; ``approach_velocity`` is v·n, positive in separation."""
+    force = law[0] * overlap - law[1] * approach_velocity
+    return force if force > law[5] else law[5]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def tangential_cut(spring, slip_velocity, force_normal, law, time_step):
+    """Spring plus dashpot cut to the Coulomb limit; returns force and new spring.
+
+    The limit is ``friction * |force_normal|`` with the dashpot's part included. Where it acts, the stored
+    spring becomes the one that gives the cut force, so that the contact sticks again from there.
+    """
+    trial = spring + slip_velocity * time_step
+    damping = law[3] * slip_velocity
+    force = -law[2] * trial - damping
+    limit = law[4] * abs(force_normal)
+    cut = limit if force > limit else force
+    cut = -limit if cut < -limit else cut
+    slipped = -(cut + damping) / law[2]
+    return cut, (slipped if cut != force else trial)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def tangential_literal(spring, slip_velocity, force_normal, law, time_step):
+    """The paper's equation for the spring taken literally: it is frozen while k_T|s| exceeds mu |f_N|.
+
+    The force itself is not cut, and a frozen spring stays frozen on unloading too: kept to show that this
+    reading does not settle.
+    """
+    free = law[4] * abs(force_normal) - law[2] * abs(spring) > 0.0
+    new = spring + (slip_velocity * time_step if free else 0.0)
+    return -law[2] * new - law[3] * slip_velocity, new

@@ -1,0 +1,103 @@
+"""Candidate contacts: pairs close enough to touch before the list is made again, stored as runs."""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+
+#: Runs shorter than this are not worth a vector loop of their own.
+SHORTEST_RUN = 6
+#: Missing pairs bridged to keep a run together; they cost less than a new run.
+LONGEST_GAP = 3
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _grid_pairs(x, z, radius, skin, cell, column, row, columns, rows, order, start, first, second, fill):
+    count = 0
+    for i in range(x.size):
+        for c in range(max(column[i] - 1, 0), min(column[i] + 2, columns)):
+            for r in range(max(row[i] - 1, 0), min(row[i] + 2, rows)):
+                home = c * rows + r
+                for k in range(start[home], start[home + 1]):
+                    j = order[k]
+                    if j <= i:
+                        continue
+                    dx = x[i] - x[j]
+                    dz = z[i] - z[j]
+                    reach = radius[i] + radius[j] + skin
+                    if dx * dx + dz * dz < reach * reach:
+                        if fill:
+                            first[count] = i
+                            second[count] = j
+                        count += 1
+    return count
+
+
+def close_pairs(position, radius, skin):
+    """All pairs of disks whose gap is less than ``skin``.
+
+    Parameters
+    ----------
+    position : (n, 2) disk centres; ``radius`` : (n,); ``skin`` : largest gap listed.
+
+    Returns
+    -------
+    first, second : (m,) int32 with ``first < second``, sorted by ``(first, second)``.
+    """
+    x = np.ascontiguousarray(position[:, 0])
+    z = np.ascontiguousarray(position[:, 1])
+    cell = 2.0 * float(radius.max()) + skin
+    column = ((x - x.min()) / cell).astype(np.int64)
+    row = ((z - z.min()) / cell).astype(np.int64)
+    columns, rows = int(column.max()) + 1, int(row.max()) + 1
+    home = column * rows + row
+    order = np.argsort(home, kind="stable")
+    start = np.searchsorted(home[order], np.arange(columns * rows + 1))
+    none = np.empty(0, np.int64)
+    arguments = (x, z, radius, skin, cell, column, row, columns, rows, order, start)
+    count = _grid_pairs(*arguments, none, none, False)
+    first, second = np.empty(count, np.int64), np.empty(count, np.int64)
+    _grid_pairs(*arguments, first, second, True)
+    by = np.lexsort((second, first))
+    return first[by].astype(np.int32), second[by].astype(np.int32)
+
+
+def make_runs(first, second, n, longest_gap=LONGEST_GAP):
+    """Store pairs as runs of constant index difference.
+
+    Parameters
+    ----------
+    first, second : (m,) int pairs with ``first < second``; ``n`` : number of disks; ``longest_gap`` : number of
+        missing pairs bridged inside a run.
+
+    Returns
+    -------
+    runs : (r, 4) int64 ``first disk, second disk, count, first slot``; ``slot`` : (m,) int64 slot of each given
+        pair. There are ``runs[-1, 2] + runs[-1, 3]`` slots; those of no given pair fill gaps.
+    """
+    if len(first) == 0:
+        return np.zeros((0, 4), np.int64), np.zeros(0, np.int64)
+    i = first.astype(np.int64)
+    offset = second.astype(np.int64) - i
+    by = np.lexsort((i, offset))
+    step = np.diff(i[by])
+    breaks = np.flatnonzero((np.diff(offset[by]) != 0) | (step > longest_gap + 1)) + 1
+    begin = np.concatenate([[0], breaks])
+    end = np.concatenate([breaks, [len(by)]]) - 1
+    i0, i1 = i[by][begin], i[by][end]
+    count = i1 - i0 + 1
+    first_slot = np.concatenate([[0], np.cumsum(count)[:-1]])
+    runs = np.stack([i0, i0 + offset[by][begin], count, first_slot], axis=1)
+    slot = np.empty(len(by), np.int64)
+    which = np.repeat(np.arange(len(begin)), end - begin + 1)
+    slot[by] = first_slot[which] + i[by] - i0[which]
+    return runs, slot
+
+
+def run_pairs(runs):
+    """The pairs ``(first, second)`` of all slots of the runs, each (slots,) int64."""
+    if len(runs) == 0:
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    which = np.repeat(np.arange(len(runs)), runs[:, 2])
+    along = np.arange(runs[-1, 2] + runs[-1, 3]) - runs[which, 3]
+    return runs[which, 0] + along, runs[which, 1] + along

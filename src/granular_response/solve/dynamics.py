@@ -1,0 +1,295 @@
+"""Relaxation by explicit dynamics: the discrete element method of Sec. III.
+
+A :class:`Dynamics` advances one packing in time. :func:`relax` runs it through a ramp of gravity or load until the
+stopping criteria of Sec. III.C hold. Disks with fewer than two contacts bear no load and may roll for ever;
+they are left out of the kinetic energy that decides.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.forces import accelerations
+from ..core.integrators import INTEGRATORS
+from ..core.neighbours import run_pairs
+from .problem import Candidates, Problem, wall_normals
+from .state import Contacts, FloatArray, State
+
+#: Steps between two looks at the stopping criteria.
+CHECK_EVERY = 100
+#: Checks over which the contact network must not change: "several hundred time steps" (Sec. III.C).
+STEADY_CHECKS = 5
+#: Time over which the envelope of the kinetic energy is taken.
+ENVELOPE_TIME = 20.0
+#: Largest mean acceleration at rest (Sec. III.C).
+MEAN_ACCELERATION = 1e-5
+
+Ramp = tuple[float, float, float]
+
+
+class DynamicsError(RuntimeError):
+    """A run that blew up."""
+
+
+@dataclass(frozen=True)
+class Stop:
+    """When a relaxation ends.
+
+    ``kinetic_energy`` per disk (units of mean weight times mean radius); ``rule``: ``instantaneous`` stops at
+    the first reading below it, ``envelope`` when the largest reading of the last ``ENVELOPE_TIME`` is.
+    """
+
+    kinetic_energy: float = 1e-13
+    rule: str = "instantaneous"
+    maximum_steps: int = 5_000_000
+
+
+class Dynamics:
+    """One packing in motion.
+
+    Parameters
+    ----------
+    problem : the scene's arrays (with loads chosen, if it has any).
+    state : where to start: positions, angles, velocities and springs are taken over.
+    integrator : a name in ``core.integrators.INTEGRATORS``.
+    time_step : in units of sqrt(R/g).
+    """
+
+    def __init__(self, problem: Problem, state: State, integrator: str = "beeman", time_step: float = 5e-4):
+        self.problem = problem
+        self.integrator = INTEGRATORS[integrator]
+        self.time_step = float(time_step)
+        self.steps = 0
+        self.time = 0.0
+        self.rebuilds = 0
+        self.gravity: Ramp = (1.0, 1.0, 0.0)
+        self.load: Ramp = (0.0, 0.0, 0.0)
+        n, freedoms = problem.n, problem.freedoms
+        self.angle0 = state.angle.copy()
+        self.v = np.concatenate([state.velocity.T.ravel(), state.angular_velocity])[: n * freedoms].copy()
+        self.q = np.zeros(n * freedoms)
+        self.history = np.zeros((self.integrator.rows, n * freedoms))
+        self.predicted = np.zeros(n * freedoms)
+        self.rim = np.zeros(n) if problem.rotations else None
+        self._list(state.position)
+        if problem.pair_friction:
+            self._take_springs(state.pairs.first, state.pairs.second, state.pairs.spring)
+        if problem.wall_friction:
+            self._take_wall_springs(state.walls.first, state.walls.second, state.walls.spring)
+        self._fill_history()
+
+    def _list(self, position: FloatArray) -> None:
+        problem = self.problem
+        self.candidates: Candidates = problem.list_candidates(position)
+        c = self.candidates
+        self.spring = np.zeros(c.slots) if problem.pair_friction else None
+        self.wall_spring = np.zeros(len(c.wall_disk)) if problem.wall_friction else None
+        buffer = np.zeros((3 if problem.pair_friction else 2, c.slots))
+        self.model = (
+            problem.n, problem.weight, problem.inverse_mass, problem.packing.radius, self.rim,
+            problem.load, problem.load_disk,
+            c.runs, c.separation[0], c.separation[1], c.reach, self.spring, buffer, problem.pair_law,
+            c.wall_disk, wall_normals(c.wall), c.wall_gap, self.wall_spring, problem.wall_law, problem.rule,
+        )  # fmt: skip
+
+    def _take_springs(self, first, second, spring) -> None:
+        """Put the springs of given pairs into the slots of the list."""
+        c, n = self.candidates, self.problem.n
+        held = np.flatnonzero(spring)
+        key = c.first.astype(np.int64) * n + c.second
+        wanted = np.asarray(first, np.int64)[held] * n + np.asarray(second, np.int64)[held]
+        place = np.searchsorted(key, wanted)
+        if (place == len(key)).any() or (key[place] != wanted).any():
+            raise DynamicsError("a contact that carries a tangential spring is not in the list of candidates")
+        self.spring[c.slot[place]] = spring[held]
+
+    def _take_wall_springs(self, disk, wall, spring) -> None:
+        c, n = self.candidates, self.problem.n
+        of = dict(zip((np.asarray(wall, np.int64) * n + disk).tolist(), spring.tolist(), strict=True))
+        keys = (c.wall.astype(np.int64) * n + c.wall_disk).tolist()
+        self.wall_spring[:] = [of.get(k, 0.0) for k in keys]
+
+    def _fill_history(self) -> None:
+        self.history[:] = 0.0
+        self._accelerations(self.history[0])
+        self.integrator.start(self.q, self.v, self.history, self.time_step)
+
+    def _accelerations(self, out: FloatArray) -> None:
+        """Accelerations now; springs do not advance."""
+        g0, g1, gt = self.gravity
+        l0, l1, lt = self.load
+        gravity = g1 if self.time >= gt else g0 + (g1 - g0) * self.time / gt
+        load = l1 if self.time >= lt else l0 + (l1 - l0) * self.time / lt
+        accelerations(self.q, self.v, out, gravity, load, 0.0, *self.model)
+
+    def set_ramps(self, gravity: Ramp = (1.0, 1.0, 0.0), load: Ramp = (0.0, 0.0, 0.0)) -> None:
+        """Start new linear ramps ``(from, to, duration)`` now; the clock restarts at zero."""
+        self.gravity, self.load, self.time = gravity, load, 0.0
+        self._fill_history()
+
+    def advance(self, steps: int) -> None:
+        """Advance by ``steps`` time steps, listing candidates again whenever disks have moved too far."""
+        left = steps
+        while left:
+            schedule = (self.time, *map(float, self.gravity), *map(float, self.load))
+            done = self.integrator.advance(
+                left, self.time_step, schedule, self.candidates.limit,
+                self.q, self.v, self.history, self.predicted, self.model,
+            )  # fmt: skip
+            self.steps += done
+            self.time += done * self.time_step
+            left -= done
+            if left:
+                self._relist()
+
+    def _relist(self) -> None:
+        """List candidates again around the present positions, keeping every spring."""
+        position = self.position
+        if not np.isfinite(position).all():
+            raise DynamicsError(self._blow_up())
+        old, spring, wall_spring = self.candidates, self.spring, self.wall_spring
+        n = self.problem.n
+        self.angle0 = self.angle
+        self._list(position)
+        self.q[:] = 0.0
+        self.rebuilds += 1
+        if spring is not None:
+            self._take_springs(*run_pairs(old.runs), spring)
+        if wall_spring is not None:
+            self._take_wall_springs(old.wall_disk, old.wall, wall_spring)
+
+    def _blow_up(self) -> str:
+        return (
+            f"the motion blew up after {self.steps} steps with time_step {self.time_step:g}; "
+            "take a smaller protocol.time_step"
+        )
+
+    @property
+    def position(self) -> FloatArray:
+        """(n, 2) disk centres now."""
+        n = self.problem.n
+        return self.candidates.reference + self.q[: 2 * n].reshape(2, n).T
+
+    @property
+    def angle(self) -> FloatArray:
+        """(n,) rotations now."""
+        n = self.problem.n
+        return self.angle0 + self.q[2 * n :] if self.problem.rotations else self.angle0
+
+    def state(self, **information) -> State:
+        """The present state, with spring forces only (what remains at rest)."""
+        problem, c, n = self.problem, self.candidates, self.problem.n
+        zero_pairs, zero_walls = np.zeros(len(c.slot)), np.zeros(len(c.wall_disk))
+        none = zero_pairs.astype(np.int8)
+        spring = self.spring[c.slot] if self.spring is not None else zero_pairs
+        wall_spring = self.wall_spring.copy() if self.wall_spring is not None else zero_walls
+        bare = State(
+            position=self.position,
+            angle=self.angle.copy(),
+            velocity=np.ascontiguousarray(self.v[: 2 * n].reshape(2, n).T),
+            angular_velocity=self.v[2 * n :].copy() if problem.rotations else np.zeros(n),
+            pairs=Contacts(c.first, c.second, zero_pairs, zero_pairs, zero_pairs, spring, none),
+            walls=Contacts(
+                c.wall_disk.astype(np.int32), c.wall, zero_walls, zero_walls, zero_walls, wall_spring,
+                zero_walls.astype(np.int8),
+            ),  # fmt: skip
+            load_factor=self.load[1],
+            information={"steps": self.steps, "time": self.time, "rebuilds": self.rebuilds, **information},
+        )
+        return problem.with_static_forces(bare)
+
+    def touching(self):
+        """Which listed contacts (pairs, then walls) are closed now."""
+        problem, c = self.problem, self.candidates
+        x = self.position
+        d = x[c.first] - x[c.second]
+        radius = problem.packing.radius
+        pairs = d[:, 0] ** 2 + d[:, 1] ** 2 < (radius[c.first] + radius[c.second]) ** 2
+        shift = np.einsum("ci,ci->c", wall_normals(c.wall), (x - c.reference)[c.wall_disk])
+        return np.concatenate([pairs, c.wall_gap + shift < 0])
+
+    def contact_count(self):
+        """(n,) number of closed contacts of each disk."""
+        c, n = self.candidates, self.problem.n
+        touch = self.touching()
+        pairs, walls = touch[: len(c.first)], touch[len(c.first) :]
+        count = np.bincount(c.first[pairs], minlength=n) + np.bincount(c.second[pairs], minlength=n)
+        return count + np.bincount(c.wall_disk[walls], minlength=n)
+
+    def kinetic_energy(self, *, bearing_only: bool = False) -> float:
+        """Kinetic energy per disk; optionally of the disks with two contacts or more."""
+        energy = 0.5 * self.v**2 / self.problem.inverse_mass
+        if bearing_only:
+            energy = energy.reshape(self.problem.freedoms, -1)[:, self.contact_count() >= 2]
+        return float(energy.sum()) / self.problem.n
+
+    def mean_acceleration(self) -> float:
+        """Mean magnitude of the acceleration of disks with two contacts or more, in units of g."""
+        n = self.problem.n
+        bearing = self.contact_count() >= 2
+        a = self.history[0][: 2 * n].reshape(2, n)[:, bearing]
+        return float(np.hypot(a[0], a[1]).mean()) if bearing.any() else 0.0
+
+
+def relax(
+    dynamics: Dynamics,
+    stop: Stop,
+    *,
+    gravity: Ramp = (1.0, 1.0, 0.0),
+    load: Ramp = (0.0, 0.0, 0.0),
+    progress: Callable[[int, float], None] | None = None,
+) -> State:
+    """Run ramps of gravity and load, then relax to rest.
+
+    Returns the state with ``information``: ``steps``, ``time``, ``kinetic_energy`` (per disk), ``settled``,
+    and the other criteria of Sec. III.C: ``network_fixed_steps``, ``sliding_contacts``,
+    ``mean_acceleration``, ``loose_disks``. ``settled`` is False when ``maximum_steps`` came first.
+
+    Raises
+    ------
+    DynamicsError
+        When the motion blows up.
+    """
+    dynamics.set_ramps(gravity, load)
+    started = dynamics.steps
+    ramp_time = max(gravity[2], load[2])
+    checks = max(1, round(ENVELOPE_TIME / (CHECK_EVERY * dynamics.time_step)))
+    envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
+    network = None
+    fixed = 0
+    settled = False
+    scale = 1e6 * (1.0 + abs(load[1]) * float(np.abs(dynamics.problem.load).sum()))
+    while dynamics.steps - started < stop.maximum_steps:
+        dynamics.advance(CHECK_EVERY)
+        energy = dynamics.kinetic_energy()
+        if not energy < scale:
+            raise DynamicsError(dynamics._blow_up())
+        if progress is not None:
+            progress(dynamics.steps - started, energy)
+        if dynamics.time < ramp_time:
+            continue
+        if stop.kinetic_energy < energy < 1e3 * stop.kinetic_energy:
+            energy = dynamics.kinetic_energy(bearing_only=True)
+        envelope.append(energy)
+        if energy < 1e3 * stop.kinetic_energy:
+            now = dynamics.touching()
+            same = network is not None and np.array_equal(now, network)
+            fixed = fixed + CHECK_EVERY if same else 0
+            network = now
+        if max(envelope) < stop.kinetic_energy and len(envelope) == envelope.maxlen:
+            settled = True
+            break
+    state = dynamics.state()
+    return dynamics.state(
+        kinetic_energy=dynamics.kinetic_energy(),
+        settled=settled,
+        relaxation_steps=dynamics.steps - started,
+        network_fixed_steps=fixed,
+        sliding_contacts=int((state.pairs.status == 2).sum() + (state.walls.status == 2).sum()),
+        mean_acceleration=dynamics.mean_acceleration(),
+        loose_disks=int((dynamics.contact_count() < 2).sum()),
+    )

@@ -1,0 +1,185 @@
+"""Static equilibrium by Newton iterations on the true contact law, and its certificate.
+
+Which contacts are open, stick or slide is decided by the return map inside each residual, so the iteration is
+a semi-smooth Newton method: near a solution it ends in a few steps with residuals at rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from .problem import Problem
+from .state import OPEN, FloatArray, State
+from .system import Configuration, StaticSystem, Trial
+
+#: Largest force or torque left on any disk, in units of a mean disk weight.
+TOLERANCE = 1e-10
+#: A Newton step moves no disk farther than this (mean radii).
+LONGEST_STEP = 0.05
+
+
+class EquilibriumError(RuntimeError):
+    """No static equilibrium was found near the start."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What a static state guarantees, measured on the state itself.
+
+    ``force_residual``, ``torque_residual``: largest on any disk (mean weights, mean radii). ``coulomb_excess``:
+    largest ``|f_t| - friction f_n``. ``smallest_normal_force``: over closed contacts. ``kinetic_energy``: per
+    disk. ``negative_modes``: unstable directions of the tangent (-1: not determined). ``loose_disks``: disks with
+    fewer than two contacts.
+    """
+
+    force_residual: float
+    torque_residual: float
+    coulomb_excess: float
+    smallest_normal_force: float
+    kinetic_energy: float
+    negative_modes: int
+    loose_disks: int
+
+    @property
+    def stable(self) -> bool:
+        return self.negative_modes == 0
+
+    def as_dict(self) -> dict[str, float]:
+        return asdict(self)
+
+
+def residual(system: StaticSystem, trial: Trial, external: FloatArray) -> FloatArray:
+    """(dof,) unbalanced force and torque on each disk."""
+    return trial.contact_force + external
+
+
+def external_force(problem: Problem, load_factor: float) -> FloatArray:
+    """(dof,) gravity and the scene's loads times ``load_factor``."""
+    return problem.weight_vector() + load_factor * problem.load_vector()
+
+
+@dataclass(frozen=True)
+class NewtonReport:
+    """How a Newton solution went."""
+
+    converged: bool
+    iterations: int
+    residual: float
+
+
+def newton(
+    system: StaticSystem,
+    known: Configuration,
+    external: FloatArray,
+    start: FloatArray | None = None,
+    *,
+    tolerance: float = TOLERANCE,
+    maximum_iterations: int = 30,
+) -> tuple[Trial, NewtonReport]:
+    """Solve for equilibrium under ``external``, one increment after ``known``.
+
+    Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
+    for a moment). Returns the last trial and a report; ``report.converged`` says whether it is a solution.
+    """
+    q = (known.q if start is None else start).copy()
+    trial = system.trial(known, q)
+    r = residual(system, trial, external)
+    size = float(np.abs(r).max(initial=0.0))
+    best = size
+    stalled = 0
+    for iteration in range(maximum_iterations):
+        if size < 1e-3 * tolerance or (size < tolerance and stalled):
+            return trial, NewtonReport(True, iteration, size)
+        try:
+            step = system.deinterleave(system.factorise(trial).solve(system.interleave(r)))
+        except RuntimeError:  # exactly singular
+            break
+        if not np.isfinite(step).all():
+            break
+        n = system.problem.n
+        length = float(np.abs(step[: 2 * n]).max())
+        scale = min(1.0, LONGEST_STEP / length) if length > 0 else 1.0
+        for _ in range(6):
+            new = system.trial(known, q + scale * step)
+            r_new = residual(system, new, external)
+            size_new = float(np.abs(r_new).max())
+            if size_new < 10.0 * size or size_new < tolerance:
+                break
+            scale *= 0.5
+        q, trial, r, size = q + scale * step, new, r_new, size_new
+        stalled = stalled + 1 if size > 0.5 * best else 0
+        best = min(best, size)
+    return trial, NewtonReport(size < tolerance, maximum_iterations, size)
+
+
+def certify(problem: Problem, state: State, *, modes: int = -1) -> Certificate:
+    """Measure a state's certificate from its own positions and contact forces.
+
+    The residual is summed anew from the state's contact forces, not taken from the solver.
+    """
+    n, radius = problem.n, problem.packing.radius
+    force = state.load_factor * np.array([0.0])
+    force = np.zeros((n, 2))
+    torque = np.zeros(n)
+    force[:, 1] -= problem.weight
+    np.add.at(force, problem.load_disk, state.load_factor * problem.load[:, :2])
+    np.add.at(torque, problem.load_disk, state.load_factor * problem.load[:, 2])
+    pair_force, wall_force = state.pair_force(), state.wall_force()
+    np.add.at(force, state.pairs.first, pair_force)
+    np.add.at(force, state.pairs.second, -pair_force)
+    np.add.at(force, state.walls.first, wall_force)
+    for index, tangential in (
+        (state.pairs.first, state.pairs.tangential_force),
+        (state.pairs.second, state.pairs.tangential_force),
+        (state.walls.first, state.walls.tangential_force),
+    ):
+        np.add.at(torque, index, -radius[index] * tangential)
+    normal = np.concatenate([state.pairs.normal_force, state.walls.normal_force])
+    excess = np.concatenate(
+        [
+            np.abs(state.pairs.tangential_force) - problem.pair_law[4] * state.pairs.normal_force,
+            np.abs(state.walls.tangential_force) - problem.wall_law[4] * state.walls.normal_force,
+        ]
+    )
+    closed = np.concatenate([state.pairs.status, state.walls.status]) != OPEN
+    energy = 0.5 * (problem.weight * (state.velocity**2).sum(axis=1)).sum()
+    energy += 0.5 * (problem.packing.inertia * state.angular_velocity**2).sum()
+    count = np.bincount(state.pairs.first[state.pairs.touching], minlength=n)
+    count += np.bincount(state.pairs.second[state.pairs.touching], minlength=n)
+    count += np.bincount(state.walls.first[state.walls.touching], minlength=n)
+    return Certificate(
+        force_residual=float(np.abs(force).max()),
+        torque_residual=float(np.abs(torque).max()) if problem.rotations else 0.0,
+        coulomb_excess=max(0.0, float(excess[closed].max(initial=0.0))),
+        smallest_normal_force=float(normal[closed].min(initial=np.inf)),
+        kinetic_energy=float(energy) / n,
+        negative_modes=modes,
+        loose_disks=int((count < 2).sum()),
+    )
+
+
+def finish(problem: Problem, state: State, *, load_factor: float | None = None) -> State:
+    """Bring a nearly settled state to rest by Newton iterations (Sec. III.C), with its certificate.
+
+    Springs start from the state's own, so friction remembers what it went through.
+
+    Raises
+    ------
+    EquilibriumError
+        When the state is too far from rest for Newton's method: relax it further first.
+    """
+    factor = state.load_factor if load_factor is None else load_factor
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    trial, report = newton(system, known, external_force(problem, factor))
+    if not report.converged:
+        raise EquilibriumError(
+            f"no static equilibrium within {report.iterations} Newton iterations of the state "
+            f"(largest unbalanced force {report.residual:.1e}); relax it further first"
+        )
+    solved = system.state(trial, factor, **{**state.information, "newton_iterations": report.iterations})
+    certificate = certify(problem, solved, modes=system.negative_modes(trial))
+    solved.information["certificate"] = certificate
+    return solved

@@ -1,0 +1,261 @@
+"""A scene as arrays: what the solvers work on.
+
+Only the physics that a scene has gets arrays: rotations exist when some contact has friction, tangential
+springs only for the contacts (of disks, of walls) that have it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import neighbours
+from ..core.law import CUT, LITERAL
+from ..scene import Packing, Scene, resolve_disk
+from .state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Contacts, FloatArray, State
+
+#: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
+#: is made again.
+SKIN = 0.6
+
+Law = tuple[float, float, float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Contacts that can exist while no disk is farther than ``limit`` from ``reference``.
+
+    Slots are the storage places of the runs (see ``core.forces``); ``slot`` maps each listed pair to its own.
+    """
+
+    reference: FloatArray  #: (n, 2) positions that displacements are measured from
+    first: NDArray[np.int32]  #: (m,) listed pairs, first < second
+    second: NDArray[np.int32]
+    slot: NDArray[np.int64]  #: (m,)
+    runs: NDArray[np.int64]  #: (r, 4)
+    separation: FloatArray  #: (2, slots) reference separations of the slots' disks
+    reach: FloatArray  #: (slots,) sums of radii
+    wall_disk: NDArray[np.int64]  #: (w,)
+    wall: NDArray[np.int8]  #: (w,)
+    wall_gap: FloatArray  #: (w,) reference gaps
+    limit: float
+
+    @property
+    def slots(self) -> int:
+        return len(self.reach)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A scene with its packing, in the form the kernels take.
+
+    ``load`` is (l, 3): force components and torque on the disks ``load_disk`` (l,), both empty for gravity
+    alone and until :meth:`with_loads` has chosen the loaded disks on the rest state.
+    """
+
+    scene: Scene
+    packing: Packing
+    pair_law: Law
+    wall_law: Law
+    rule: int
+    load_disk: NDArray[np.int64]
+    load: FloatArray
+
+    @classmethod
+    def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
+        """Build the packing (unless given) and the laws of a scene; raises ``SceneError`` for a bad packing."""
+        protocol = scene.protocol
+        least = -np.inf if protocol.tensile_dashpot else 0.0
+
+        def law(m) -> Law:
+            return (
+                float(m.normal_stiffness),
+                float(m.normal_damping),
+                float(m.tangential_stiffness),
+                float(m.tangential_damping),
+                float(m.friction) if m.tangential_stiffness > 0 else 0.0,
+                least,
+            )
+
+        return cls(
+            scene=scene,
+            packing=scene.packing.build() if packing is None else packing,
+            pair_law=law(scene.contact),
+            wall_law=law(scene.resolved_wall),
+            rule=LITERAL if protocol.friction_law == "literal" else CUT,
+            load_disk=np.zeros(0, np.int64),
+            load=np.zeros((0, 3)),
+        )
+
+    @property
+    def n(self) -> int:
+        return len(self.packing.radius)
+
+    @property
+    def pair_friction(self) -> bool:
+        return self.pair_law[4] > 0.0
+
+    @property
+    def wall_friction(self) -> bool:
+        return self.wall_law[4] > 0.0
+
+    @property
+    def rotations(self) -> bool:
+        return self.pair_friction or self.wall_friction
+
+    @property
+    def freedoms(self) -> int:
+        """Degrees of freedom of one disk: 3 with rotations, else 2."""
+        return 3 if self.rotations else 2
+
+    @cached_property
+    def weight(self) -> FloatArray:
+        """(n,) weights; their mean is 1."""
+        return np.ascontiguousarray(self.packing.mass)
+
+    @cached_property
+    def inverse_mass(self) -> FloatArray:
+        """(2 n,) or (3 n,) inverse masses and moments of inertia, in the order of ``q``."""
+        parts = [1.0 / self.packing.mass] * 2
+        if self.rotations:
+            parts.append(1.0 / self.packing.inertia)
+        return np.concatenate(parts)
+
+    @cached_property
+    def may_rearrange(self) -> bool:
+        """Whether contacts other than those of the initial neighbours can form."""
+        pairs = self.packing.neighbour_pairs()
+        return pairs is None or bool(self.scene.packing.may_rearrange(self.pair_law[0]))
+
+    def with_loads(self, position: FloatArray) -> Problem:
+        """The same problem with the scene's loads on disks chosen at the rest ``position`` (n, 2)."""
+        loads = self.scene.loads
+        disk = [resolve_disk(load.disk, self.packing, position) for load in loads]
+        return replace(
+            self,
+            load_disk=np.array(disk, np.int64),
+            load=np.array([[*load.force, load.torque] for load in loads], float).reshape(-1, 3),
+        )
+
+    def load_vector(self) -> FloatArray:
+        """(dof,) generalised load at load factor 1."""
+        total = np.zeros((3, self.n))
+        np.add.at(total, (slice(None), self.load_disk), self.load.T)
+        return total[: self.freedoms].ravel()
+
+    def weight_vector(self) -> FloatArray:
+        """(dof,) generalised gravity."""
+        total = np.zeros((self.freedoms, self.n))
+        total[1] = -self.weight
+        return total.ravel()
+
+    def list_candidates(self, position: FloatArray, *, search: bool | None = None) -> Candidates:
+        """List candidate contacts at ``position`` (n, 2).
+
+        A packing that cannot rearrange takes its neighbours from the lattice, with no search; ``search=True``
+        forces one.
+        """
+        packing = self.packing
+        radius = packing.radius
+        if search is None:
+            search = self.may_rearrange
+        pairs = None if search else packing.neighbour_pairs()
+        if pairs is None:
+            first, second = neighbours.close_pairs(position, radius, SKIN)
+            limit = 0.5 * SKIN
+            margin = SKIN
+        else:
+            first, second = pairs[:, 0], pairs[:, 1]
+            by = np.lexsort((second, first))
+            first, second = first[by], second[by]
+            limit = np.inf
+            margin = 0.9
+        runs, slot = neighbours.make_runs(first, second, self.n)
+        i, j = neighbours.run_pairs(runs)
+        wall_disk, wall = _wall_candidates(position, radius, packing.width, margin)
+        return Candidates(
+            reference=position.copy(),
+            first=first.astype(np.int32),
+            second=second.astype(np.int32),
+            slot=slot,
+            runs=runs,
+            separation=np.ascontiguousarray((position[i] - position[j]).T),
+            reach=radius[i] + radius[j],
+            wall_disk=wall_disk,
+            wall=wall,
+            wall_gap=wall_gap(position[wall_disk], radius[wall_disk], wall, packing.width),
+            limit=limit,
+        )
+
+    def bare_state(self) -> State:
+        """The unloaded initial packing: no displacement, no motion, no springs."""
+        position = np.array(self.packing.position, float)
+        candidates = self.list_candidates(position)
+        n = self.n
+        pairs = _empty_contacts(candidates.first, candidates.second)
+        walls = _empty_contacts(candidates.wall_disk, candidates.wall)
+        state = State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), pairs, walls)
+        return self.with_static_forces(state)
+
+    def with_static_forces(self, state: State) -> State:
+        """The state with overlaps, spring forces and statuses made from its positions and springs."""
+        position, radius = state.position, self.packing.radius
+        i, j = state.pairs.first, state.pairs.second
+        distance = np.linalg.norm(position[i] - position[j], axis=1)
+        k = state.walls.first
+        gap = wall_gap(position[k], radius[k], state.walls.second, self.packing.width)
+        return replace(
+            state,
+            pairs=static_contacts(i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_law),
+            walls=static_contacts(k, state.walls.second, -gap, state.walls.spring, self.wall_law),
+        )
+
+
+def static_contacts(first, second, overlap, spring, law: Law) -> Contacts:
+    """Contacts with the spring parts of their forces (Sec. III.A without velocities).
+
+    A touching contact slides when its spring force has reached the Coulomb limit (to 1e-9 of it).
+    """
+    touch = overlap > 0
+    normal = np.where(touch, law[0] * overlap, 0.0)
+    spring = np.where(touch, spring, 0.0) if law[4] > 0 else np.zeros_like(overlap)
+    tangential = -law[2] * spring if law[4] > 0 else np.zeros_like(overlap)
+    sliding = touch & (law[4] > 0) & (np.abs(tangential) >= law[4] * normal * (1 - 1e-9))
+    status = np.where(touch, np.where(sliding, 2, 1), 0).astype(np.int8)
+    return Contacts(
+        np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, normal, tangential, spring, status
+    )
+
+
+def wall_gap(position, radius, wall, width: float) -> FloatArray:
+    """Gaps between disks and walls: floor at z = 0, walls at x = 0 and x = ``width``."""
+    x, z = position[:, 0], position[:, 1]
+    distance = np.where(wall == FLOOR, z, np.where(wall == LEFT_WALL, x, width - x))
+    return distance - radius
+
+
+def _wall_candidates(position, radius, width: float, margin: float):
+    disks, walls = [], []
+    for wall in (FLOOR, LEFT_WALL, RIGHT_WALL):
+        gap = wall_gap(position, radius, np.full(len(radius), wall), width)
+        near = np.flatnonzero(gap < margin)
+        disks.append(near)
+        walls.append(np.full(len(near), wall, np.int8))
+    return np.concatenate(disks).astype(np.int64), np.concatenate(walls)
+
+
+def _empty_contacts(first, second) -> Contacts:
+    zero = np.zeros(len(first))
+    return Contacts(
+        np.asarray(first, np.int32), np.asarray(second, np.int32), zero, zero, zero, zero, zero.astype(np.int8)
+    )
+
+
+def wall_normals(wall) -> FloatArray:
+    """(w, 2) inward normals of the given walls."""
+    return np.ascontiguousarray(WALL_NORMAL[np.asarray(wall, np.int64)])
+
+

@@ -1,0 +1,230 @@
+"""The static equations of a packing: forces by the return map, tangent stiffness, factorisation.
+
+A :class:`StaticSystem` belongs to one packing and one list of candidate contacts. Configurations are displacements
+``q`` (``[x | z | angle]``) from its reference positions together with the springs, so that overlaps keep their
+digits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import SuperLU, splu
+
+from ..core import statics
+from .problem import Problem, wall_gap, wall_normals
+from .state import SLIDING, Contacts, FloatArray, State
+
+#: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
+REGULARISATION = 1e-10
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """A static configuration: displacements and everything the return map remembers."""
+
+    q: FloatArray  #: (dof,)
+    pair_spring: FloatArray  #: (m,)
+    wall_spring: FloatArray  #: (w,)
+    pair_overlap: FloatArray  #: (m,)
+    wall_overlap: FloatArray  #: (w,)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Forces at a trial configuration reached in one increment from another."""
+
+    configuration: Configuration
+    contact_force: FloatArray  #: (dof,) sum of contact forces and torques on each disk
+    pair_normal: FloatArray
+    pair_tangential: FloatArray
+    pair_status: np.ndarray
+    wall_normal: FloatArray
+    wall_tangential: FloatArray
+    wall_status: np.ndarray
+    pair_tangent: FloatArray  #: (m, 3, 3)
+    wall_tangent: FloatArray  #: (w, 3, 3)
+
+    @property
+    def status(self) -> np.ndarray:
+        """(m + w,) statuses of all candidates."""
+        return np.concatenate([self.pair_status, self.wall_status])
+
+
+class StaticSystem:
+    """Static equations of ``problem`` around the positions and candidate contacts of ``state``."""
+
+    def __init__(self, problem: Problem, state: State):
+        self.problem = problem
+        self.reference = state.position.copy()
+        self.angle0 = state.angle.copy()
+        self.first = state.pairs.first.astype(np.int64)
+        self.second = state.pairs.second.astype(np.int64)
+        self.wall_disk = state.walls.first.astype(np.int64)
+        self.wall = state.walls.second
+        radius = problem.packing.radius
+        d = self.reference[self.first] - self.reference[self.second]
+        self.dx0, self.dz0 = np.ascontiguousarray(d[:, 0]), np.ascontiguousarray(d[:, 1])
+        self.gap0 = np.hypot(d[:, 0], d[:, 1]) - (radius[self.first] + radius[self.second])
+        self.wall_gap0 = wall_gap(
+            self.reference[self.wall_disk], radius[self.wall_disk], self.wall, problem.packing.width
+        )
+        self.wall_normals = wall_normals(self.wall)
+        self.weight = problem.weight_vector()
+        self._pattern()
+
+    @property
+    def dof(self) -> int:
+        return self.problem.n * self.problem.freedoms
+
+    def start(self, state: State) -> Configuration:
+        """The configuration of a state of the same candidates."""
+        shift = (state.position - self.reference).T.ravel()
+        q = np.concatenate([shift, state.angle - self.angle0])[: self.dof]
+        return self._known(q, state.pairs.spring, state.walls.spring)
+
+    def _known(self, q, pair_spring, wall_spring) -> Configuration:
+        bare = Configuration(
+            q, pair_spring.copy(), wall_spring.copy(), np.zeros(len(self.first)), np.zeros(len(self.wall_disk))
+        )
+        return replace(self.trial(bare, q).configuration, pair_spring=bare.pair_spring, wall_spring=bare.wall_spring)
+
+    def trial(self, known: Configuration, q: FloatArray) -> Trial:
+        """Forces at ``q``, one increment after ``known``."""
+        problem = self.problem
+        m, w = len(self.first), len(self.wall_disk)
+        force = np.zeros(self.dof)
+
+        def buffers(size):
+            return [np.zeros(size) for _ in range(4)] + [np.zeros(size, np.int8)]
+
+        pair, wall = buffers(m), buffers(w)
+        g, wall_g = np.empty((m, 3, 3)), np.empty((w, 3, 3))
+        radius = problem.packing.radius
+        statics.pair_statics(
+            q, known.q, problem.n, self.first, self.second, self.dx0, self.dz0, self.gap0, radius,
+            known.pair_overlap, known.pair_spring if problem.pair_friction else None, problem.pair_law,
+            *pair, force, g,
+        )  # fmt: skip
+        statics.wall_statics(
+            q, known.q, problem.n, self.wall_disk, self.wall_normals, self.wall_gap0, radius,
+            known.wall_overlap, known.wall_spring if problem.wall_friction else None, problem.wall_law,
+            *wall, force, wall_g,
+        )  # fmt: skip
+        return Trial(
+            configuration=Configuration(q, pair[3], wall[3], pair[0], wall[0]),
+            contact_force=force,
+            pair_normal=pair[1],
+            pair_tangential=pair[2],
+            pair_status=pair[4],
+            wall_normal=wall[1],
+            wall_tangential=wall[2],
+            wall_status=wall[4],
+            pair_tangent=g,
+            wall_tangent=wall_g,
+        )
+
+    def _pattern(self) -> None:
+        """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
+        n, d = self.problem.n, self.problem.freedoms
+        i, j = self.first, self.second
+        nodes = np.arange(n)
+        row = np.concatenate([nodes, i, j])
+        column = np.concatenate([nodes, j, i])
+        by = np.lexsort((row, column))
+        place = np.empty(len(by), np.int64)
+        place[by] = np.arange(len(by))
+        count = np.bincount(column, minlength=n)
+        begin = np.concatenate([[0], np.cumsum(count)])
+        rank = place - begin[column]
+        base = begin[column] * d * d + rank * d
+        stride = count[column] * d
+        m = len(i)
+        ii, ij, ji = nodes, n + np.arange(m), n + m + np.arange(m)
+        order = np.stack([ii[i], ij, ji, ii[j]], axis=1) if m else np.zeros((0, 4), np.int64)
+        self._base, self._stride = base[order], stride[order]
+        self._wall_base, self._wall_stride = base[self.wall_disk], stride[self.wall_disk]
+        rows_of = row[by]
+        indices = []
+        for component in range(d):
+            indices.append(rows_of * d + component)
+        block_rows = np.stack(indices, axis=1).ravel()
+        # every block column repeats its rows d times, once for each component of the column
+        starts = np.repeat(begin[:-1] * d, d)
+        lengths = np.repeat(count * d, d)
+        self._indptr = np.concatenate([[0], np.cumsum(lengths)])
+        offset = np.arange(self._indptr[-1]) - np.repeat(self._indptr[:-1], lengths)
+        self._indices = block_rows[np.repeat(starts, lengths) + offset]
+        self._diagonal = (base[:n, None] + np.arange(d) * (stride[:n, None] + 1)).ravel()
+        self._data = np.zeros(self._indptr[-1])
+
+    def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
+        """K = -dF/dq with interleaved unknowns, ``shift`` added to the diagonal (scalar or (dof,) interleaved)."""
+        statics.assemble(
+            self._data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius,
+            trial.pair_tangent, self._base, self._stride,
+            self.wall_disk, trial.wall_tangent, self._wall_base, self._wall_stride,
+        )  # fmt: skip
+        data = self._data.copy()
+        data[self._diagonal] += shift
+        return sp.csc_array((data, self._indices, self._indptr), shape=(self.dof, self.dof))
+
+    def interleave(self, vector: FloatArray) -> FloatArray:
+        """``[x | z | angle]`` to node by node."""
+        return vector.reshape(self.problem.freedoms, -1).T.ravel()
+
+    def deinterleave(self, vector: FloatArray) -> FloatArray:
+        """Node by node to ``[x | z | angle]``."""
+        return vector.reshape(-1, self.problem.freedoms).T.ravel()
+
+    def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> SuperLU:
+        """Sparse LU of the tangent, a tiny regularisation included."""
+        k = self.problem.pair_law[0]
+        matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
+        return splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.001, options={"SymmetricMode": True}
+        )
+
+    def state(self, trial: Trial, load_factor: float, **information) -> State:
+        """The state at rest of a solved trial."""
+        n = self.problem.n
+        q = trial.configuration.q
+        angle = self.angle0 + q[2 * n :] if self.problem.rotations else self.angle0
+        c = trial.configuration
+        return State(
+            position=self.reference + q[: 2 * n].reshape(2, n).T,
+            angle=angle.copy(),
+            velocity=np.zeros((n, 2)),
+            angular_velocity=np.zeros(n),
+            pairs=Contacts(
+                self.first.astype(np.int32), self.second.astype(np.int32), c.pair_overlap, trial.pair_normal,
+                trial.pair_tangential, c.pair_spring, trial.pair_status,
+            ),
+            walls=Contacts(
+                self.wall_disk.astype(np.int32), self.wall, c.wall_overlap, trial.wall_normal,
+                trial.wall_tangential, c.wall_spring, trial.wall_status,
+            ),
+            load_factor=load_factor,
+            information=information,
+        )  # fmt: skip
+
+    def negative_modes(self, trial: Trial, shift: float = 1e-6) -> int:
+        """Number of negative eigenvalues of the symmetric part of the tangent (unstable directions).
+
+        Counted from the pivots of a factorisation without row exchanges (Sylvester's law of inertia);
+        ``shift`` keeps disks that roll freely from counting.
+        """
+        matrix = self.tangent(trial, shift)
+        matrix = (matrix + matrix.T) * 0.5
+        lu = splu(
+            sp.csc_array(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )  # fmt: skip
+        return int((lu.U.diagonal() < 0).sum())
+
+
+def sliding_count(trial: Trial) -> int:
+    """Number of sliding contacts."""
+    return int((trial.pair_status == SLIDING).sum() + (trial.wall_status == SLIDING).sum())
