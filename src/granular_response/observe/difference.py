@@ -1,0 +1,123 @@
+"""What the load adds: differences of a rest and a loaded state, contact by contact.
+
+Along a load path the candidate contacts keep their order, so a difference is an array subtraction. Where a
+packing has rearranged, :func:`match_candidates` first gives both states one common list of candidates.
+Forces are in mean disk weights, lengths in mean radii.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from granular_response.solve.state import FLOOR, LEFT_WALL, OPEN, Contacts, FloatArray, State
+
+
+def require_same_candidates(rest: State, loaded: State) -> None:
+    """Raise ``ValueError`` unless both states list the same candidate contacts in the same order."""
+    for kind in ("pairs", "walls"):
+        a: Contacts = getattr(rest, kind)
+        b: Contacts = getattr(loaded, kind)
+        if not (np.array_equal(a.first, b.first) and np.array_equal(a.second, b.second)):
+            raise ValueError(
+                f"{kind}: the two states list different candidate contacts "
+                f"({a.first.size} and {b.first.size}); "
+                "bring them to one list with match_candidates"
+            )
+
+
+def pair_force_difference(rest: State, loaded: State) -> FloatArray:
+    """(m, 2) force on ``pairs.first`` that the load adds; gravity subtracted as a vector (Sec. III.C)."""
+    require_same_candidates(rest, loaded)
+    return loaded.pair_force() - rest.pair_force()
+
+
+def wall_force_difference(rest: State, loaded: State) -> FloatArray:
+    """(w, 2) force on ``walls.first`` that the load adds; gravity subtracted as a vector (Sec. III.C)."""
+    require_same_candidates(rest, loaded)
+    return loaded.wall_force() - rest.wall_force()
+
+
+def force_misalignment(rest: State, loaded: State) -> float:
+    """Mean angle (radians, 0 to pi/2) between the added force and the contact line, weighted with |force|.
+
+    Zero means that the force chains follow the contact directions, as they must without friction up to the
+    rotation of the contacts themselves (Sec. V.D, Fig. 13). NaN if the load changes no force.
+    """
+    force = pair_force_difference(rest, loaded)
+    normal = loaded.pair_normal()
+    along = np.abs(np.sum(force * normal, axis=1))
+    across = np.abs(normal[:, 0] * force[:, 1] - normal[:, 1] * force[:, 0])
+    magnitude = np.hypot(along, across)
+    total = float(magnitude.sum())
+    return float(np.sum(np.arctan2(across, along) * magnitude) / total) if total > 0.0 else float("nan")
+
+
+def match_candidates(rest: State, loaded: State, radius: FloatArray, width: float) -> tuple[State, State]:
+    """The same two states on one common candidate list (the union, ordered by disk and partner).
+
+    A contact that one state does not list is OPEN there: no force, no spring, and the overlap that its
+    geometry gives. ``radius`` is (n,), ``width`` the distance of the side walls. A pair keeps its forces when
+    it is listed in the other direction, since normal and tangent change sign together. Raises ``ValueError``
+    if a state lists a contact twice or the states hold different numbers of disks.
+    """
+    n = rest.position.shape[0]
+    if loaded.position.shape[0] != n or radius.shape != (n,):
+        raise ValueError(f"radius: {radius.shape} for states of {n} and {loaded.position.shape[0]} disks")
+
+    def pair_overlap(state: State, i: NDArray[np.int32], j: NDArray[np.int32]) -> FloatArray:
+        distance = np.linalg.norm(state.position[i] - state.position[j], axis=1)
+        return radius[i] + radius[j] - distance
+
+    def wall_overlap(state: State, i: NDArray[np.int32], wall: NDArray[np.int32]) -> FloatArray:
+        x, z = state.position[i, 0], state.position[i, 1]
+        distance = np.where(wall == FLOOR, z, np.where(wall == LEFT_WALL, x, width - x))
+        return radius[i] - distance
+
+    pair_keys = [_pair_keys(s.pairs, n) for s in (rest, loaded)]
+    wall_keys = [s.walls.first.astype(np.int64) * 3 + s.walls.second for s in (rest, loaded)]
+    pair_union = np.union1d(*pair_keys)
+    wall_union = np.union1d(*wall_keys)
+    matched = []
+    for state, pair_key, wall_key in zip((rest, loaded), pair_keys, wall_keys, strict=True):
+        i, j = (pair_union // n).astype(np.int32), (pair_union % n).astype(np.int32)
+        k, wall = (wall_union // 3).astype(np.int32), (wall_union % 3).astype(np.int32)
+        pairs = _spread("pairs", state.pairs, pair_key, pair_union, i, j, pair_overlap(state, i, j))
+        walls = _spread("walls", state.walls, wall_key, wall_union, k, wall, wall_overlap(state, k, wall))
+        matched.append(replace(state, pairs=pairs, walls=walls))
+    return matched[0], matched[1]
+
+
+def _pair_keys(contacts: Contacts, n: int) -> NDArray[np.int64]:
+    low = np.minimum(contacts.first, contacts.second).astype(np.int64)
+    return low * n + np.maximum(contacts.first, contacts.second)
+
+
+def _spread(
+    kind: str,
+    contacts: Contacts,
+    key: NDArray[np.int64],
+    union: NDArray[np.int64],
+    first: NDArray[np.int32],
+    second: NDArray[np.int32],
+    overlap: FloatArray,
+) -> Contacts:
+    at = np.searchsorted(union, key)
+    if np.unique(at).size != at.size:
+        raise ValueError(f"{kind}: a contact is listed twice")
+
+    def place(values: NDArray, default: NDArray) -> NDArray:
+        default[at] = values
+        return default
+
+    return Contacts(
+        first=first,
+        second=second,
+        overlap=place(contacts.overlap, overlap.copy()),
+        normal_force=place(contacts.normal_force, np.zeros(union.size)),
+        tangential_force=place(contacts.tangential_force, np.zeros(union.size)),
+        spring=place(contacts.spring, np.zeros(union.size)),
+        status=place(contacts.status, np.full(union.size, OPEN, dtype=contacts.status.dtype)),
+    )

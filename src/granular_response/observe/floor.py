@@ -1,0 +1,83 @@
+"""Floor response: the excess force on the floor per applied force (Secs. II.A, III.C and VI).
+
+Forces are in mean disk weights, lengths in mean radii.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from granular_response.solve.state import FLOOR, FloatArray, State
+
+
+def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[np.intp]:
+    """(k,) indices of the floor disks, ordered by their ``x`` in the first state.
+
+    A floor disk belongs to ``bottom_row`` (disk indices, from the packing) or touches the floor in any of
+    ``states``; give every state that is to be compared, so that no floor force is left out.
+    Raises ``ValueError`` without a state.
+    """
+    if not states:
+        raise ValueError("states: none given; at least one state is needed to find the floor disks")
+    touching = [s.walls.first[(s.walls.second == FLOOR) & s.walls.touching] for s in states]
+    disks = np.unique(np.concatenate([np.asarray(bottom_row, dtype=np.intp), *touching])).astype(np.intp)
+    return disks[np.argsort(states[0].position[disks, 0], kind="stable")]
+
+
+def floor_force(state: State, disks: NDArray[np.intp]) -> FloatArray:
+    """(k,) vertical force of the floor on each of ``disks``, positive upwards.
+
+    Vertical (friction) forces of the side walls do not count, nor do floor contacts of disks not in
+    ``disks``. A disk that does not reach the floor has zero.
+    """
+    on_floor = state.walls.second == FLOOR
+    vertical = np.zeros(state.position.shape[0])
+    np.add.at(vertical, state.walls.first[on_floor], state.wall_force()[on_floor, 1])
+    return vertical[disks]
+
+
+def floor_response(rest: State, loaded: State, disks: NDArray[np.intp], total_force: float) -> FloatArray:
+    """(k,) vertical floor force that the load adds on each disk, per ``total_force``.
+
+    ``total_force`` is the sum of the magnitudes of the applied forces. Over all floor disks the response to
+    vertical loads sums to 1 when the side walls carry no weight. Raises ``ValueError`` unless
+    ``total_force`` is positive and finite.
+    """
+    if not (np.isfinite(total_force) and total_force > 0.0):
+        raise ValueError(f"total_force: {total_force} given; it must be positive and finite")
+    return (floor_force(loaded, disks) - floor_force(rest, disks)) / total_force
+
+
+def smoothed_response(x_eval: ArrayLike, x_disk: ArrayLike, response: ArrayLike, width: float) -> FloatArray:
+    """Gaussian coarse graining of a floor response along x (Sec. VI).
+
+    The kernel is ``exp(-(x/width)^2) / (width sqrt(pi))``, so the result is the vertical stress on the
+    floor per applied force, in 1/mean radius; its integral over x is the sum of the response. ``x_disk`` is
+    (k,), ``response`` (..., k), ``x_eval`` (e,); returns (..., e). Within about ``width`` of a side wall part
+    of the kernel lies outside the box. Raises ``ValueError`` unless ``width`` is positive.
+    """
+    if not width > 0.0:
+        raise ValueError(f"width: {width} given; it must be positive")
+    distance = (np.asarray(x_eval, dtype=float)[:, None] - np.asarray(x_disk, dtype=float)) / width
+    kernel = np.exp(-(distance**2)) / (width * np.sqrt(np.pi))
+    return np.asarray(response, dtype=float) @ kernel.T
+
+
+def interior_mask(
+    x: ArrayLike, width: float, margin: float = 10.0, *, left_wall: float = 0.0
+) -> NDArray[np.bool_]:
+    """Whether each ``x`` is at least ``margin`` away from both side walls; same shape as ``x``.
+
+    ``left_wall`` is the position of the left wall in the coordinate of ``x`` (for x measured from the loaded
+    disk: minus the distance of that disk from the wall); the right wall is ``width`` further on.
+    Raises ``ValueError`` if nothing can be in the interior.
+    """
+    if not 0.0 <= margin < width / 2.0:
+        raise ValueError(
+            f"margin: {margin} given; it must be at least 0 and less than half the width {width}"
+        )
+    distance = np.asarray(x, dtype=float) - left_wall
+    return (distance >= margin) & (distance <= width - margin)

@@ -1,0 +1,224 @@
+"""The contact network: what a load changes in it, its orientations and its symmetry (Secs. IV.A, V.B, V.E).
+
+"Near the load" in the paper means the interior: contacts beside a wall carry almost nothing under gravity
+and can open first. Masks are over candidate contacts, (m,). Lengths are in mean radii, angles in radians.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from granular_response.solve.state import SLIDING, Contacts, FloatArray, State
+
+#: Directions of the triangular lattice, as returned by :func:`lattice_direction`.
+HORIZONTAL, RISING, FALLING = 0, 1, 2
+
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class ContactChanges:
+    """What a load changes in the contacts of one kind; masks of shape (m,)."""
+
+    opened: BoolArray
+    closed: BoolArray
+    started_sliding: BoolArray  #: slides now and did not before; a contact that closed sliding is one of them
+    stopped_sliding: BoolArray  #: slid before and does not now, be it that it sticks or that it opened
+
+
+def contact_changes(rest: Contacts, loaded: Contacts) -> ContactChanges:
+    """Changes between two lists of the same candidates (pairs or walls), Figs. 4, 8 and 9.
+
+    Raises ``ValueError`` if the candidates differ.
+    """
+    if not (np.array_equal(rest.first, loaded.first) and np.array_equal(rest.second, loaded.second)):
+        raise ValueError(
+            f"contacts: the two states list different candidates "
+            f"({rest.first.size} and {loaded.first.size}); "
+            "bring them to one list with match_candidates"
+        )
+    slid, slides = rest.status == SLIDING, loaded.status == SLIDING
+    return ContactChanges(
+        opened=rest.touching & ~loaded.touching,
+        closed=~rest.touching & loaded.touching,
+        started_sliding=slides & ~slid,
+        stopped_sliding=slid & ~slides,
+    )
+
+
+def sliding_count(state: State, *, walls: bool = True) -> int:
+    """Number of sliding contacts, with or without those at the walls (Sec. V.E)."""
+    count = np.count_nonzero(state.pairs.status == SLIDING)
+    return int(count + (np.count_nonzero(state.walls.status == SLIDING) if walls else 0))
+
+
+def contact_centre(state: State) -> FloatArray:
+    """(m, 2) middle between the centres of the two disks of each pair."""
+    return 0.5 * (state.position[state.pairs.first] + state.position[state.pairs.second])
+
+
+def contact_angle(state: State) -> FloatArray:
+    """(m,) angle of each pair's line of centres to the horizontal, in [0, pi)."""
+    normal = state.pair_normal()
+    angle = np.mod(np.arctan2(normal[:, 1], normal[:, 0]), np.pi)
+    # A line that falls by less than rounding gives pi itself.
+    return np.where(angle >= np.pi, 0.0, angle)
+
+
+def lattice_direction(state: State) -> NDArray[np.int8]:
+    """(m,) nearest direction of the triangular lattice: HORIZONTAL, RISING (60 degrees), FALLING (120)."""
+    return (np.rint(contact_angle(state) / (np.pi / 3.0)).astype(np.int8) % 3).astype(np.int8)
+
+
+def interior_contacts(state: State, width: float, margin: float = 10.0) -> BoolArray:
+    """(m,) whether the centre of each pair is at least ``margin`` away from both side walls.
+
+    Raises ``ValueError`` if nothing can be in the interior.
+    """
+    if not 0.0 <= margin < width / 2.0:
+        raise ValueError(
+            f"margin: {margin} given; it must be at least 0 and less than half the width {width}"
+        )
+    x = contact_centre(state)[:, 0]
+    return (x >= margin) & (x <= width - margin)
+
+
+def bulk_disks(
+    state: State, width: float, side_margin: float = 10.0, vertical_margin: float = 4.0
+) -> BoolArray:
+    """(n,) disks whose centres keep ``side_margin`` from the side walls and ``vertical_margin`` from the
+    floor and from the highest centre; by default that leaves out two rows of a lattice below, three above."""
+    x, z = state.position[:, 0], state.position[:, 1]
+    return (
+        (x >= side_margin)
+        & (x <= width - side_margin)
+        & (z >= vertical_margin)
+        & (z <= z.max() - vertical_margin)
+    )
+
+
+def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
+    """(n,) disks with fewer than ``minimum_contacts`` contacts, walls included, removed again and again.
+
+    A disk whose partners are rattlers loses those contacts too. Under gravity two contacts hold a disk
+    (Sec. III.C asks for at least two), so what is left out by default are disks that lie loose.
+    """
+    n = state.position.shape[0]
+    pairs, walls = state.pairs, state.walls
+    loose = np.zeros(n, dtype=bool)
+    while True:
+        live = pairs.touching & ~loose[pairs.first] & ~loose[pairs.second]
+        count = _count(n, pairs.first[live], pairs.second[live], walls.first[walls.touching])
+        found = (count < minimum_contacts) & ~loose
+        if not found.any():
+            return loose
+        loose |= found
+
+
+def coordination_number(
+    state: State,
+    disks: BoolArray | None = None,
+    *,
+    walls: bool = False,
+    without_rattlers: bool = False,
+    minimum_contacts: int = 2,
+) -> float:
+    """Mean number of contacts of a disk (Sec. VII), over ``disks`` ((n,) mask; all of them by default).
+
+    Contacts with disks outside ``disks`` count, so a bulk average has no surface in it. ``walls`` adds wall
+    contacts. ``without_rattlers`` leaves out the disks found by :func:`rattlers` together with
+    all contacts they take part in. Raises ``ValueError`` if no disk is left.
+    """
+    n = state.position.shape[0]
+    chosen = np.ones(n, dtype=bool) if disks is None else np.asarray(disks, dtype=bool).copy()
+    pairs, at_wall = state.pairs, state.walls
+    live = pairs.touching
+    if without_rattlers:
+        loose = rattlers(state, minimum_contacts)
+        chosen &= ~loose
+        live = live & ~loose[pairs.first] & ~loose[pairs.second]
+    if not chosen.any():
+        raise ValueError("disks: none left to average over")
+    count = _count(n, pairs.first[live], pairs.second[live])
+    if walls:
+        count += _count(n, at_wall.first[at_wall.touching])
+    return float(count[chosen].mean())
+
+
+def contact_angle_histogram(
+    state: State, bins: int = 36, contacts: BoolArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Distribution of the angles of the touching pairs: bin centres (b,) from 0 and density (b,) per radian.
+
+    The density integrates to 1 over pi. The first bin is centred on the horizontal, so contacts that are
+    horizontal up to rounding are not split; with ``bins`` a multiple of 3 so are the oblique lattice
+    directions. ``contacts`` restricts the pairs. An empty network gives zeros. Raises ``ValueError`` for
+    fewer than one bin.
+    """
+    if bins < 1:
+        raise ValueError(f"bins: {bins} given; it must be at least 1")
+    chosen = state.pairs.touching if contacts is None else state.pairs.touching & contacts
+    spacing = np.pi / bins
+    # Cells are half-open in the shifted angle; the modulo folds angles just below pi onto the first.
+    cell = np.floor(contact_angle(state)[chosen] / spacing + 0.5).astype(np.int64) % bins
+    density = np.bincount(cell, minlength=bins).astype(np.float64)
+    if cell.size:
+        density /= cell.size * spacing
+    return spacing * np.arange(bins, dtype=np.float64), density
+
+
+def mirror_disks(position: FloatArray, axis: float, tolerance: float = 0.1) -> NDArray[np.intp]:
+    """(n,) index of the mirror image of each disk in the vertical line ``x = axis``.
+
+    ``position`` is (n, 2), best that of the undeformed packing. Raises ``ValueError`` if a disk has no
+    image within ``tolerance``, or shares it.
+    """
+    image = position * np.array([-1.0, 1.0]) + np.array([2.0 * axis, 0.0])
+    distance, index = cKDTree(position).query(image)
+    worst = int(np.argmax(distance))
+    if distance[worst] > tolerance:
+        raise ValueError(
+            f"position: disk {worst} has no mirror image within {tolerance} "
+            f"(nearest at {distance[worst]:.3g}); "
+            f"the packing is not symmetric about x = {axis}"
+        )
+    if not np.array_equal(index[index], np.arange(index.size)):
+        raise ValueError(
+            f"position: two disks share a mirror image about x = {axis}; tolerance {tolerance} too large"
+        )
+    return index.astype(np.intp)
+
+
+def unmatched_contacts(contacts: Contacts, mirror: NDArray[np.intp], *, sliding: bool = False) -> BoolArray:
+    """(m,) touching (with ``sliding``: sliding) pairs whose mirror image does not do the same.
+
+    ``mirror`` comes from :func:`mirror_disks`. An image that is no candidate counts as open.
+    """
+    here = contacts.status == SLIDING if sliding else contacts.touching
+    n = mirror.size
+
+    def keys(first: NDArray, second: NDArray) -> NDArray[np.int64]:
+        return np.minimum(first, second).astype(np.int64) * n + np.maximum(first, second)
+
+    present = keys(contacts.first, contacts.second)[here]
+    image = keys(mirror[contacts.first], mirror[contacts.second])
+    return here & ~np.isin(image, present)
+
+
+def network_asymmetry(contacts: Contacts, mirror: NDArray[np.intp], *, sliding: bool = False) -> float:
+    """Fraction of the touching (or sliding) pairs without a mirror image: 0 symmetric, 1 nothing in common.
+
+    Measures the loss of symmetry of the network in Sec. V.E. Zero for a network without such contacts.
+    """
+    total = np.count_nonzero(contacts.status == SLIDING if sliding else contacts.touching)
+    if total == 0:
+        return 0.0
+    return float(np.count_nonzero(unmatched_contacts(contacts, mirror, sliding=sliding)) / total)
+
+
+def _count(n: int, *disks: NDArray) -> NDArray[np.intp]:
+    return np.bincount(np.concatenate(disks), minlength=n)

@@ -1,0 +1,221 @@
+"""Peaks of a sampled response: how many, where, and what counts as two (Secs. IV.A and V.E).
+
+A peak is a local maximum, not at an end of the samples, that stands above the ground between itself and any
+higher sample by at least ``relative_prominence`` times the largest magnitude of the response. Maxima
+separated by shallower dips are one peak, whose position is the middle of its highest samples; samples that
+differ by less than ``rounding`` times that magnitude count as equally high. So a symmetric profile has
+symmetric peaks, and rounding noise neither makes nor moves one.
+
+``x`` is measured from the loaded disk and strictly increasing. ``interior`` (a mask over the samples, see
+:func:`granular_response.observe.floor.interior_mask`) leaves out what lies near the side walls; without it
+all samples count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from granular_response.solve.state import FloatArray
+
+#: A dip shallower than this fraction of the largest response does not separate two peaks. Responses of two
+#: correct codes differ by about 1e-4; a dip at the limit of sight in a printed figure is about 1e-2.
+RELATIVE_PROMINENCE = 1e-3
+
+#: Samples closer than this fraction of the largest response are equally high.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Peaks of a response from left to right, arrays of shape (p,)."""
+
+    position: FloatArray
+    height: FloatArray
+    prominence: FloatArray  #: height above the dip that leads to higher ground; of equals: above their dip
+
+    def __len__(self) -> int:
+        return int(self.position.size)
+
+
+@dataclass
+class _Hill:
+    """A connected set of samples above the current level, while the level sinks."""
+
+    top: float
+    summits: list[int]  # samples as high as the top
+    recorded: bool = False
+
+
+def find_peaks(
+    x: ArrayLike,
+    response: ArrayLike,
+    *,
+    interior: NDArray[np.bool_] | None = None,
+    relative_prominence: float = RELATIVE_PROMINENCE,
+    rounding: float = ROUNDING,
+) -> Peaks:
+    """Peaks of a response sampled at ``x`` (both (k,)); the definition is in the module's docstring.
+
+    Raises ``ValueError`` for samples that are too few (below three), not finite or not in order, and for a
+    prominence that is not positive.
+    """
+    x, r = _samples(x, response, interior)
+    if not relative_prominence > 0.0:
+        raise ValueError(f"relative_prominence: {relative_prominence} given; it must be positive")
+    scale = float(np.max(np.abs(r)))
+    threshold, tie = relative_prominence * scale, rounding * scale
+    last = r.size - 1
+    found: list[tuple[float, float, float]] = []
+
+    def record(hill: _Hill, prominence: float) -> None:
+        left, right = min(hill.summits), max(hill.summits)
+        if not hill.recorded and left > 0 and right < last and prominence >= threshold and prominence > tie:
+            found.append((0.5 * (x[left] + x[right]), hill.top, prominence))
+        hill.recorded = True
+
+    # Sink a level through the samples: hills appear at maxima and meet at the dips between them.
+    hill_at: list[_Hill | None] = [None] * r.size
+    for i in np.argsort(-r, kind="stable"):
+        left = hill_at[i - 1] if i > 0 else None
+        right = hill_at[i + 1] if i < last else None
+        level = float(r[i])
+        if left is not None and right is not None:
+            low, high = (left, right) if left.top <= right.top else (right, left)
+            if low.top - level < threshold or low.top - level <= tie:
+                high.summits = [s for s in high.summits + low.summits if r[s] >= high.top - tie]
+            else:
+                record(low, low.top - level)
+                if high.top - low.top <= tie:
+                    record(high, high.top - level)
+            hill_at = [high if hill is low else hill for hill in hill_at]
+            here = high
+        else:
+            here = left or right or _Hill(level, [])
+        if level >= here.top - tie:
+            here.summits.append(int(i))
+        hill_at[i] = here
+
+    highest = hill_at[0]
+    assert highest is not None
+    left_end, right_end = min(highest.summits), max(highest.summits)
+    if left_end > 0 and right_end < last:
+        record(highest, highest.top - max(float(r[:left_end].min()), float(r[right_end + 1 :].min())))
+    found.sort()
+    columns = np.array(found, dtype=float).reshape(-1, 3)
+    return Peaks(position=columns[:, 0], height=columns[:, 1], prominence=columns[:, 2])
+
+
+def peak_count(
+    x: ArrayLike,
+    response: ArrayLike,
+    *,
+    interior: NDArray[np.bool_] | None = None,
+    relative_prominence: float = RELATIVE_PROMINENCE,
+) -> int:
+    """Number of peaks."""
+    return len(find_peaks(x, response, interior=interior, relative_prominence=relative_prominence))
+
+
+def central_dip(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:
+    """How far the response at x = 0 lies below the lower of the maxima beside it, per largest response.
+
+    Continuous in the profile: negative while the maximum is at the centre, positive with two peaks, so its
+    zero is where a single peak turns into two (Sec. IV.A). The response at 0 is interpolated linearly.
+    Raises ``ValueError`` for bad samples, or if x = 0 has no samples on both sides.
+    """
+    x, r = _samples(x, response, interior)
+    if not x[0] < 0.0 < x[-1]:
+        raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
+    scale = float(np.max(np.abs(r)))
+    if scale == 0.0:
+        return 0.0
+    # A sample on the axis up to rounding belongs to neither side.
+    axis = 1e-6 * (x[-1] - x[0])
+    sides = min(float(r[x < -axis].max()), float(r[x > axis].max()))
+    return (sides - float(np.interp(0.0, x, r))) / scale
+
+
+def is_double_peaked(
+    x: ArrayLike,
+    response: ArrayLike,
+    *,
+    interior: NDArray[np.bool_] | None = None,
+    relative_prominence: float = RELATIVE_PROMINENCE,
+) -> bool:
+    """Whether the response has two peaks in the sense of the paper's crossover (Secs. IV.A, V.A and V.B).
+
+    That is: on each side of x = 0 there is a peak that exceeds the response at x = 0 by at least
+    ``relative_prominence`` times the largest response. A small third peak at x = 0 does not matter.
+    """
+    return _outer_peaks(x, response, interior, relative_prominence) is not None
+
+
+def has_third_peak(
+    x: ArrayLike,
+    response: ArrayLike,
+    *,
+    interior: NDArray[np.bool_] | None = None,
+    relative_prominence: float = RELATIVE_PROMINENCE,
+    centre: float = 1.0,
+) -> bool:
+    """Whether a double-peaked response has a further peak within ``centre`` of x = 0 (Sec. V.E, Fig. 16a)."""
+    peaks = _outer_peaks(x, response, interior, relative_prominence)
+    return peaks is not None and bool(np.any(np.abs(peaks.position) <= centre))
+
+
+def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:
+    """Largest ``|r(x) - r(-x)|`` per largest response (Sec. V.E, Fig. 16b): 0 for a symmetric profile.
+
+    ``r(-x)`` is interpolated linearly, which changes nothing where the samples lie symmetrically; samples
+    without a counterpart on the other side are left out. Raises ``ValueError`` for bad samples, if
+    none has a counterpart, or if the response is nowhere positive.
+    """
+    x, r = _samples(x, response, interior)
+    largest = float(r.max())
+    if not largest > 0.0:
+        raise ValueError(f"response: its largest value is {largest}; it must be positive somewhere")
+    reach = min(-float(x[0]), float(x[-1]))
+    both = np.abs(x) <= reach + 1e-6 * (x[-1] - x[0])
+    if not np.any(both):
+        raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
+    return float(np.max(np.abs(r[both] - np.interp(-x[both], x, r))) / largest)
+
+
+def _outer_peaks(
+    x: ArrayLike, response: ArrayLike, interior: NDArray[np.bool_] | None, relative_prominence: float
+) -> Peaks | None:
+    """All peaks, if there are peaks above the centre on both sides of it; else None."""
+    peaks = find_peaks(x, response, interior=interior, relative_prominence=relative_prominence)
+    x, r = _samples(x, response, interior)
+    if not x[0] < 0.0 < x[-1]:
+        raise ValueError(f"x: runs from {x[0]} to {x[-1]}; it must have samples on both sides of 0")
+    high = peaks.height >= np.interp(0.0, x, r) + relative_prominence * np.max(np.abs(r))
+    both = np.any(high & (peaks.position < 0.0)) and np.any(high & (peaks.position > 0.0))
+    return peaks if both else None
+
+
+def _samples(
+    x: ArrayLike, response: ArrayLike, interior: NDArray[np.bool_] | None
+) -> tuple[FloatArray, FloatArray]:
+    x, r = np.asarray(x, dtype=float), np.asarray(response, dtype=float)
+    if x.ndim != 1 or x.shape != r.shape:
+        raise ValueError(
+            f"response: shape {r.shape} given for x of shape {x.shape}; both must be the same 1-D shape"
+        )
+    if interior is not None:
+        mask = np.asarray(interior)
+        if mask.shape != x.shape or mask.dtype != np.bool_:
+            raise ValueError(
+                f"interior: {mask.dtype} of shape {mask.shape} given; it must be bool of shape {x.shape}"
+            )
+        x, r = x[mask], r[mask]
+    if x.size < 3:
+        raise ValueError(f"x: {x.size} samples in the interior; at least 3 are needed")
+    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(r))):
+        raise ValueError("response: contains values that are not finite")
+    if not np.all(np.diff(x) > 0.0):
+        raise ValueError("x: must be strictly increasing")
+    return x, r

@@ -1,0 +1,50 @@
+"""Magnitude of the contact forces against the horizontal position at given depths (Sec. V.D, Fig. 15).
+
+Lengths in mean radii, forces in mean disk weights.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from granular_response.observe.difference import pair_force_difference
+from granular_response.observe.network import contact_centre
+from granular_response.solve.state import FloatArray, State
+
+#: Distance of neighbouring rows of the triangular lattice, in lattice constants.
+ROW_SPACING = np.sqrt(3.0) / 2.0
+
+
+def force_profile(
+    rest: State,
+    loaded: State,
+    loaded_disk: int,
+    depth: float,
+    *,
+    lattice_constant: float = 2.0,
+    half_band: float | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """``x`` (c,) and |added force| (c,) of the touching pairs centred ``depth`` below the loaded disk.
+
+    ``x`` is measured from the loaded disk, and positions are those of the rest state, so the contacts at a
+    depth are the same for every load. Gravity is subtracted as a vector. A contact is taken if it touches in
+    either state and its centre is less than ``half_band`` off the depth; the default, a quarter of the
+    row spacing, parts the horizontal contacts of row k (at k row spacings) from the oblique ones between rows
+    (half a spacing further). Ordered by x, then from the top. Raises ``ValueError`` if the states list
+    different candidates, or ``half_band`` is not positive.
+    """
+    if half_band is None:
+        half_band = 0.25 * ROW_SPACING * lattice_constant
+    if not half_band > 0.0:
+        raise ValueError(f"half_band: {half_band} given; it must be positive")
+    magnitude = np.linalg.norm(pair_force_difference(rest, loaded), axis=1)
+    offset = contact_centre(rest) - rest.position[loaded_disk]
+    touching = rest.pairs.touching | loaded.pairs.touching
+    chosen = np.flatnonzero(touching & (np.abs(-offset[:, 1] - depth) < half_band))
+    chosen = chosen[np.lexsort((-offset[chosen, 1], offset[chosen, 0]))]
+    return offset[chosen, 0], magnitude[chosen]
+
+
+def row_depth(row: float, lattice_constant: float = 2.0) -> float:
+    """Depth of the ``row``-th row below the loaded disk; oblique contacts lie at half-integer rows."""
+    return row * ROW_SPACING * lattice_constant

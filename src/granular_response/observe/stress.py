@@ -1,0 +1,176 @@
+"""Coarse-grained stress of a contact network (Secs. V.C, V.D, V.F; Figs. 14 and 17; refs. [29, 85] there).
+
+With ``f`` the force on the first partner of a contact, ``r`` that partner's centre, ``d`` the branch vector
+from the second partner to it, and the Gaussian ``phi(r) = exp(-|r|^2/w^2) / (pi w^2)``,
+
+    sigma_ab(R) = sum_contacts f_a d_b integral_0^1 phi(R - r + s d) ds .
+
+The first index is the force's, the second the branch's. Compression is positive: the sign is opposite to that
+of elasticity textbooks (and of the cited references), as in a plot of the pressure on the floor. For a wall
+contact the second partner is the contact point on the wall.
+
+Balance. Differentiating under the integral gives, exactly and for every w,
+
+    d sigma_ab / d R_b = sum_disks F_a phi(R - r) + sum_wall_contacts f_a phi(R - c) ,
+
+where F is the force on a disk that is not a contact force (gravity, load) and c the point where a wall
+pushes with f. Away from the walls that is the coarse-grained body force. So the integral of sigma_zz over a
+horizontal line that is a few w away from load and floor is the vertical load above the line.
+
+Forces in mean disk weights, lengths in mean radii, so stress in weights per radius.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from scipy.special import erf
+
+from granular_response.observe.difference import pair_force_difference, wall_force_difference
+from granular_response.solve.state import FLOOR, LEFT_WALL, RIGHT_WALL, FloatArray, State
+
+#: Evaluations of a contact at a point that are held in memory at once.
+_CHUNK = 2_000_000
+
+
+@dataclass(frozen=True)
+class ContactForces:
+    """Contacts as the stress sees them, arrays of shape (c, 2)."""
+
+    point: FloatArray  #: centre of the disk the force acts on
+    branch: FloatArray  #: from the partner (centre of the other disk, or point on the wall) to ``point``
+    force: FloatArray  #: force on that disk
+
+
+def contact_forces(state: State, width: float) -> ContactForces:
+    """All touching contacts of a state, walls included; ``width`` is the distance of the side walls."""
+    return _contact_forces(state, state.pair_force(), state.wall_force(), width)
+
+
+def load_forces(rest: State, loaded: State, width: float) -> ContactForces:
+    """The forces that the load adds, at the contacts of the loaded geometry (Fig. 14).
+
+    Gravity is subtracted as a vector at each contact. Points and branch vectors are those of the loaded
+    state, so the balance with the load alone is exact; the difference of the two states' stresses is another
+    field, by the product of rest forces and displacements. Raises ``ValueError`` if the states list
+    different candidates.
+    """
+    return _contact_forces(
+        loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded), width
+    )
+
+
+def _contact_forces(
+    state: State, pair_force: FloatArray, wall_force: FloatArray, width: float
+) -> ContactForces:
+    position, pairs, walls = state.position, state.pairs, state.walls
+    at_wall = position[walls.first]
+    on_wall = at_wall.copy()
+    on_wall[walls.second == FLOOR, 1] = 0.0
+    on_wall[walls.second == LEFT_WALL, 0] = 0.0
+    on_wall[walls.second == RIGHT_WALL, 0] = width
+    force = np.concatenate([pair_force, wall_force])
+    carries = np.any(force != 0.0, axis=1)
+    return ContactForces(
+        point=np.concatenate([position[pairs.first], at_wall])[carries],
+        branch=np.concatenate([position[pairs.first] - position[pairs.second], at_wall - on_wall])[carries],
+        force=force[carries],
+    )
+
+
+def coarse_grained_stress(
+    contacts: ContactForces, points: FloatArray, width: float = 2.0, cutoff: float = 4.0
+) -> FloatArray:
+    """Stress tensor at ``points``, (..., 2) to (..., 2, 2), compression positive.
+
+    ``width`` is that of the Gaussian (w, two mean radii in the paper). Contacts more than ``cutoff`` widths
+    away from a point are left out; each would contribute less than exp(-cutoff^2) of its peak.
+    Raises ``ValueError`` unless both are positive.
+    """
+    _check(width, cutoff)
+    flat = points.reshape(-1, 2)
+    length = np.linalg.norm(contacts.branch, axis=1)
+    direction = contacts.branch / np.where(length > 0.0, length, 1.0)[:, None]
+    # Outer product with the unit branch vector: the length is in the line integral.
+    tensor = contacts.force[:, :, None] * direction[:, None, :]
+    stress = np.zeros((flat.shape[0], 4))
+    components = tensor.reshape(-1, 4)
+    middle, reach = contacts.point - 0.5 * contacts.branch, cutoff * width + 0.5 * length
+    for at, c in _near(flat, middle, reach):
+        offset = flat[at] - contacts.point[c]
+        along = np.einsum("ij,ij->i", offset, direction[c])
+        across2 = np.einsum("ij,ij->i", offset, offset) - along**2
+        # integral over the branch of the Gaussian, times the length of the branch
+        weight = np.exp(-across2 / width**2) * (erf((along + length[c]) / width) - erf(along / width))
+        weight /= 2.0 * np.sqrt(np.pi) * width
+        for k in range(4):
+            stress[:, k] += np.bincount(at, weights=weight * components[c, k], minlength=flat.shape[0])
+    return stress.reshape(*points.shape[:-1], 2, 2)
+
+
+def body_force_density(
+    position: FloatArray, force: FloatArray, points: FloatArray, width: float = 2.0, cutoff: float = 4.0
+) -> FloatArray:
+    """Coarse-grained density of point forces (both (n, 2)) at ``points``, (..., 2).
+
+    Of all forces that are not between disks it is the divergence of the stress, see the module's docstring.
+
+    Raises ``ValueError`` unless ``width`` and ``cutoff`` are positive.
+    """
+    _check(width, cutoff)
+    flat = points.reshape(-1, 2)
+    density = np.zeros(flat.shape)
+    for at, source in _near(flat, position, np.full(position.shape[0], cutoff * width)):
+        distance2 = np.sum((flat[at] - position[source]) ** 2, axis=1)
+        phi = np.exp(-distance2 / width**2) / (np.pi * width**2)
+        for a in range(2):
+            density[:, a] += np.bincount(at, weights=phi * force[source, a], minlength=flat.shape[0])
+    return density.reshape(points.shape)
+
+
+def grid_points(x: FloatArray, z: FloatArray) -> FloatArray:
+    """(len(z), len(x), 2) points of a rectangular grid."""
+    return np.stack(np.meshgrid(x, z), axis=-1)
+
+
+def pressure(stress: FloatArray) -> FloatArray:
+    """Half the trace of ``stress`` (..., 2, 2); positive in compression."""
+    return 0.5 * (stress[..., 0, 0] + stress[..., 1, 1])
+
+
+def antisymmetric_part(stress: FloatArray) -> FloatArray:
+    """``(sigma_xz - sigma_zx) / 2`` of ``stress`` (..., 2, 2), which tangential forces cause (Sec. V.C)."""
+    return 0.5 * (stress[..., 0, 1] - stress[..., 1, 0])
+
+
+def antisymmetric_ratio(stress: FloatArray) -> FloatArray:
+    """Magnitude of the antisymmetric part per magnitude of the pressure (Sec. V.C); NaN without pressure."""
+    p = np.abs(pressure(stress))
+    return np.divide(np.abs(antisymmetric_part(stress)), p, out=np.full(p.shape, np.nan), where=p > 0.0)
+
+
+def _check(width: float, cutoff: float) -> None:
+    for name, value in (("width", width), ("cutoff", cutoff)):
+        if not value > 0.0:
+            raise ValueError(f"{name}: {value} given; it must be positive")
+
+
+def _near(
+    points: FloatArray, centre: FloatArray, reach: FloatArray
+) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+    """Index pairs (point, centre) within ``reach`` of each centre, about ``_CHUNK`` at a time."""
+    if points.size == 0 or centre.size == 0:
+        return
+    tree = cKDTree(points)
+    counts = np.asarray(tree.query_ball_point(centre, reach, return_length=True))
+    group = np.cumsum(counts) // _CHUNK
+    edges = [0, *(np.flatnonzero(np.diff(group)) + 1).tolist(), counts.size]
+    for low, high in pairwise(edges):
+        near = tree.query_ball_point(centre[low:high], reach[low:high], return_sorted=False)
+        at = np.concatenate([np.asarray(p, dtype=np.intp) for p in near])
+        yield at, np.repeat(np.arange(low, high), counts[low:high])

@@ -1,0 +1,122 @@
+"""The teardrop: the connected region of contacts that the load opens below itself (Secs. IV.A and IV.B).
+
+Two open contacts are adjacent if their centres are within ``reach`` lattice constants of each other: on the
+triangular lattice horizontal contacts of one row and of neighbouring rows are one lattice constant
+apart, the next nearest 1.7, so the default 1.2 joins neighbours and bridges nothing. The region is the
+connected component nearest to the loaded disk. All lengths are measured in the rest state, in mean radii.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from granular_response.observe.difference import require_same_candidates
+from granular_response.observe.network import contact_centre, contact_changes
+from granular_response.solve.state import FLOOR, FloatArray, State
+
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class OpenRegion:
+    """A connected region of open contacts."""
+
+    contacts: BoolArray  #: (m,) pairs of the region
+    depth: float  #: from the origin (the loaded disk) down to the centre of the lowest contact; 0 if empty
+    width: float  #: largest extent of one row, from disk centre to disk centre; 0 if empty
+    reaches_floor: bool  #: whether a contact between two floor disks belongs to it
+
+    @property
+    def count(self) -> int:
+        return int(np.count_nonzero(self.contacts))
+
+
+def teardrop(
+    rest: State,
+    loaded: State,
+    loaded_disk: int,
+    *,
+    start: BoolArray | None = None,
+    lattice_constant: float = 2.0,
+    reach: float = 1.2,
+) -> OpenRegion:
+    """Region of the pairs that touch at rest and are open under load, nearest to ``loaded_disk`` (Fig. 5).
+
+    ``start`` (a mask over pairs, such as ``interior_contacts``) says where the region may begin, so that
+    contacts opened beside a wall are not taken for a teardrop. Raises ``ValueError`` if the states list
+    different candidates.
+    """
+    require_same_candidates(rest, loaded)
+    opened = contact_changes(rest.pairs, loaded.pairs).opened
+    return open_region(
+        rest, opened, rest.position[loaded_disk], start=start, lattice_constant=lattice_constant, reach=reach
+    )
+
+
+def open_region(
+    state: State,
+    opened: BoolArray,
+    origin: FloatArray,
+    *,
+    start: BoolArray | None = None,
+    lattice_constant: float = 2.0,
+    reach: float = 1.2,
+) -> OpenRegion:
+    """Connected region of the ``opened`` pairs ((m,) mask) that begins nearest to ``origin`` ((2,)).
+
+    ``state`` gives the geometry. Contacts that are equally near to the origin (within a hundredth of a
+    lattice constant) all begin the region, so a symmetric network has a symmetric region. The width of a row
+    takes in all contacts whose centres differ in height by less than a quarter of the row spacing. The region
+    reaches the floor with a contact of which both disks touch the floor in ``state``: on the lattice, a
+    horizontal one of the bottom row.
+    """
+    inside = np.zeros(opened.shape, dtype=bool)
+    candidate = np.flatnonzero(opened)
+    begin = candidate if start is None else np.flatnonzero(opened & start)
+    if begin.size == 0:
+        return OpenRegion(contacts=inside, depth=0.0, width=0.0, reaches_floor=False)
+
+    centre = contact_centre(state)
+    label = _components(centre[candidate], reach * lattice_constant)
+    distance = np.linalg.norm(centre[begin] - origin, axis=1)
+    nearest = begin[distance <= distance.min() + 0.01 * lattice_constant]
+    chosen = np.isin(label, label[np.searchsorted(candidate, nearest)])
+    region = candidate[chosen]
+    inside[region] = True
+
+    on_floor = np.zeros(state.position.shape[0], dtype=bool)
+    on_floor[state.walls.first[(state.walls.second == FLOOR) & state.walls.touching]] = True
+    first, second = state.pairs.first[region], state.pairs.second[region]
+    return OpenRegion(
+        contacts=inside,
+        depth=float(origin[1] - centre[region, 1].min()),
+        width=_largest_row(
+            state.position[first], state.position[second], np.sqrt(3.0) / 8.0 * lattice_constant
+        ),
+        reaches_floor=bool(np.any(on_floor[first] & on_floor[second])),
+    )
+
+
+def _components(points: FloatArray, reach: float) -> NDArray[np.int32]:
+    edges = cKDTree(points).query_pairs(reach, output_type="ndarray")
+    size = points.shape[0]
+    graph = coo_array((np.ones(len(edges), dtype=np.int8), (edges[:, 0], edges[:, 1])), shape=(size, size))
+    return connected_components(graph, directed=False)[1]
+
+
+def _largest_row(first: FloatArray, second: FloatArray, window: float) -> float:
+    """Largest extent in x of segments ``first``-``second`` with middles less than ``window`` apart in z."""
+    height = 0.5 * (first[:, 1] + second[:, 1])
+    order = np.argsort(height)
+    height = height[order]
+    left = np.minimum(first[order, 0], second[order, 0])
+    right = np.maximum(first[order, 0], second[order, 0])
+    low = np.searchsorted(height, height - window, side="right")
+    high = np.searchsorted(height, height + window, side="left")
+    return float(max(right[a:b].max() - left[a:b].min() for a, b in zip(low, high, strict=True)))
