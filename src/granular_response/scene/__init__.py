@@ -1,0 +1,33 @@
+"""What is simulated: frozen, validated descriptions of packing, contacts, walls, loads and protocol.
+
+``Scene`` is the whole; ``Scene.from_yaml`` reads a scene file and ``scene.packing.build()`` makes the arrays
+of its packing. No mechanics here: what the disks do under these loads is for ``granular_response.solve``.
+Whatever is wrong with a scene is a ``SceneError``: one line with the key, the value and what is allowed.
+"""
+
+from .errors import SceneError
+from .laboratory import LaboratoryUnits
+from .lattice import PilePacking, SlabPacking
+from .load import Load, RowSelector, resolve_disk
+from .material import Contact, Wall
+from .packing import Packing
+from .protocol import Preparation, Protocol
+from .scene import Scene
+from .table import FilePacking
+
+__all__ = [
+    "Contact",
+    "FilePacking",
+    "LaboratoryUnits",
+    "Load",
+    "Packing",
+    "PilePacking",
+    "Preparation",
+    "Protocol",
+    "RowSelector",
+    "Scene",
+    "SceneError",
+    "SlabPacking",
+    "Wall",
+    "resolve_disk",
+]

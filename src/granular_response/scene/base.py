@@ -1,0 +1,87 @@
+"""The base of all descriptions, and the number types that their fields share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
+
+from .errors import Problem, from_validation, suggestion
+
+PACKING_KINDS = ("slab", "pile", "file")
+
+
+class Description(BaseModel):
+    """Frozen, validated data; a value that is not allowed or a key that does not exist is a SceneError."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise from_validation(error, PACKING_KINDS) from None
+
+    # Without this mark pydantic would call __init__ for nested descriptions too and lose the path of the key.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _check_keys(cls, data: Any) -> Any:
+        if isinstance(data, cls):
+            return data
+        keys = ", ".join(cls.model_fields)
+        if not isinstance(data, Mapping):
+            raise Problem(f"must be a mapping with keys among {keys}")
+        for key, value in data.items():
+            if key not in cls.model_fields:
+                raise Problem(
+                    f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys})",
+                    key=(key if isinstance(key, str) else str(key),),
+                    value=value,
+                )
+        return {key: _plain(value) for key, value in data.items()}
+
+
+def _plain(value: Any) -> Any:
+    """Numpy scalars and arrays as Python numbers and lists, so that sweeps may hand them over."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [part.item() if isinstance(part, np.generic) else part for part in value]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def allowed(phrase: str) -> WrapValidator:
+    """Say ``phrase`` whatever is wrong with a value, in place of one message per rule or union member."""
+
+    def check(value: Any, inner: Callable[[Any], Any]) -> Any:
+        try:
+            return inner(value)
+        except (ValidationError, OverflowError):
+            raise Problem(phrase) from None
+
+    return WrapValidator(check)
+
+
+Finite = Annotated[float, Field(strict=True), allowed("must be a finite number")]
+Positive = Annotated[float, Field(strict=True, gt=0), allowed("must be a number greater than 0")]
+NonNegative = Annotated[float, Field(strict=True, ge=0), allowed("must be a number, 0 or greater")]
+#: A dimensionless parameter. The limit keeps products of parameters finite.
+Ratio = Annotated[float, Field(strict=True, ge=0, le=1e6), allowed("must be a number from 0 to 1e6")]
+#: Beyond 1e12 an overlap of one disk weight is lost in the rounding of a position.
+Stiffness = Annotated[
+    float, Field(strict=True, gt=0, le=1e12), allowed("must be a number greater than 0, at most 1e12")
+]
+Fraction = Annotated[
+    float, Field(strict=True, ge=0, lt=1), allowed("must be a number, 0 or greater and less than 1")
+]
+Count = Annotated[int, Field(strict=True, ge=1), allowed("must be a whole number, 1 or greater")]
+Index = Annotated[
+    int,
+    Field(strict=True, ge=0, lt=2**63),
+    allowed("must be a whole number, 0 or greater and less than 2^63"),
+]
+Flag = Annotated[bool, Field(strict=True), allowed("must be true or false")]

@@ -1,0 +1,131 @@
+"""Forces and torques on chosen disks, and which disk is meant."""
+
+from __future__ import annotations
+
+from typing import Annotated, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from .base import Description, Finite, allowed
+from .errors import Problem, SceneError, describe
+from .packing import Packing
+
+TOP_CENTRE: Final = "top-centre"
+
+#: A disk covers another if it stands more than this above the horizontal from it. In a triangular lattice the
+#: neighbours stand at 0 and 60 degrees, so halfway between them.
+COVERING_SLOPE = float(np.tan(np.pi / 6.0))
+
+RowName = Annotated[
+    Literal["top", "bottom"] | Annotated[int, Field(strict=True, ge=0)],
+    allowed("must be top, bottom or the number of a row, 0 at the bottom"),
+]
+
+
+class RowSelector(Description):
+    """A disk by its row in the lattice and its place there."""
+
+    row: RowName = Field(description="top, bottom, or the number of the row, 0 at the bottom.")
+    offset: Annotated[int, Field(strict=True), allowed("must be a whole number")] = Field(
+        default=0,
+        description="Places to the right of the middle disk of the row (of the left one of the two in the "
+        "middle).",
+    )
+
+
+Selector = Annotated[
+    Literal["top-centre"] | Annotated[int, Field(strict=True, ge=0)] | RowSelector,
+    allowed("must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"),
+]
+Vector = Annotated[tuple[Finite, Finite], allowed("must be two finite numbers [x, z]")]
+
+
+class Load(Description):
+    """A force and a torque on one disk, in mean disk weights (times the mean radius)."""
+
+    disk: Selector = Field(
+        description="The loaded disk: top-centre (the topmost one nearest the middle, chosen when the "
+        "packing is at rest), the index of a disk, or {row: top | bottom | number, offset: "
+        "places from the middle of the row}."
+    )
+    force: Vector = Field(description="Force x, z in mean disk weights; z points up.")
+    torque: Finite = Field(
+        default=0.0, description="Torque in mean disk weights times mean radius, counter-clockwise."
+    )
+
+
+def resolve_disk(
+    selector: str | int | RowSelector, packing: Packing, position: NDArray[np.float64], *, key: str = "disk"
+) -> int:
+    """Index of the disk that ``selector`` means.
+
+    ``top-centre`` looks at ``position`` (n, 2), the centres at rest. A disk is on top if no disk that is
+    closer to it horizontally than the sum of their radii stands above it at more than 30 degrees from the
+    horizontal. Of the disks on top it is the one nearest to the middle between the walls, and of two
+    equally near (within 1e-6) the one with the lower index. In a lattice with a long row at the top this is
+    the middle disk of that row.
+
+    Raises
+    ------
+    SceneError
+        For a disk or a row that the packing does not have; ``key`` is what the message calls the selector.
+    """
+    if selector == TOP_CENTRE:
+        return _top_centre(packing.radius, packing.width, np.asarray(position))
+    try:
+        return check_disk(selector, packing.n, packing.row_count)
+    except Problem as problem:
+        raise SceneError(describe((key, *problem.key), problem.value, problem.allowed)) from None
+
+
+def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.int64]) -> int:
+    """As ``resolve_disk``, for a selector that needs no positions, by the numbers of disks alone.
+
+    Raises Problem, to which the caller adds where the selector stands.
+    """
+    if isinstance(selector, int):
+        if not 0 <= selector < n:
+            raise Problem(f"must be from 0 to {n - 1}, the packing has {n} disks", value=selector)
+        return int(selector)
+    if not isinstance(selector, RowSelector):
+        raise Problem("must be top-centre, the index of a disk, or a RowSelector", value=selector)
+    rows = len(row_count)
+    if rows == 0:
+        rule = "a packing from a file has no rows, must be top-centre or the index of a disk"
+        raise Problem(rule, key=("row",), value=selector.row)
+    named = {"top": rows - 1, "bottom": 0}
+    row = named[selector.row] if isinstance(selector.row, str) else selector.row
+    if row >= rows:
+        rule = f"must be top, bottom or from 0 to {rows - 1}, the packing has {rows} rows"
+        raise Problem(rule, key=("row",), value=selector.row)
+    middle = (int(row_count[row]) - 1) // 2
+    last = int(row_count[row]) - 1 - middle
+    if not -middle <= selector.offset <= last:
+        rule = f"must be from {-middle} to {last}, row {row} has {row_count[row]} disks"
+        raise Problem(rule, key=("offset",), value=selector.offset)
+    return int(row_count[:row].sum()) + middle + selector.offset
+
+
+def _top_centre(radius: NDArray[np.float64], width: float, position: NDArray[np.float64]) -> int:
+    x, z = position[:, 0], position[:, 1]
+    away = np.abs(x - 0.5 * width)
+    largest = float(radius.max())
+    reach = 4.0 * largest
+    while True:
+        # Only disks near the middle are looked at; the band grows in the odd case that none is on top.
+        band = np.flatnonzero(away <= reach)
+        if len(band):
+            around = np.flatnonzero(away <= reach + 2.0 * largest)
+            best: tuple[float, int] | None = None
+            for i in band[np.lexsort((band, away[band]))]:
+                if best is not None and away[i] > best[0] + 1e-6:
+                    break
+                dx, dz = np.abs(x[around] - x[i]), z[around] - z[i]
+                covers = (dx < radius[around] + radius[i]) & (dz > 0.0) & (dz > COVERING_SLOPE * dx)
+                if not covers.any():
+                    best = (float(away[i]), int(i)) if best is None else (best[0], min(best[1], int(i)))
+            if best is not None:
+                return best[1]
+        reach *= 2.0

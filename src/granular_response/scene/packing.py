@@ -1,0 +1,84 @@
+"""A packing as arrays: where the disks are before gravity acts, and how large they are."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int32]
+
+
+def exact_mean(values: FloatArray) -> float:
+    """Mean with one rounding only, so that it is the same on every machine."""
+    return math.fsum(values) / len(values)
+
+
+@dataclass(frozen=True, eq=False)
+class Packing:
+    """n disks before the preparation, in reduced units; the arrays are never modified.
+
+    The floor is ``z = 0``, the side walls are ``x = 0`` and ``x = width``. Lattices are numbered row by
+    row from the bottom, left to right.
+    """
+
+    position: FloatArray  #: (n, 2) centres x, z
+    radius: FloatArray  #: (n,) with mean 1
+    row: IntArray  #: (n,) row in the lattice, 0 at the bottom; -1 for a packing from a file
+    width: float  #: distance of the side walls
+    kind: str  #: slab, pile or file
+    lattice_constant: float | None = None  #: distance of neighbours in the lattice; None from a file
+
+    @property
+    def n(self) -> int:
+        """Number of disks."""
+        return len(self.radius)
+
+    @cached_property
+    def mass(self) -> FloatArray:
+        """(n,) masses, radius^2 over its mean: disks of one material, mean mass 1 (Sec. III.B)."""
+        squared = self.radius**2
+        return squared / exact_mean(squared)
+
+    @cached_property
+    def inertia(self) -> FloatArray:
+        """(n,) moments of inertia of homogeneous disks, m r^2 / 2 (Sec. III.B)."""
+        return 0.5 * self.mass * self.radius**2
+
+    @cached_property
+    def row_count(self) -> NDArray[np.int64]:
+        """(rows,) number of disks in each row from the bottom; empty for a packing from a file."""
+        return np.bincount(self.row) if self.kind != "file" else np.zeros(0, dtype=np.int64)
+
+    def neighbour_pairs(self) -> IntArray | None:
+        """(m, 2) neighbours i < j in the lattice, ordered by i and then j; None from a file.
+
+        For each disk its neighbours to the right, up left and up right. Found from the row and the place in
+        it alone, so neither polydispersity nor rounding changes them.
+        """
+        if self.kind == "file":
+            return None
+        count = self.row_count
+        start = np.concatenate([[0], np.cumsum(count)[:-1]])
+        column = np.arange(self.n) - start[self.row]
+        # Left end of each row in half lattice constants; the upper neighbours of h are at h - 1 and h + 1.
+        rows = np.arange(len(count))
+        left = rows % 2 if self.kind == "slab" else 3 * rows
+        has_right = column + 1 < count[self.row]
+        pairs = [_pairs(has_right, np.arange(self.n) + 1)]
+        above = np.minimum(self.row + 1, len(count) - 1)
+        for side in (-1, 1):
+            upper = (left[self.row] + 2 * column + side - left[above]) // 2
+            exists = (above > self.row) & (upper >= 0) & (upper < count[above])
+            pairs.append(_pairs(exists, start[above] + upper))
+        result = np.concatenate(pairs)
+        return np.ascontiguousarray(result[np.lexsort((result[:, 1], result[:, 0]))], dtype=np.int32)
+
+
+def _pairs(exists: NDArray[np.bool_], other: NDArray[np.int64]) -> NDArray[np.int64]:
+    first = np.flatnonzero(exists)
+    return np.stack([first, other[first]], axis=1)

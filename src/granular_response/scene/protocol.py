@@ -1,0 +1,80 @@
+"""How a scene is prepared and how its equilibrium is to be reached."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from .base import Count, Description, Flag, NonNegative, Positive, allowed
+
+TimeStep = Annotated[
+    Annotated[float, Field(strict=True, gt=0)] | Literal["auto"],
+    allowed("must be a number greater than 0, or auto"),
+]
+
+
+class Preparation(Description):
+    """How gravity is brought onto the unloaded packing. A rest state with friction remembers it."""
+
+    gravity: Literal["at-once", "slow"] = Field(
+        default="at-once",
+        description="at-once: gravity acts in full from the start, and the packing falls into its "
+        "contacts, as in the paper; slow: gravity grows linearly from 0 to 1 over ramp_time.",
+    )
+    ramp_time: Positive = Field(
+        default=100.0,
+        description="Time over which slow gravity grows, in sqrt(R/g). Without effect when gravity is at- "
+        "once.",
+    )
+
+
+class Protocol(Description):
+    """How equilibrium is reached. Sec. III of the paper, with its values as defaults."""
+
+    method: Literal["auto", "dynamics", "path", "minimise"] = Field(
+        default="auto",
+        description="auto: the cheapest method that is valid for the scene; dynamics: equations of motion "
+        "until rest, as in the paper; path: a sequence of equilibria under a slowly growing "
+        "load; minimise: the nearest minimum of the energy, for scenes without friction.",
+    )
+    integrator: Literal["beeman", "verlet", "gear"] = Field(
+        default="beeman",
+        description="Integrator of the equations of motion: Beeman, velocity Verlet, or the Gear "
+        "predictor-corrector with five values.",
+    )
+    time_step: TimeStep = Field(
+        default=5e-4,
+        description="Time step in sqrt(R/g); auto takes the largest one that is safe for the scene.",
+    )
+    ramp_time: NonNegative = Field(
+        default=20.0, description="Time over which the loads grow linearly to their values, in sqrt(R/g)."
+    )
+    stop_kinetic_energy: Positive = Field(
+        default=1e-13,
+        description="A packing is at rest when its kinetic energy per disk is below this, in m g R (E_stop).",
+    )
+    stop_rule: Literal["instantaneous", "envelope"] = Field(
+        default="instantaneous",
+        description="instantaneous: the first time the kinetic energy is below the limit, as in the "
+        "paper; envelope: its largest value over a slow swing must be below the limit.",
+    )
+    static_finish: Flag = Field(
+        default=True,
+        description="Solve the equations of equilibrium from the state at which the dynamics stopped.",
+    )
+    friction_law: Literal["cut", "literal"] = Field(
+        default="cut",
+        description="At the Coulomb limit, cut: spring and dashpot together are cut to friction times "
+        "normal force, and the spring takes what is left; literal: the spring keeps its "
+        "length while it is beyond the limit, which never quite settles.",
+    )
+    tensile_dashpot: Flag = Field(
+        default=True,
+        description="Whether the normal force may pull for a moment while a contact opens fast, as in the "
+        "paper; false cuts it off at zero.",
+    )
+    maximum_steps: Count = Field(
+        default=5_000_000,
+        description="Most time steps that one stage, gravity or load, may take to reach rest.",
+    )

@@ -1,0 +1,172 @@
+"""A scene: all that is simulated, as one validated value, from and to YAML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
+
+from . import text as yaml_text
+from .base import PACKING_KINDS, Description
+from .errors import Problem, SceneError, from_validation, show, show_key, suggestion
+from .lattice import LatticePacking, PilePacking, SlabPacking
+from .load import TOP_CENTRE, Load, check_disk
+from .material import Contact, Wall
+from .protocol import Preparation, Protocol
+from .table import FilePacking
+
+
+def _check_kind(value: Any) -> Any:
+    """Say what is wrong with the kind before pydantic's tagged union looks at it."""
+    if isinstance(value, (SlabPacking, PilePacking, FilePacking)):
+        return value
+    choices = " or ".join(PACKING_KINDS)
+    if not isinstance(value, Mapping):
+        raise Problem(f"must be a mapping with the key kind ({choices})")
+    if "kind" not in value:
+        raise Problem(f"key kind is missing, must be {choices}")
+    kind = value["kind"]
+    if not isinstance(kind, str) or kind not in PACKING_KINDS:
+        raise Problem(f"must be {choices}{suggestion(kind, PACKING_KINDS)}", key=("kind",), value=kind)
+    return dict(value)
+
+
+def _check_list(value: Any) -> Any:
+    if not isinstance(value, (list, tuple)):
+        raise Problem("must be a list of loads, [] for gravity alone")
+    return tuple(value)
+
+
+class Scene(Description):
+    """What is simulated. ``Scene()`` is the paper's: 15 rows of 61 and 60 disks, friction 0.2, F = 15.
+
+    Every way to make a scene, the constructor included, raises SceneError with a message of one line that
+    names the key, the value and what is allowed.
+    """
+
+    packing: Annotated[
+        Annotated[SlabPacking | PilePacking | FilePacking, Field(discriminator="kind")],
+        BeforeValidator(_check_kind),
+    ] = Field(default_factory=SlabPacking, description="The disks before gravity acts, and the box.")
+    contact: Contact = Field(default_factory=Contact, description="Contact law between disks.")
+    wall: Wall = Field(default_factory=Wall, description="Contact law at the floor and the side walls.")
+    loads: Annotated[tuple[Load, ...], BeforeValidator(_check_list)] = Field(
+        default_factory=lambda: (Load(disk=TOP_CENTRE, force=(0.0, -15.0)),),
+        description="Forces and torques on disks, beside gravity; [] for none.",
+    )
+    preparation: Preparation = Field(
+        default_factory=Preparation, description="How gravity is brought onto the packing."
+    )
+    protocol: Protocol = Field(default_factory=Protocol, description="How equilibrium is reached.")
+
+    @model_validator(mode="after")
+    def _check_loaded_disks(self) -> Scene:
+        if isinstance(self.packing, LatticePacking):
+            count = self.packing.row_count()
+            for place, load in enumerate(self.loads):
+                if load.disk == TOP_CENTRE:
+                    continue
+                try:
+                    check_disk(load.disk, int(count.sum()), count)
+                except Problem as problem:
+                    path = ("loads", place, "disk", *problem.key)
+                    raise Problem(problem.allowed, key=path, value=problem.value) from None
+        return self
+
+    @property
+    def resolved_wall(self) -> Contact:
+        """Contact law at the floor and the side walls, with what the scene leaves open filled in."""
+        return self.wall.resolved(self.contact)
+
+    @property
+    def folder(self) -> str | None:
+        """Folder at which the path of a packing from a file starts; None for the current one."""
+        return self.packing.folder if isinstance(self.packing, FilePacking) else None
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], *, folder: str | PathLike[str] | None = None) -> Scene:
+        """A scene from nested mappings; what is left out has its default."""
+        try:
+            return cls.model_validate(data, context={"folder": folder})
+        except ValidationError as error:
+            raise from_validation(error, PACKING_KINDS) from None
+
+    @classmethod
+    def from_text(cls, text: str, *, folder: str | PathLike[str] | None = None) -> Scene:
+        """A scene from YAML text."""
+        data = yaml_text.read(text)
+        if data is None:
+            raise SceneError("the scene is empty, must be a mapping ({} is the paper's scene)")
+        return cls.from_dict(data, folder=folder)
+
+    @classmethod
+    def from_yaml(cls, path: str | PathLike[str]) -> Scene:
+        """A scene from a YAML file; the messages of errors begin with its name."""
+        path = Path(path)
+        try:
+            return cls.from_text(path.read_text(encoding="utf-8-sig"), folder=path.parent.absolute())
+        except SceneError as error:
+            raise SceneError(f"{path}: {error}") from None
+        except FileNotFoundError:
+            raise SceneError(f"{path}: no such file") from None
+        except UnicodeDecodeError:
+            raise SceneError(f"{path}: is not a text file in UTF-8") from None
+        except OSError as error:
+            raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+
+    def to_dict(self) -> dict[str, Any]:
+        """All keys as nested dicts, lists, numbers and text."""
+        return self.model_dump(mode="json")
+
+    def to_yaml(self) -> str:
+        """All keys in a fixed order; ``from_text`` makes an equal scene of it.
+
+        The path of a packing from a file is kept as it was given, so such a scene is read in ``folder``.
+        """
+        return yaml_text.write(self.to_dict())
+
+    def updated(self, changes: Mapping[str, Any]) -> Scene:
+        """A copy with some values replaced: ``updated({"contact.friction": 1.0, "loads.0.force": [0, -4]})``.
+
+        A key is the path of a value or of a whole section; paths into loads have the number of the load
+        (``loads.0`` or ``loads[0]``). The copy is validated.
+        """
+        data = self.to_dict()
+        for key, value in changes.items():
+            parts = [part for part in re.split(r"[.\[\]]+", key) if part]
+            if not parts:
+                raise SceneError(f"{show(key)}: must be the path of a key, such as contact.friction")
+            target: Any = data
+            for depth, part in enumerate(parts):
+                last = depth == len(parts) - 1
+                if isinstance(target, list):
+                    if not part.isdecimal() or int(part) >= len(target):
+                        where = show_key(parts[:depth])
+                        raise SceneError(f"{key}: {where} has {len(target)} items, no item {show(part)}")
+                    place: Any = int(part)
+                elif isinstance(target, dict):
+                    place = part
+                    if not last and part not in target:
+                        keys = ", ".join(target)
+                        hint = suggestion(part, target)
+                        raise SceneError(f"{key}: unknown key {show(part)}{hint} (allowed: {keys})")
+                else:
+                    raise SceneError(f"{key}: {show_key(parts[:depth])} is a single value and has no keys")
+                if last:
+                    target[place] = _as_data(value)
+                else:
+                    target = target[place]
+        return type(self).from_dict(data, folder=self.folder)
+
+
+def _as_data(value: Any) -> Any:
+    """Descriptions among the changes as plain data, so that a later path may lead into them."""
+    if isinstance(value, Description):
+        return value.model_dump(mode="json")
+    if isinstance(value, (list, tuple)):
+        return [_as_data(part) for part in value]
+    return value

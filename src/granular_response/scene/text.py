@@ -1,0 +1,123 @@
+"""YAML in and out: safe, no repeated keys, and numbers read as YAML 1.2 reads them.
+
+PyYAML follows YAML 1.1, where ``1e-13`` is a string, ``010`` is eight and ``no`` is false. The reader here
+knows only the types a scene can hold: null, true and false, whole numbers, numbers, text, lists, mappings.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, ClassVar
+
+import yaml
+
+from .errors import SceneError, show
+
+_NULL, _BOOL, _INT, _FLOAT = (f"tag:yaml.org,2002:{name}" for name in ("null", "bool", "int", "float"))
+_SCALARS = {
+    _NULL: (re.compile(r"(?:~|null|Null|NULL|)$"), ["~", "n", "N", ""]),
+    _BOOL: (re.compile(r"(?:true|True|TRUE|false|False|FALSE)$"), list("tTfF")),
+    _INT: (re.compile(r"[-+]?[0-9]+$"), list("-+0123456789")),
+    _FLOAT: (
+        re.compile(
+            r"(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
+            r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"
+        ),
+        list("-+.0123456789"),
+    ),
+}
+
+
+class _Reader(yaml.SafeLoader):
+    yaml_implicit_resolvers: ClassVar[dict] = {}
+    yaml_constructors: ClassVar[dict] = {}
+
+    def _mapping(self, node: yaml.MappingNode) -> dict:
+        result: dict = {}
+        for key_node, value_node in node.value:
+            key = self.construct_object(key_node, deep=True)
+            try:
+                known = key in result
+            except TypeError:
+                raise _mistake(key_node, "a key must be text") from None
+            if known:
+                raise _mistake(key_node, f"key {show(key)} is given twice")
+            result[key] = self.construct_object(value_node, deep=True)
+        return result
+
+    def _list(self, node: yaml.SequenceNode) -> list:
+        return self.construct_sequence(node, deep=True)
+
+    def _scalar(self, node: yaml.ScalarNode) -> Any:
+        text = str(self.construct_scalar(node))
+        if node.tag in _SCALARS and not _SCALARS[node.tag][0].match(text):
+            raise _mistake(node, f"{show(text)} does not fit its tag")
+        try:
+            match node.tag:
+                case t if t == _NULL:
+                    return None
+                case t if t == _BOOL:
+                    return text.lower() == "true"
+                case t if t == _INT:
+                    return int(text)
+                case t if t == _FLOAT:
+                    return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
+        except ValueError:
+            raise _mistake(node, f"number {show(text)} is too long") from None
+        return text
+
+    def _unknown(self, node: yaml.Node) -> Any:
+        raise _mistake(node, f"tag {show(node.tag)} is not allowed")
+
+
+class _Writer(yaml.SafeDumper):
+    """Writes text in quotes wherever either version of YAML would take it for something else."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+for _tag, (_pattern, _first) in _SCALARS.items():
+    _Reader.add_implicit_resolver(_tag, _pattern, _first)
+    _Writer.add_implicit_resolver(_tag, _pattern, _first)
+    _Reader.add_constructor(_tag, _Reader._scalar)
+_Reader.add_constructor("tag:yaml.org,2002:str", _Reader._scalar)
+_Reader.add_constructor("tag:yaml.org,2002:seq", _Reader._list)
+_Reader.add_constructor("tag:yaml.org,2002:map", _Reader._mapping)
+_Reader.add_constructor(None, _Reader._unknown)
+
+
+def _mistake(node: yaml.Node, problem: str) -> yaml.MarkedYAMLError:
+    return yaml.constructor.ConstructorError(problem=problem, problem_mark=node.start_mark)
+
+
+def read(text: str) -> Any:
+    """The content of one YAML document.
+
+    Raises
+    ------
+    SceneError
+        With line and column, for anything that is not one YAML document of plain data.
+    """
+    try:
+        reader = _Reader(text)
+        try:
+            return reader.get_single_data()
+        finally:
+            reader.dispose()
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+        raise SceneError(f"{where}not valid YAML: {error.problem or error.context}") from None
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        raise SceneError(f"line {line}: not valid YAML: {error.reason}") from None
+    except RecursionError:
+        raise SceneError("not a scene: lists or mappings are nested too deeply") from None
+
+
+def write(data: Any) -> str:
+    """``data`` as YAML that ``read`` turns into equal data; numbers keep every digit."""
+    return yaml.dump(
+        data, Dumper=_Writer, sort_keys=False, default_flow_style=None, allow_unicode=True, width=110
+    )
