@@ -38,6 +38,11 @@ class Packing:
         """Number of disks."""
         return len(self.radius)
 
+    @property
+    def ordered(self) -> bool:
+        """Whether this is a lattice of equal disks."""
+        return self.kind != "file" and bool(self.radius.max() == self.radius.min())
+
     @cached_property
     def mass(self) -> FloatArray:
         """(n,) masses, radius^2 over its mean: disks of one material, mean mass 1 (Sec. III.B)."""

@@ -15,8 +15,7 @@ import numpy as np
 
 from ..core.forces import accelerations
 from ..core.integrators import INTEGRATORS
-from ..core.neighbours import run_pairs
-from .problem import Candidates, Problem, wall_normals
+from .problem import Candidates, Problem, carry_springs, wall_normals
 from .state import Contacts, FloatArray, State
 
 #: Steps between two looks at the stopping criteria.
@@ -75,19 +74,20 @@ class Dynamics:
         self.history = np.zeros((self.integrator.rows, n * freedoms))
         self.predicted = np.zeros(n * freedoms)
         self.rim = np.zeros(n) if problem.rotations else None
-        self._list(state.position)
-        if problem.pair_friction:
-            self._take_springs(state.pairs.first, state.pairs.second, state.pairs.spring)
-        if problem.wall_friction:
-            self._take_wall_springs(state.walls.first, state.walls.second, state.walls.spring)
+        self._list(state)
         self._fill_history()
 
-    def _list(self, position: FloatArray) -> None:
+    def _list(self, state: State) -> None:
+        """List candidates around a state's positions and take over its springs."""
         problem = self.problem
-        self.candidates: Candidates = problem.list_candidates(position)
+        self.candidates: Candidates = problem.list_candidates(state.position)
         c = self.candidates
-        self.spring = np.zeros(c.slots) if problem.pair_friction else None
-        self.wall_spring = np.zeros(len(c.wall_disk)) if problem.wall_friction else None
+        self.spring = self.wall_spring = None
+        if problem.pair_friction:
+            self.spring = np.zeros(c.slots)
+            self.spring[c.slot] = carry_springs(problem.n, state.pairs, c.first, c.second)
+        if problem.wall_friction:
+            self.wall_spring = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
         buffer = np.zeros((3 if problem.pair_friction else 2, c.slots))
         self.model = (
             problem.n, problem.weight, problem.inverse_mass, problem.packing.radius, self.rim,
@@ -95,23 +95,6 @@ class Dynamics:
             c.runs, c.separation[0], c.separation[1], c.reach, self.spring, buffer, problem.pair_law,
             c.wall_disk, wall_normals(c.wall), c.wall_gap, self.wall_spring, problem.wall_law, problem.rule,
         )  # fmt: skip
-
-    def _take_springs(self, first, second, spring) -> None:
-        """Put the springs of given pairs into the slots of the list."""
-        c, n = self.candidates, self.problem.n
-        held = np.flatnonzero(spring)
-        key = c.first.astype(np.int64) * n + c.second
-        wanted = np.asarray(first, np.int64)[held] * n + np.asarray(second, np.int64)[held]
-        place = np.searchsorted(key, wanted)
-        if (place == len(key)).any() or (key[place] != wanted).any():
-            raise DynamicsError("a contact that carries a tangential spring is not in the list of candidates")
-        self.spring[c.slot[place]] = spring[held]
-
-    def _take_wall_springs(self, disk, wall, spring) -> None:
-        c, n = self.candidates, self.problem.n
-        of = dict(zip((np.asarray(wall, np.int64) * n + disk).tolist(), spring.tolist(), strict=True))
-        keys = (c.wall.astype(np.int64) * n + c.wall_disk).tolist()
-        self.wall_spring[:] = [of.get(k, 0.0) for k in keys]
 
     def _fill_history(self) -> None:
         self.history[:] = 0.0
@@ -148,19 +131,13 @@ class Dynamics:
 
     def _relist(self) -> None:
         """List candidates again around the present positions, keeping every spring."""
-        position = self.position
-        if not np.isfinite(position).all():
+        if not np.isfinite(self.q).all():
             raise DynamicsError(self._blow_up())
-        old, spring, wall_spring = self.candidates, self.spring, self.wall_spring
-        n = self.problem.n
+        state = self.state()
         self.angle0 = self.angle
-        self._list(position)
+        self._list(state)
         self.q[:] = 0.0
         self.rebuilds += 1
-        if spring is not None:
-            self._take_springs(*run_pairs(old.runs), spring)
-        if wall_spring is not None:
-            self._take_wall_springs(old.wall_disk, old.wall, wall_spring)
 
     def _blow_up(self) -> str:
         return (

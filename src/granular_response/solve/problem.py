@@ -20,6 +20,8 @@ from .state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Contacts, FloatArr
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
 SKIN = 0.6
+#: With less room than this left on the lattice, neighbours are searched instead.
+LEAST_LATTICE_LIMIT = 0.25
 
 Law = tuple[float, float, float, float, float, float]
 
@@ -124,12 +126,6 @@ class Problem:
             parts.append(1.0 / self.packing.inertia)
         return np.concatenate(parts)
 
-    @cached_property
-    def may_rearrange(self) -> bool:
-        """Whether contacts other than those of the initial neighbours can form."""
-        pairs = self.packing.neighbour_pairs()
-        return pairs is None or bool(self.scene.packing.may_rearrange(self.pair_law[0]))
-
     def with_loads(self, position: FloatArray) -> Problem:
         """The same problem with the scene's loads on disks chosen at the rest ``position`` (n, 2)."""
         loads = self.scene.loads
@@ -152,27 +148,28 @@ class Problem:
         total[1] = -self.weight
         return total.ravel()
 
-    def list_candidates(self, position: FloatArray, *, search: bool | None = None) -> Candidates:
+    def list_candidates(self, position: FloatArray, *, search: bool = False) -> Candidates:
         """List candidate contacts at ``position`` (n, 2).
 
-        A packing that cannot rearrange takes its neighbours from the lattice, with no search; ``search=True``
-        forces one.
+        As long as every disk is near its lattice site, the neighbours on the lattice are the only ones that can
+        touch, and nothing is searched. ``search=True`` forces the search.
         """
-        packing = self.packing
-        radius = packing.radius
-        if search is None:
-            search = self.may_rearrange
+        packing, radius = self.packing, self.packing.radius
         pairs = None if search else packing.neighbour_pairs()
-        if pairs is None:
-            first, second = neighbours.close_pairs(position, radius, SKIN)
+        limit = 0.0
+        if pairs is not None and packing.lattice_constant is not None:
+            # second neighbours touch once two disks have moved this far towards each other
+            second = np.sqrt(3.0) * packing.lattice_constant - 2.0 * float(radius.max())
+            shift = np.linalg.norm(position - packing.position, axis=1)
+            limit = 0.5 * second - float(shift.max())
+        if pairs is not None and limit > LEAST_LATTICE_LIMIT:
+            first, second_disk = pairs[:, 0], pairs[:, 1]
+            margin = 2.0 * limit
+        else:
+            first, second_disk = neighbours.close_pairs(position, radius, SKIN)
             limit = 0.5 * SKIN
             margin = SKIN
-        else:
-            first, second = pairs[:, 0], pairs[:, 1]
-            by = np.lexsort((second, first))
-            first, second = first[by], second[by]
-            limit = np.inf
-            margin = 0.9
+        second = second_disk
         runs, slot = neighbours.make_runs(first, second, self.n)
         i, j = neighbours.run_pairs(runs)
         wall_disk, wall = _wall_candidates(position, radius, packing.width, margin)
@@ -200,6 +197,29 @@ class Problem:
         state = State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), pairs, walls)
         return self.with_static_forces(state)
 
+    def relisted(self, state: State) -> State:
+        """The same state on candidates listed anew around its positions.
+
+        Raises
+        ------
+        ValueError
+            When a contact that carries a spring is not among the new candidates.
+        """
+        c = self.list_candidates(state.position)
+        return self.with_static_forces(
+            replace(
+                state,
+                pairs=replace(
+                    _empty_contacts(c.first, c.second),
+                    spring=carry_springs(self.n, state.pairs, c.first, c.second),
+                ),
+                walls=replace(
+                    _empty_contacts(c.wall_disk, c.wall),
+                    spring=carry_springs(self.n, state.walls, c.wall_disk, c.wall),
+                ),
+            )
+        )
+
     def with_static_forces(self, state: State) -> State:
         """The state with overlaps, spring forces and statuses made from its positions and springs."""
         position, radius = state.position, self.packing.radius
@@ -212,6 +232,28 @@ class Problem:
             pairs=static_contacts(i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_law),
             walls=static_contacts(k, state.walls.second, -gap, state.walls.spring, self.wall_law),
         )
+
+
+def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
+    """Springs of ``contacts`` in the order of another list ``(first, second)`` of the same kind.
+
+    Raises
+    ------
+    ValueError
+        When a contact that carries a spring is not in the other list.
+    """
+    held = np.flatnonzero(contacts.spring)
+    key = np.asarray(first, np.int64) + n * np.asarray(second, np.int64)
+    by = np.argsort(key)
+    wanted = contacts.first[held].astype(np.int64) + n * contacts.second[held].astype(np.int64)
+    place = np.searchsorted(key[by], wanted)
+    lost = (place == len(key)) | (key[by][np.minimum(place, len(key) - 1)] != wanted) if len(held) else held < 0
+    if lost.any():
+        k = held[np.flatnonzero(lost)[0]]
+        raise ValueError(f"contact {contacts.first[k]}-{contacts.second[k]} carries a spring but is not listed")
+    springs = np.zeros(len(key))
+    springs[by[place]] = contacts.spring[held]
+    return springs
 
 
 def static_contacts(first, second, overlap, spring, law: Law) -> Contacts:

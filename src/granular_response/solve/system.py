@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU, eigs, eigsh, splu
 
 from ..core import statics
 from .problem import Problem, wall_gap, wall_normals
@@ -211,18 +211,35 @@ class StaticSystem:
         )  # fmt: skip
 
     def negative_modes(self, trial: Trial, shift: float = 1e-6) -> int:
-        """Number of negative eigenvalues of the symmetric part of the tangent (unstable directions).
+        """Number of unstable directions of the tangent.
 
-        Counted from the pivots of a factorisation without row exchanges (Sylvester's law of inertia);
+        Without sliding the tangent is symmetric (up to the turn of the contacts) and they are counted from
+        the pivots of a factorisation without row exchanges (Sylvester's law of inertia). Sliding makes it
+        unsymmetric; then the eigenvalues nearest to zero are computed and those with a negative real part counted.
         ``shift`` keeps disks that roll freely from counting.
         """
         matrix = self.tangent(trial, shift)
+        if SLIDING in trial.pair_status or SLIDING in trial.wall_status:
+            start = np.random.default_rng(0).standard_normal(self.dof)
+            values = eigs(
+                matrix, k=4, sigma=-1e-4 * self.problem.pair_law[0], v0=start, return_eigenvectors=False
+            )
+            return int((values.real < 0).sum())
         matrix = (matrix + matrix.T) * 0.5
         lu = splu(
             sp.csc_array(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )  # fmt: skip
         return int((lu.U.diagonal() < 0).sum())
+
+    def unstable_direction(self, trial: Trial) -> FloatArray:
+        """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1."""
+        matrix = self.tangent(trial)
+        matrix = sp.csc_array((matrix + matrix.T) * 0.5)
+        start = np.random.default_rng(0).standard_normal(self.dof)
+        _, vectors = eigsh(matrix, k=1, sigma=-1e-2 * self.problem.pair_law[0], which="LM", v0=start)
+        vector = self.deinterleave(vectors[:, 0])
+        return vector / vector[np.argmax(np.abs(vector))]
 
 
 def sliding_count(trial: Trial) -> int:

@@ -1,0 +1,204 @@
+"""Solutions as labelled datasets, and states back from them.
+
+A dataset is in reduced units: lengths in mean disk radii, masses in mean disk masses, forces in mean disk
+weights; ``units`` is "1" throughout and ``long_name`` names the normalisation.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from . import __version__
+from .observe.difference import match_candidates
+from .observe.floor import floor_disks, floor_force
+from .scene import Scene
+from .solve.equilibrium import Certificate
+from .solve.solution import Solution
+from .solve.state import Contacts, State
+
+LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
+
+_STATE_VARIABLES = {
+    "position": (("disk", "axis"), f"disk centre x, z {LENGTH}"),
+    "angle": (("disk",), "rotation since the start of the preparation, counter-clockwise, in radians"),
+    "velocity": (("disk", "axis"), "disk velocity in sqrt(radius g)"),
+    "angular_velocity": (("disk",), "angular velocity in sqrt(g/radius)"),
+}
+_CONTACT_VARIABLES = {
+    "overlap": f"overlap {LENGTH}; negative is a gap",
+    "normal_force": f"normal contact force {FORCE}, positive in compression",
+    "tangential_force": f"tangential contact force {FORCE}, along z cross n",
+    "spring": f"elongation of the tangential spring {LENGTH}",
+    "status": "contact status",
+}
+_KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
+
+
+def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
+    """A variable with the attributes that every stored one has."""
+    return xr.Variable(dims, values, {"long_name": long_name, "units": "1", **attributes})
+
+
+def common_candidates(states: Sequence[State], radius, width: float) -> list[State]:
+    """The states on one list of candidate contacts, so that they subtract contact by contact."""
+    states = list(states)
+    for _ in range(2):
+        for k in range(1, len(states)):
+            same = all(
+                np.array_equal(getattr(getattr(states[0], kind), side), getattr(getattr(states[k], kind), side))
+                for kind in ("pairs", "walls")
+                for side in ("first", "second")
+            )
+            if not same:
+                states[0], states[k] = match_candidates(states[0], states[k], radius, width)
+    return states
+
+
+def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
+    """States of one packing and one candidate list, stacked along ``dimension``."""
+    data: dict[str, xr.Variable] = {}
+    for name, (dims, long_name) in _STATE_VARIABLES.items():
+        data[name] = variable((dimension, *dims), np.stack([getattr(s, name) for s in states]), long_name)
+    for kind, (dim, prefix) in _KINDS.items():
+        contacts: list[Contacts] = [getattr(s, kind) for s in states]
+        second = "partner" if kind == "pairs" else "wall"
+        first_name = f"{prefix}_disk"
+        data[first_name] = variable((dim,), contacts[0].first, "disk that the contact force acts on")
+        text = "other disk" if kind == "pairs" else "wall: 0 floor, 1 left, 2 right"
+        data[f"{prefix}_{second}" if kind == "pairs" else "wall_index"] = variable((dim,), contacts[0].second, text)
+        for name, long_name in _CONTACT_VARIABLES.items():
+            values = np.stack([getattr(c, name) for c in contacts])
+            flags = (
+                {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
+                if name == "status"
+                else {}
+            )
+            data[f"{prefix}_{name}"] = variable((dimension, dim), values, long_name, **flags)
+    data["load_factor"] = variable(
+        (dimension,), np.array([s.load_factor for s in states]), "multiplier of the scene's loads"
+    )
+    return xr.Dataset(data, coords={"axis": ("axis", ["x", "z"])})
+
+
+def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
+    """The certificates of states along ``dimension``."""
+    names = {
+        "force_residual": f"largest unbalanced force on a disk {FORCE}",
+        "torque_residual": "largest unbalanced torque on a disk in mean weight times mean radius",
+        "coulomb_excess": f"largest excess of a tangential force over the Coulomb limit {FORCE}",
+        "smallest_normal_force": f"smallest normal force of a closed contact {FORCE}",
+        "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
+        "negative_modes": "unstable directions of the tangent stiffness (-1: not determined)",
+        "loose_disks": "disks with fewer than two contacts",
+    }
+    certificates: list[Certificate] = [s.information["certificate"] for s in states]
+    return xr.Dataset(
+        {
+            f"certificate_{name}": variable((dimension,), np.array([getattr(c, name) for c in certificates]), text)
+            for name, text in names.items()
+        }
+    )
+
+
+def to_dataset(solution: Solution) -> xr.Dataset:
+    """The labelled dataset of a solved scene.
+
+    Dimension ``state``: at rest first, then one entry for each load factor. ``floor_force`` and
+    ``floor_response`` have a dimension ``load`` only when there is more than one load factor.
+    """
+    problem = solution.problem
+    packing = problem.packing
+    states = common_candidates([solution.rest, *solution.loaded], packing.radius, packing.width)
+    rest, loaded = states[0], states[1:]
+    disks = floor_disks(states, np.flatnonzero(packing.row == 0))
+    origin = (
+        float(rest.position[problem.load_disk[0], 0]) if len(problem.load_disk) == 1 else 0.5 * packing.width
+    )
+    at_rest = floor_force(rest, disks)
+    forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
+    applied = np.array([abs(f) * solution.total_force for f in solution.load_factors] or [np.nan])
+    response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
+    several = len(loaded) > 1
+    dims = ("load", "floor_disk") if several else ("floor_disk",)
+    data = states_dataset(states)
+    data = data.assign(
+        floor_force_rest=variable(("floor_disk",), at_rest, f"vertical floor force at rest {FORCE}"),
+        floor_force=variable(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
+        floor_response=variable(
+            dims,
+            response if several else response[0],
+            "vertical floor force that the load adds, per total magnitude of the applied forces",
+        ),
+        radius=variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
+        mass=variable(("disk",), packing.mass, "disk mass in mean disk masses"),
+        row=variable(("disk",), packing.row, "row on the lattice from the bottom, -1 without lattice"),
+        loaded_disk=variable(("load_point",), problem.load_disk, "disks that carry the loads"),
+        applied_load=variable(
+            ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
+        ),
+        total_force=variable(
+            ("load",) if several else (),
+            applied if several else applied[0],
+            f"total magnitude of the applied forces {FORCE}",
+        ),
+    ).merge(certificates_dataset(states))
+    data = data.assign_coords(
+        floor_disk=variable(("floor_disk",), disks, "index of the floor disk"),
+        x=variable(
+            ("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"
+        ),
+        component=("component", ["force_x", "force_z", "torque"]),
+    )
+    for name in ("axis", "component"):
+        data[name].attrs.update(long_name=f"{name} labels", units="1")
+    methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
+    reasons = {"rest": solution.rest_choice.reason, "load": getattr(solution.load_choice, "reason", "no loads")}
+    data.attrs = {
+        "title": "quasi-static response of a granular packing",
+        "package": "granular_response",
+        "package_version": __version__,
+        "scene": solution.scene.to_yaml(),
+        "scene_folder_note": "paths in the scene are relative to the folder of the scene file",
+        "width": packing.width,
+        "method": json.dumps(methods),
+        "method_reason": json.dumps(reasons),
+        "stable": int(all(s.information["certificate"].negative_modes == 0 for s in states)),
+        "settled": int(all(s.information.get("settled", True) for s in states)),
+        "units": "reduced: mean disk radius, mean disk mass, g",
+    }
+    return data
+
+
+def state_from(dataset: xr.Dataset, index: int = -1) -> State:
+    """A state back from a dataset, equal to the stored one to the last bit: a restart.
+
+    Raises
+    ------
+    ValueError
+        When the dataset holds no states.
+    """
+    if "contact_spring" not in dataset:
+        raise ValueError("the dataset holds no states (variable contact_spring is missing)")
+    one = dataset.isel(state=index)
+
+    def contacts(prefix: str, partner: str) -> Contacts:
+        values = [one[f"{prefix}_{name}"].values for name in _CONTACT_VARIABLES]
+        return Contacts(
+            one[f"{prefix}_disk"].values.astype(np.int32), one[partner].values.astype(np.int32), *values
+        )
+
+    return State(
+        **{name: one[name].values.astype(float) for name in _STATE_VARIABLES},
+        pairs=contacts("contact", "contact_partner"),
+        walls=contacts("wall", "wall_index"),
+        load_factor=float(one["load_factor"]),
+    )
+
+
+def scene_of(dataset: xr.Dataset, *, folder=None) -> Scene:
+    """The scene that a dataset was made from."""
+    return Scene.from_text(dataset.attrs["scene"], folder=folder)

@@ -1,0 +1,51 @@
+"""The one place that picks how a scene is solved: the cheapest method that is valid for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .problem import Problem
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A method for one stage and the reason for it."""
+
+    method: str  #: dynamics, minimise or path
+    reason: str
+
+
+def rest_method(problem: Problem) -> Choice:
+    """How to find the state at rest under gravity.
+
+    Friction and disorder make the rest state depend on the fall into it, so it is reached as the paper does, by
+    dynamics. The ordered frictionless packing has its minimum from wherever one starts.
+    """
+    asked = problem.scene.protocol.method
+    if asked == "dynamics":
+        return Choice("dynamics", "protocol.method is dynamics")
+    if problem.rotations:
+        return Choice("dynamics", "with friction the rest state depends on how gravity was applied")
+    if not problem.packing.ordered:
+        return Choice("dynamics", "the rest state of a disordered packing depends on the fall into it")
+    return Choice("minimise", "no friction and no disorder: rest is the minimum of the energy")
+
+
+def load_method(problem: Problem) -> Choice:
+    """How to find the states under load.
+
+    Raises
+    ------
+    ValueError
+        When ``minimise`` is asked for a scene with friction.
+    """
+    asked = problem.scene.protocol.method
+    if asked == "dynamics":
+        return Choice("dynamics", "protocol.method is dynamics")
+    if asked == "path":
+        return Choice("path", "protocol.method is path")
+    if problem.rotations:
+        if asked == "minimise":
+            raise ValueError("protocol.method: minimise needs a scene without friction (allowed: path, dynamics, auto)")
+        return Choice("path", "friction and a load that only grows: a path of equilibria")
+    return Choice("minimise", "no friction: equilibrium is a minimum of the energy")

@@ -1,0 +1,109 @@
+"""Frictionless equilibrium as a minimum of the potential energy.
+
+Newton's method with Levenberg damping: the Hessian is the tangent stiffness with its geometric part, and
+the damping grows when a step does not lower the energy as much as its quadratic model says. It starts from any
+configuration, the bare lattice included, and ends in a minimum: a saddle, which a symmetric start may lead to, is
+left along its unstable direction.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.linalg import SuperLU, splu
+
+from .equilibrium import TOLERANCE, EquilibriumError, certify, external_force
+from .problem import Problem
+from .state import FloatArray, State
+from .system import REGULARISATION, StaticSystem, Trial
+
+#: Most iterations of one minimisation.
+MAXIMUM_ITERATIONS = 2000
+#: No disk moves farther than this in one step (mean radii).
+LONGEST_STEP = 0.2
+
+
+def energy(system: StaticSystem, trial: Trial, external: FloatArray) -> float:
+    """Elastic energy of the contacts minus the work of the external forces."""
+    c = trial.configuration
+    k, k_wall = system.problem.pair_law[0], system.problem.wall_law[0]
+    elastic = 0.5 * k * (np.maximum(c.pair_overlap, 0.0) ** 2).sum()
+    elastic += 0.5 * k_wall * (np.maximum(c.wall_overlap, 0.0) ** 2).sum()
+    return float(elastic - external @ c.q)
+
+
+def _symmetric_factor(system: StaticSystem, trial: Trial, shift: float) -> tuple[SuperLU, int]:
+    """LDL-like factorisation (no row exchanges) and its number of negative pivots."""
+    matrix = system.tangent(trial, shift)
+    lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return lu, int((lu.U.diagonal() < 0).sum())
+
+
+def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> State:
+    """The minimum of the energy reached downhill from ``start``, certified.
+
+    Raises
+    ------
+    ValueError
+        When the scene has friction (no energy to minimise).
+    EquilibriumError
+        When no minimum is found: something falls for ever, or too many iterations.
+    """
+    if problem.rotations:
+        raise ValueError("method minimise needs a scene without friction; use path or dynamics")
+    system = StaticSystem(problem, start)
+    external = external_force(problem, load_factor)
+    k = problem.pair_law[0]
+    known = system.start(start)
+    q = known.q.copy()
+    trial = system.trial(known, q)
+    value = energy(system, trial, external)
+    damping = 1e-3 * k
+    iterations = escapes = 0
+    while iterations < MAXIMUM_ITERATIONS:
+        r = trial.contact_force + external
+        size = float(np.abs(r).max())
+        if size < 0.01 * TOLERANCE or (size < TOLERANCE and damping == 0.0):
+            modes = system.negative_modes(trial)
+            if modes == 0:
+                break
+            if escapes == 20:
+                raise EquilibriumError("the minimisation keeps returning to a saddle of the energy")
+            escapes += 1
+            q = q + 1e-4 * system.unstable_direction(trial)
+            trial = system.trial(known, q)
+            value = energy(system, trial, external)
+            damping = 1e-4 * k
+            iterations += 1
+            continue
+        lu, negative = _symmetric_factor(system, trial, damping + REGULARISATION * k)
+        iterations += 1
+        if negative:
+            damping = max(4.0 * damping, 1e-8 * k)
+            continue
+        step = system.deinterleave(lu.solve(system.interleave(r)))
+        length = float(np.abs(step).max())
+        if length > LONGEST_STEP:
+            if not np.isfinite(length) or damping > 1e6 * k:
+                raise EquilibriumError("the minimisation found no minimum: part of the packing falls")
+            damping = max(4.0 * damping, 1e-8 * k)
+            continue
+        new = system.trial(known, q + step)
+        new_value = energy(system, new, external)
+        predicted = 0.5 * float(step @ r) + 0.5 * damping * float(step @ step)
+        gained = value - new_value
+        new_size = float(np.abs(new.contact_force + external).max())
+        rounding = 1e-11 * (abs(value) + 1.0)
+        ratio = gained / predicted if predicted > rounding else (1.0 if new_size < 2.0 * size else 0.0)
+        if ratio > 1e-3:
+            q, trial, value = q + step, new, new_value
+            if ratio > 0.5:
+                damping = 0.1 * damping if damping > 1e-9 * k else 0.0
+            elif ratio < 0.1:
+                damping = max(4.0 * damping, 1e-8 * k)
+        else:
+            damping = max(4.0 * damping, 1e-8 * k)
+    else:
+        raise EquilibriumError(f"no minimum of the energy within {MAXIMUM_ITERATIONS} iterations")
+    state = system.state(trial, load_factor, method="minimise", newton_iterations=iterations, escapes=escapes)
+    state.information["certificate"] = certify(problem, state, modes=0)
+    return state

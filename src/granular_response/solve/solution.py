@@ -1,0 +1,163 @@
+"""A solved scene: its state at rest and under load."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..scene import Scene
+from .choice import Choice, load_method, rest_method
+from .dynamics import Dynamics, DynamicsError, Stop, relax
+from .equilibrium import EquilibriumError, certify, finish
+from .minimise import minimise
+from .path import follow
+from .problem import Problem
+from .state import State
+from .timestep import resolve_time_step
+
+#: Called with a stage's name and the part of it that is done, from 0 to 1.
+Progress = Callable[[str, float], None]
+
+
+class NotSettled(RuntimeError):
+    """A packing did not come to rest."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Rest state and loaded states of a scene.
+
+    ``problem`` has its loads on disks; ``loaded`` holds one state for each of ``load_factors``, in order
+    (empty for a scene without loads).
+    """
+
+    scene: Scene
+    problem: Problem
+    rest: State
+    loaded: tuple[State, ...]
+    load_factors: tuple[float, ...]
+    rest_choice: Choice
+    load_choice: Choice | None
+
+    @property
+    def total_force(self) -> float:
+        """Sum of the magnitudes of the applied forces at load factor 1."""
+        return float(np.hypot(self.problem.load[:, 0], self.problem.load[:, 1]).sum())
+
+
+def solve_scene(
+    scene: Scene, *, load_factors: Sequence[float] = (1.0,), progress: Progress | None = None
+) -> Solution:
+    """Settle a scene under gravity, then load it.
+
+    Parameters
+    ----------
+    scene : what to solve.
+    load_factors : increasing multipliers of the scene's loads at which states are kept; on a path every state
+        has passed through the smaller loads before it.
+    progress : called with stage and part done.
+
+    Raises
+    ------
+    SceneError, NotSettled, DynamicsError, EquilibriumError, PathError
+        Each with one line that says what to change.
+    """
+    problem = Problem.from_scene(scene)
+    rest = rest_state(problem, progress=progress)
+    problem = problem.with_loads(rest.position)
+    rest_choice = rest_method(problem)
+    if not scene.loads:
+        return Solution(scene, problem, rest, (), (), rest_choice, None)
+    choice, states = loaded_states(problem, rest, load_factors, progress=progress)
+    return Solution(scene, problem, rest, tuple(states), tuple(map(float, load_factors)), rest_choice, choice)
+
+
+def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
+    """The certified state at rest under gravity, prepared as the scene says."""
+    choice = rest_method(problem)
+    bare = problem.bare_state()
+    if choice.method == "minimise":
+        return minimise(problem, bare)
+    preparation = problem.scene.preparation
+    slow = preparation.gravity == "slow"
+    gravity = (0.0, 1.0, preparation.ramp_time) if slow else (1.0, 1.0, 0.0)
+    return _relaxed(problem, bare, "gravity", progress, gravity=gravity, load=(0.0, 0.0, 0.0))
+
+
+def loaded_states(
+    problem: Problem, rest: State, load_factors: Sequence[float], *, progress: Progress | None = None
+) -> tuple[Choice, list[State]]:
+    """States at increasing ``load_factors`` from the same rest state, and the method that found them.
+
+    Dynamics ramps the load from rest to each factor anew, as the paper does; the other methods pass every
+    smaller load on the way.
+    """
+    choice = load_method(problem)
+    protocol = problem.scene.protocol
+    factors = [float(f) for f in load_factors]
+    if choice.method == "dynamics":
+        states = []
+        for factor in factors:
+            ramp = (0.0, factor, protocol.ramp_time)
+            states.append(_relaxed(problem, rest, "load", progress, gravity=(1.0, 1.0, 0.0), load=ramp))
+        return choice, states
+    if choice.method == "minimise":
+        states = []
+        state = rest
+        for done, factor in enumerate(factors, 1):
+            state = minimise(problem, state, load_factor=factor)
+            states.append(state)
+            if progress is not None:
+                progress("load", done / len(factors))
+        return choice, states
+    largest = max(abs(f) for f in factors)
+
+    def report(factor: float) -> None:
+        if progress is not None:
+            progress("load", abs(factor) / largest)
+
+    step = resolve_time_step(problem)
+    states = follow(problem, rest, factors, integrator=protocol.integrator, time_step=step, progress=report)
+    return choice, states
+
+
+def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | None, *, gravity, load) -> State:
+    """Dynamics to rest as the protocol says, and the static finish."""
+    protocol = problem.scene.protocol
+    dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
+    stop = Stop(protocol.stop_kinetic_energy, protocol.stop_rule, protocol.maximum_steps)
+    report = None
+    if progress is not None:
+        highest = [stop.kinetic_energy * 10.0, 0.0]
+
+        def report(_: int, energy: float) -> None:
+            highest[0] = max(highest[0], energy)
+            span = np.log(highest[0] / stop.kinetic_energy)
+            done = np.log(highest[0] / max(energy, stop.kinetic_energy)) / span
+            highest[1] = max(highest[1], float(done)) if highest[0] > energy else highest[1]
+            progress(stage, highest[1])
+
+    settled = relax(dynamics, stop, gravity=gravity, load=load, progress=report)
+    settled.information["method"] = "dynamics"
+    if not protocol.static_finish:
+        certificate = certify(problem, settled)
+        return replace(settled, information={**settled.information, "certificate": certificate})
+    for _ in range(3):
+        try:
+            return finish(problem, settled)
+        except EquilibriumError as error:
+            last = error
+        if not settled.information["settled"]:
+            break
+        stop = replace(stop, kinetic_energy=stop.kinetic_energy * 1e-3)
+        settled = relax(dynamics, stop, load=(load[1], load[1], 0.0))
+        settled.information["method"] = "dynamics"
+    raise NotSettled(
+        f"the packing did not come to rest under {stage} within protocol.maximum_steps = {protocol.maximum_steps} "
+        f"(kinetic energy {settled.information['kinetic_energy']:.1e} per disk): {last}"
+    )
+
+
+__all__ = ["DynamicsError", "NotSettled", "Solution", "loaded_states", "rest_state", "solve_scene"]
