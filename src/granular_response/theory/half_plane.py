@@ -1,0 +1,38 @@
+"""Vertical stress in an elastic half plane under a vertical point force on its surface.
+
+Depth is measured down from the surface, pressure is positive in compression. The stress function is
+homogeneous of degree one in (x, depth), which leaves the closed form below for every orthotropic solid
+(Flamant's solution when isotropic).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from granular_response.theory.moduli import Moduli
+
+
+def pressure(x: ArrayLike, depth: float, moduli: Moduli, force: float = 1.0) -> NDArray[np.float64]:
+    """Vertical pressure at horizontal distance ``x`` (any shape) and ``depth`` below the force.
+
+    Its integral over x is ``force`` at every depth. Depends on the moduli only through ``Moduli.shape``.
+    Raises ValueError if ``depth`` is not positive.
+    """
+    if not depth > 0.0:
+        raise ValueError(f"depth = {depth}: must be positive")
+    s, p = moduli.shape
+    t2 = (np.asarray(x, dtype=float) / depth) ** 2
+    return force / (np.pi * depth) * np.sqrt(s + 2.0 * np.sqrt(p)) / (1.0 + s * t2 + p * t2**2)
+
+
+def peak_positions(moduli: Moduli) -> tuple[float, ...]:
+    """``x / depth`` of the maxima: ``(0,)``, or ``(-t, t)`` with ``t = sqrt(-s / 2p)`` if s < 0.
+
+    ``s / 2p`` equals the criterion r of Sec. V.C, so the two statements of it are one.
+    """
+    s, p = moduli.shape
+    if s >= 0.0:
+        return (0.0,)
+    t = float(np.sqrt(-s / (2.0 * p)))
+    return (-t, t)

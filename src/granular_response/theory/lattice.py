@@ -1,0 +1,172 @@
+"""Moduli of the triangular lattice with normal and tangential springs (Sec. V.C, Fig. 11).
+
+Bonds have length 2R; the horizontal ones have stiffnesses ``k1n`` and ``k1t``, the oblique ones (at 60
+degrees) ``k2n`` and ``k2t``. In eq. (5) a tangential spring sees the displacement of the disk centres
+only. In a packing it sees the rotation of the disks as well, so each function says which it means:
+
+``rotations="suppressed"``
+    eq. (5), and so eqs. (7)-(10).
+``rotations="free"``
+    every disk turns until it feels no torque. Only d changes: ``4 k1t + 2 k2t`` in eq. (10) becomes
+    ``18 k1t k2t / (k1t + 2 k2t)``. Nothing changes if k1t = k2t; without horizontal springs the
+    tangential ones no longer resist shear at all, and the root of r moves from 0.2915 to 3/11.
+
+Stiffness has the units of the springs, in which the unit cell's ``R^2 / A = 1 / (2 sqrt 3)`` is already
+included; moduli do not depend on R.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from granular_response.theory.moduli import Moduli
+
+Rotations = Literal["suppressed", "free"]
+
+#: R^2 / A with the area A = 2 sqrt(3) R^2 of a unit cell.
+_R2_PER_AREA = 1.0 / (2.0 * math.sqrt(3.0))
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Stiffnesses of the horizontal (1) and oblique (2) bonds, normal (n) and tangential (t); Fig. 11."""
+
+    k1n: float
+    k2n: float
+    k1t: float = 0.0
+    k2t: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("k1n", "k2n", "k1t", "k2t"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value >= 0.0):
+                raise ValueError(f"spring stiffness {name} = {value}: must be finite and not negative")
+        if self.k2n == 0.0:
+            raise ValueError("spring stiffness k2n = 0.0: must be positive, or no layer carries the next")
+
+    @classmethod
+    def uniform(cls, normal: float, tangential: float) -> Springs:
+        """The same two springs at every contact, as in a monodisperse packing."""
+        return cls(k1n=normal, k2n=normal, k1t=tangential, k2t=tangential)
+
+
+def _check_rotations(rotations: str) -> None:
+    if rotations not in ("suppressed", "free"):
+        raise ValueError(f"rotations = {rotations!r}: must be 'suppressed' or 'free'")
+
+
+def moduli(springs: Springs, rotations: Rotations = "suppressed") -> Moduli:
+    """Moduli of eqs. (7)-(10), or with free rotations (see the module's text).
+
+    Raises ValueError if the lattice resists some strain not at all (the isostatic limit).
+    """
+    _check_rotations(rotations)
+    k1n, k2n, k1t, k2t = springs.k1n, springs.k2n, springs.k1t, springs.k2t
+    if rotations == "suppressed":
+        tangential = 4.0 * k1t + 2.0 * k2t
+    else:
+        tangential = 18.0 * k1t * k2t / (k1t + 2.0 * k2t) if k1t > 0.0 and k2t > 0.0 else 0.0
+    half = 0.5 * _R2_PER_AREA
+    return Moduli(
+        a=half * (8.0 * k1n + k2n + 3.0 * k2t),
+        b=half * (9.0 * k2n + 3.0 * k2t),
+        c=half * (3.0 * k2n - 3.0 * k2t),
+        d=half * (6.0 * k2n + tangential),
+    )
+
+
+def peak_criterion(beta: float, rotations: Rotations = "suppressed") -> float:
+    """r of Sec. V.C without horizontal springs (``k1n = k1t = 0``), at ``beta = k2t / k2n``.
+
+    With suppressed rotations this is the paper's ``(beta^2 + 10 beta - 3) / (beta + 3)^2``. ``beta = 0``
+    is the isostatic limit, where eq. (6) has a soft mode but r is still defined.
+    """
+    _check_rotations(rotations)
+    if not beta >= 0.0:
+        raise ValueError(f"beta = {beta}: must not be negative")
+    a, b, c = 1.0 + 3.0 * beta, 9.0 + 3.0 * beta, 3.0 - 3.0 * beta
+    d = 6.0 + (2.0 * beta if rotations == "suppressed" else 0.0)
+    return (a * b - c * (c + d)) / (b * d)
+
+
+def peak_criterion_root(rotations: Rotations = "suppressed") -> float:
+    """``k2t / k2n`` below which the lattice without horizontal springs responds with two peaks.
+
+    Found numerically to rounding; in closed form ``2 sqrt(7) - 5 = 0.2915`` with suppressed rotations
+    (the paper's number) and ``3 / 11 = 0.2727`` with free ones.
+    """
+    return float(brentq(peak_criterion, 0.0, 1.0, args=(rotations,), xtol=1e-15, rtol=1e-15))
+
+
+def poisson_ratio(normal: float, tangential: float) -> float:
+    """Two-dimensional Poisson ratio ``(k_N - k_T) / (3 k_N + k_T)`` of the lattice with equal bonds.
+
+    That lattice is isotropic, and turning the rotations on or off makes no difference to it.
+    """
+    if not (normal > 0.0 and tangential >= 0.0):
+        raise ValueError(f"normal = {normal}, tangential = {tangential}: must be above 0, and at least 0")
+    return (normal - tangential) / (3.0 * normal + tangential)
+
+
+def measured_moduli(
+    springs: Springs,
+    rotations: Rotations = "suppressed",
+    *,
+    relax: bool = True,
+    cells: tuple[int, int] = (4, 4),
+) -> NDArray[np.float64]:
+    """(3, 3) stress per strain, in the order of ``Moduli.matrix``, of a periodic lattice actually strained.
+
+    Each of the strains eps_xx, eps_zz, eps_xz is imposed on ``cells[0] x cells[1]`` disks with periodic
+    boundaries, the displacements about the affine ones (unless ``relax`` is False) and the rotations (if
+    free) are relaxed by minimising the elastic energy, and the symmetric mean stress is summed
+    over the bonds. Nothing here uses eqs. (7)-(10). Raises ValueError for fewer than one cell a side.
+    """
+    _check_rotations(rotations)
+    nx, nz = cells
+    if nx < 1 or nz < 1:
+        raise ValueError(f"cells = {cells}: both must be at least 1")
+    disks = nx * nz
+    # Per disk, with lengths in R: the bond to each of three neighbours and the cell it lies in.
+    bonds = (
+        ((2.0, 0.0), (1, 0), springs.k1n, springs.k1t),
+        ((1.0, np.sqrt(3.0)), (0, 1), springs.k2n, springs.k2t),
+        ((-1.0, np.sqrt(3.0)), (-1, 1), springs.k2n, springs.k2t),
+    )
+    elongations, affines, virials, stiffnesses = [], [], [], []
+    for column in range(nx):
+        for layer in range(nz):
+            i = column * nz + layer
+            for (bx, bz), (di, dj), normal, tangential in bonds:
+                j = (column + di) % nx * nz + (layer + dj) % nz
+                for (ex, ez), stiffness, arm in (
+                    ((bx / 2.0, bz / 2.0), normal, 0.0),
+                    ((-bz / 2.0, bx / 2.0), tangential, 1.0),
+                ):
+                    # Elongation along e of one spring: e . (u_j - u_i + eps . b) - arm (theta_i + theta_j).
+                    row = np.zeros(3 * disks)
+                    row[2 * j : 2 * j + 2] += ex, ez
+                    row[2 * i : 2 * i + 2] -= ex, ez
+                    row[2 * disks + i] -= arm
+                    row[2 * disks + j] -= arm
+                    elongations.append(row)
+                    affines.append((ex * bx, ez * bz, ex * bz + ez * bx))
+                    virials.append((ex * bx, ez * bz, 0.5 * (ex * bz + ez * bx)))
+                    stiffnesses.append(stiffness)
+    k = np.array(stiffnesses)[:, None]
+    elongation = np.array(affines)  # (springs, 3), per unit of each strain
+    free = np.concatenate([np.full(2 * disks, relax), np.full(disks, rotations == "free")])
+    if free.any():
+        # The minimum-norm solution leaves out the uniform translation and any floppy mode.
+        relaxing = np.array(elongations)[:, free]
+        weight = np.sqrt(k)
+        response = np.linalg.lstsq(weight * relaxing, -weight * elongation, rcond=1e-12)[0]
+        elongation = elongation + relaxing @ response
+    area = disks * 2.0 * np.sqrt(3.0)
+    return np.array(virials).T @ (k * elongation) / area

@@ -1,0 +1,128 @@
+"""Moduli of the spring lattice: eqs. (7)-(10), the lattice itself, the two forms of the peak criterion."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from granular_response.theory import half_plane, lattice
+from granular_response.theory.lattice import Springs
+from granular_response.theory.moduli import Moduli
+
+stiffness = st.floats(0.05, 5.0)
+SETS = [
+    Springs(1.0, 1.0),
+    Springs(2.0, 1.0, 0.4, 0.0),
+    Springs(0.7, 1.3, 0.2, 0.9),
+    Springs.uniform(3000.0, 2400.0),
+    Springs(0.0, 1.0, 0.0, 0.3),
+]
+
+
+@pytest.mark.parametrize("relax", [True, False])
+@pytest.mark.parametrize("springs", SETS)
+def test_periodic_lattice_has_the_moduli_of_the_paper(springs: Springs, relax: bool) -> None:
+    measured = lattice.measured_moduli(springs, "suppressed", relax=relax, cells=(3, 4))
+    expected = lattice.moduli(springs, "suppressed").matrix()
+    np.testing.assert_allclose(measured, expected, rtol=0, atol=1e-13 * expected.max())
+
+
+@pytest.mark.parametrize("springs", SETS)
+def test_free_rotations_change_the_shear_modulus_only(springs: Springs) -> None:
+    measured = lattice.measured_moduli(springs, "free", cells=(3, 4))
+    expected = lattice.moduli(springs, "free").matrix()
+    np.testing.assert_allclose(measured, expected, rtol=0, atol=1e-13 * expected.max())
+    suppressed = lattice.moduli(springs, "suppressed").matrix()
+    np.testing.assert_array_equal(expected[:2, :2], suppressed[:2, :2])
+    if springs.k1t == springs.k2t:
+        assert expected[2, 2] == pytest.approx(suppressed[2, 2], rel=1e-14)
+    else:
+        assert expected[2, 2] < suppressed[2, 2]
+
+
+def test_measured_moduli_do_not_depend_on_the_size_of_the_cell() -> None:
+    springs = Springs(0.7, 1.3, 0.2, 0.9)
+    one, many = (lattice.measured_moduli(springs, "free", cells=cells) for cells in ((1, 1), (5, 2)))
+    np.testing.assert_allclose(one, many, rtol=0, atol=1e-13)
+
+
+def test_shear_modulus_is_the_one_of_the_bond_energy() -> None:
+    # Energy per area of eq. (5) for eps_xz = 1, summed by hand over the three bonds of length 2:
+    # t.eps.r is 2 for the horizontal bond, n.eps.r is +-sqrt(3), t.eps.r is -1 for the oblique ones.
+    k1n, k2n, k1t, k2t = 0.7, 1.3, 0.2, 0.9
+    energy = 0.5 * (4.0 * k1t + 2.0 * (3.0 * k2n + k2t)) / (2.0 * np.sqrt(3.0))
+    # d eps_xz^2, not d eps_xz^2 / 2 as eq. (6) is printed.
+    assert lattice.moduli(Springs(k1n, k2n, k1t, k2t)).d == pytest.approx(energy, rel=1e-14)
+
+
+def test_r_without_horizontal_springs_is_the_papers_function() -> None:
+    for beta in (0.0, 0.1, 0.5, 2.0):
+        expected = (beta**2 + 10.0 * beta - 3.0) / (beta**2 + 6.0 * beta + 9.0)
+        assert lattice.peak_criterion(beta) == pytest.approx(expected, abs=1e-14)
+        if beta:
+            moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, beta))
+            assert moduli.peak_criterion == pytest.approx(expected, abs=1e-14)
+
+
+def test_roots_of_r() -> None:
+    assert lattice.peak_criterion_root() == pytest.approx(2.0 * np.sqrt(7.0) - 5.0, abs=1e-14)
+    assert round(lattice.peak_criterion_root(), 4) == 0.2915
+    assert lattice.peak_criterion_root("free") == pytest.approx(3.0 / 11.0, abs=1e-14)
+
+
+@given(k_n=stiffness, k_t=st.floats(0.0, 5.0))
+def test_equal_bonds_are_isotropic(k_n: float, k_t: float) -> None:
+    for rotations in ("suppressed", "free"):
+        m = lattice.moduli(Springs.uniform(k_n, k_t), rotations)
+        assert m.anisotropy == pytest.approx(0.0, abs=1e-12)
+        assert m.poisson_ratio == pytest.approx(lattice.poisson_ratio(k_n, k_t), abs=1e-12)
+        assert m.shape == pytest.approx((2.0, 1.0), rel=1e-10)
+        assert m.peak_criterion == pytest.approx(1.0, rel=1e-10)
+
+
+@settings(max_examples=200)
+@given(k1n=stiffness, k2n=stiffness, k1t=stiffness, k2t=stiffness)
+def test_criterion_r_is_minus_the_squared_peak_position(
+    k1n: float, k2n: float, k1t: float, k2t: float
+) -> None:
+    m = lattice.moduli(Springs(k1n, k2n, k1t, k2t))
+    s, p = m.shape
+    assert m.peak_criterion == pytest.approx(s / (2.0 * p), rel=1e-9, abs=1e-12)
+    assert len(half_plane.peak_positions(m)) == (2 if m.peak_criterion < 0.0 else 1)
+
+
+@given(k1=stiffness, k2=stiffness)
+def test_shape_of_the_lattice_of_normal_springs(k1: float, k2: float) -> None:
+    s, p = lattice.moduli(Springs(k1, k2)).shape
+    assert s == pytest.approx(6.0 * (4.0 * k1 - k2) / (8.0 * k1 + k2), rel=1e-9, abs=1e-12)
+    assert p == pytest.approx(9.0 * k2 / (8.0 * k1 + k2), rel=1e-9)
+
+
+def test_isotropic_constructor_inverts() -> None:
+    m = Moduli.isotropic(0.3, 2.5)
+    a11, a12, a22, a66 = m.compliances
+    assert (a11, a12, a22, a66) == pytest.approx((1 / 2.5, -0.3 / 2.5, 1 / 2.5, 2.6 / 2.5), rel=1e-14)
+    np.testing.assert_allclose(
+        m.matrix() @ np.array([[a11, a12, 0], [a12, a22, 0], [0, 0, a66 / 2]]), np.eye(3), atol=1e-14
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Moduli(1.0, 1.0, 1.0, 1.0), r"modulus c = 1\.0"),
+        (lambda: Moduli(1.0, 1.0, 0.0, 0.0), r"modulus d = 0\.0"),
+        (lambda: Moduli.isotropic(1.0), r"poisson_ratio = 1\.0"),
+        (lambda: Moduli.isotropic(0.3, -1.0), r"young_modulus = -1\.0"),
+        (lambda: Springs(-1.0, 1.0), r"k1n = -1\.0"),
+        (lambda: Springs(1.0, 0.0), r"k2n = 0\.0"),
+        (lambda: lattice.moduli(Springs(0.0, 1.0)), r"modulus c"),
+        (lambda: lattice.moduli(Springs(1.0, 1.0), "some"), r"rotations = 'some'"),
+        (lambda: lattice.peak_criterion(-0.1), r"beta = -0\.1"),
+        (lambda: lattice.poisson_ratio(0.0, 1.0), r"0\.0"),
+        (lambda: lattice.measured_moduli(Springs(1.0, 1.0), cells=(0, 2)), r"cells = \(0, 2\)"),
+    ],
+)
+def test_bad_input_is_named(call, message) -> None:
+    with pytest.raises(ValueError, match=message):
+        call()

@@ -1,0 +1,194 @@
+"""The elastic slab: closed forms of its transform, totals, boundary conditions, balance of forces, images."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from granular_response.theory import crossover, half_plane, lattice
+from granular_response.theory.lattice import Springs
+from granular_response.theory.moduli import Moduli
+from granular_response.theory.slab import Slab, response_of_layers
+
+ISOTROPIC = Moduli.isotropic(0.0526)
+SOLIDS = [
+    ISOTROPIC,
+    Moduli.isotropic(-0.5),
+    lattice.moduli(Springs(2.0, 1.0)),
+    lattice.moduli(Springs(0.1, 1.0)),
+]
+WAVES = np.array([1e-3, 0.1, 0.7, 1.0, 3.0, 8.0, 25.0])
+everything = pytest.mark.parametrize("moduli", SOLIDS)
+floors = pytest.mark.parametrize("floor", ["rough", "smooth"])
+
+
+@pytest.mark.parametrize("nu", [-0.4, 0.0, 0.0526, 1.0 / 3.0, 0.9])
+def test_isotropic_transform_in_closed_form(nu: float) -> None:
+    # Smooth: the upper half of a layer pressed on both faces (Filon). Rough: the layer on a rigid base, with
+    # Kolosov's constant of the plane problem whose Poisson ratio is the two-dimensional one.
+    q, kolosov = WAVES, (3.0 - nu) / (1.0 + nu)
+    smooth = 2.0 * (np.sinh(q) + q * np.cosh(q)) / (np.sinh(2.0 * q) + 2.0 * q)
+    half = 0.5 * (kolosov + 1.0)
+    rough = half * (half * np.cosh(q) + q * np.sinh(q))
+    rough /= kolosov * np.cosh(q) ** 2 + q**2 + 0.25 * (kolosov - 1.0) ** 2
+    for floor, expected in (("smooth", smooth), ("rough", rough)):
+        for height in (1.0, 27.0):
+            slab = Slab(height, Moduli.isotropic(nu, 3000.0), floor)
+            np.testing.assert_allclose(-slab.transform(q / height)[1], expected, rtol=1e-12)
+
+
+@everything
+@floors
+def test_pressure_integrates_to_the_force(moduli: Moduli, floor: str) -> None:
+    slab = Slab(2.0, moduli, floor)
+    edges = np.linspace(-60.0, 60.0, 121)
+    assert slab.floor_force(edges, force=5.0).sum() == pytest.approx(5.0, rel=1e-10)
+
+
+def test_smooth_floor_pressure_knows_nothing_of_the_moduli_if_isotropic() -> None:
+    x = np.linspace(-3.0, 3.0, 31)
+    one = Slab(1.0, Moduli.isotropic(0.0, 1.0), "smooth").floor_pressure(x)
+    other = Slab(1.0, Moduli.isotropic(0.8, 7.0), "smooth").floor_pressure(x)
+    np.testing.assert_allclose(one, other, atol=1e-12)
+
+    # The series against the Fourier integral itself.
+    def integrand(q: float, position: float) -> float:
+        transform = 2.0 * (np.sinh(q) + q * np.cosh(q)) / (np.sinh(2.0 * q) + 2.0 * q)
+        return transform * np.cos(q * position) / np.pi
+
+    direct = [quad(integrand, 1e-12, 60.0, args=(position,), limit=400)[0] for position in x[::5]]
+    np.testing.assert_allclose(one[::5], direct, atol=1e-9)
+
+
+@everything
+@floors
+def test_fields_balance_and_meet_the_boundaries(moduli: Moduli, floor: str) -> None:
+    slab = Slab(1.0, moduli, floor)
+    k, z, dz = WAVES[1:6], 0.4, 1e-4
+    xx, zz, xz = slab.transform(k, z)
+    above, below = slab.transform(k, z + dz), slab.transform(k, z - dz)
+    slope = (above - below) / (2.0 * dz)
+    # d sigma_xx/dx + d sigma_xz/dz = 0 and d sigma_xz/dx + d sigma_zz/dz = 0.
+    np.testing.assert_allclose(slope[2], k * xx, rtol=2e-5, atol=1e-7)
+    np.testing.assert_allclose(slope[1], -k * xz, rtol=2e-5, atol=1e-7)
+    # Compatibility: eps_xx,zz + eps_zz,xx = 2 eps_xz,xz.
+    a11, a12, a22, a66 = moduli.compliances
+    second = (above - 2.0 * np.array([xx, zz, xz]) + below) / dz**2
+    residual = a11 * second[0] + a12 * second[1] - k**2 * (a12 * xx + a22 * zz) - a66 * k * slope[2]
+    np.testing.assert_allclose(residual / (k**2 * a22), 0.0, atol=1e-5)
+    top, bottom = slab.transform(k, 1.0), slab.transform(k, 0.0)
+    np.testing.assert_allclose(top[1:], [-np.ones(k.size), np.zeros(k.size)], atol=1e-11)
+    if floor == "smooth":
+        np.testing.assert_allclose(bottom[2], 0.0, atol=1e-12)
+    else:
+        np.testing.assert_allclose(a11 * bottom[0] + a12 * bottom[1], 0.0, atol=1e-11 * a11)  # eps_xx = 0
+
+
+@everything
+def test_far_above_the_floor_the_slab_is_a_half_plane(moduli: Moduli) -> None:
+    x = np.linspace(-2.0, 2.0, 21)
+    for height in (50.0, 200.0):
+        error = -Slab(height, moduli).stress(x, height - 1.0)[1] - half_plane.pressure(x, 1.0, moduli)
+        assert np.max(np.abs(error)) < 1.0 / height**2
+
+
+def test_smooth_walls_are_mirrors() -> None:
+    x = np.linspace(-2.0, 2.0, 17)
+    open_slab = Slab(1.0, ISOTROPIC, "smooth")
+    walled = Slab(1.0, ISOTROPIC, "smooth", width=4.0, load_position=0.7)
+    images = [4.0 * 2 * n + 0.7 for n in range(-4, 5)] + [4.0 * (2 * n + 1) - 0.7 for n in range(-5, 5)]
+    expected = sum(open_slab.stress(x - image, 0.0) for image in images)
+    stress = walled.stress(x, 0.0)
+    np.testing.assert_allclose(stress[1:], expected[1:], atol=1e-10)
+    # Walls hold the width; the sum of unbounded slabs, each free to widen, lacks that uniform stress.
+    excess = stress[0] - expected[0]
+    np.testing.assert_allclose(excess, excess[0], atol=1e-10)
+    assert excess[0] == pytest.approx(-ISOTROPIC.c / ISOTROPIC.b / 4.0, rel=1e-9)
+    assert walled.floor_force(np.linspace(-2.0, 2.0, 9)).sum() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_distant_walls_are_not_felt() -> None:
+    x = np.linspace(-3.0, 3.0, 13)
+    for floor in ("rough", "smooth"):
+        free, walled = (Slab(1.0, ISOTROPIC, floor, width).floor_pressure(x) for width in (None, 40.0))
+        np.testing.assert_allclose(free, walled, atol=1e-9)
+
+
+@floors
+def test_smoothing_keeps_the_total_and_reaches_the_top(floor: str) -> None:
+    slab = Slab(1.0, ISOTROPIC, floor)
+    x = np.linspace(-20.0, 20.0, 4001)
+    at_top = -slab.stress(x, 1.0, smoothing=0.2)[1]
+    np.testing.assert_allclose(at_top, np.exp(-(x**2) / 0.08) / np.sqrt(0.08 * np.pi), atol=1e-9)
+    assert -slab.stress(x, 0.5, smoothing=0.2)[1].sum() * 0.01 == pytest.approx(1.0, rel=1e-6)
+
+
+@floors
+def test_strong_anisotropy_gives_a_slab_two_peaks_as_well(floor: str) -> None:
+    x = np.linspace(0.0, 3.0, 301)
+    beta = lattice.peak_criterion_root()
+    for tangential, peaks in ((3.0 * beta, 1), (0.1 * beta, 2)):
+        moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, tangential))
+        largest = np.argmax(Slab(1.0, moduli, floor).floor_pressure(x))
+        assert largest == 0 if peaks == 1 else abs(largest - 56) < 5
+
+
+@floors
+def test_curvature_is_that_of_the_pressure(floor: str) -> None:
+    for moduli in SOLIDS:
+        slab = Slab(2.0, moduli, floor)
+        pressure = slab.floor_pressure([-0.02, 0.0, 0.02])
+        numerical = (pressure[0] - 2.0 * pressure[1] + pressure[2]) / 0.02**2
+        assert slab.curvature_below_force() == pytest.approx(numerical, rel=2e-3)
+
+
+@pytest.mark.parametrize("rotations", ["suppressed", "free"])
+@pytest.mark.parametrize("body", ["half plane", "smooth floor", "rough floor"])
+def test_crossover_ratio_separates_one_peak_from_two(body: str, rotations: str) -> None:
+    ratio = crossover.stiffness_ratio(body, rotations)
+    x = np.linspace(0.0, 1.5, 1501)
+    for factor, peaks in ((0.97, 2), (1.03, 1)):
+        moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, factor * ratio), rotations)
+        if body == "half plane":
+            pressure = half_plane.pressure(x, 1.0, moduli)
+        else:
+            pressure = Slab(1.0, moduli, body.split()[0]).floor_pressure(x)
+        assert (np.argmax(pressure) > 0) == (peaks == 2)
+
+
+def test_crossover_of_the_paper() -> None:
+    assert crossover.stiffness_ratio() == pytest.approx(2.0 * np.sqrt(7.0) - 5.0, abs=1e-12)
+    with pytest.raises(ValueError, match="body = 'disk'"):
+        crossover.stiffness_ratio("disk")
+
+
+@pytest.mark.parametrize("width", [None, 61.0 * 2.0])
+def test_shares_of_the_floor_disks(width: float | None) -> None:
+    x = 2.0 * np.arange(-30, 31)
+    share = response_of_layers(x, layers=15, moduli=ISOTROPIC, width=width)
+    # Without walls the pressure far away is slightly negative, and cut off here.
+    assert share.sum() == pytest.approx(1.0, abs=1e-10 if width else 2e-2)
+    np.testing.assert_allclose(share, share[::-1], atol=1e-13)
+    height = 15.0 * np.sqrt(3.0)
+    # 0.9195 / height is the pressure under the force; a disk covers a length 2.
+    assert share[30] == pytest.approx(0.9195 * 2.0 / height, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Slab(0.0, ISOTROPIC), r"height = 0\.0"),
+        (lambda: Slab(1.0, ISOTROPIC, "wet"), r"floor = 'wet'"),
+        (lambda: Slab(1.0, ISOTROPIC, width=-2.0), r"width = -2\.0"),
+        (lambda: Slab(1.0, ISOTROPIC, width=2.0, load_position=1.5), r"load_position = 1\.5"),
+        (lambda: Slab(1.0, ISOTROPIC).stress(0.0, 1.5), r"z = 1\.5"),
+        (lambda: Slab(1.0, ISOTROPIC).stress(0.0, 1.0), r"z = 1\.0"),
+        (lambda: Slab(1.0, ISOTROPIC, width=2.0).stress([1.1], 0.0), r"-1\.0 and 1\.0"),
+        (lambda: Slab(1.0, ISOTROPIC).floor_force([1.0, 0.0]), r"edges"),
+        (lambda: Slab(1.0, ISOTROPIC).transform(-1.0), r"wave_number"),
+        (lambda: response_of_layers([0.0], layers=0, moduli=ISOTROPIC), r"layers = 0"),
+        (lambda: response_of_layers([[0.0]], layers=3, moduli=ISOTROPIC), r"floor_x"),
+    ],
+)
+def test_bad_input_is_named(call, message) -> None:
+    with pytest.raises(ValueError, match=message):
+        call()
