@@ -1,7 +1,8 @@
 """Peaks of a sampled response: how many, where, and what counts as two (Secs. IV.A and V.E).
 
-A peak is a local maximum, not at an end of the samples, that stands above the ground between itself and any
-higher sample by at least ``relative_prominence`` times the largest magnitude of the response. Maxima
+A peak is a local maximum, not at an end of the samples, whose prominence is at least ``relative_prominence``
+times the largest magnitude of the response. Prominence is the height above the ground that must be crossed
+on the way to higher samples, or down to the end of the samples on a side that has no higher ones. Maxima
 separated by shallower dips are one peak, whose position is the middle of its highest samples; samples that
 differ by less than ``rounding`` times that magnitude count as equally high. So a symmetric profile has
 symmetric peaks, and rounding noise neither makes nor moves one.
@@ -34,7 +35,7 @@ class Peaks:
 
     position: FloatArray
     height: FloatArray
-    prominence: FloatArray  #: height above the dip that leads to higher ground; of equals: above their dip
+    prominence: FloatArray  #: equally high peaks are each other's higher ground
 
     def __len__(self) -> int:
         return int(self.position.size)
@@ -70,10 +71,17 @@ def find_peaks(
     last = r.size - 1
     found: list[tuple[float, float, float]] = []
 
-    def record(hill: _Hill, prominence: float) -> None:
+    def record(hill: _Hill, dip: float) -> None:
         left, right = min(hill.summits), max(hill.summits)
-        if not hill.recorded and left > 0 and right < last and prominence >= threshold and prominence > tie:
-            found.append((0.5 * (x[left] + x[right]), hill.top, prominence))
+        if not hill.recorded and left > 0 and right < last:
+            base = dip
+            if hill_at[0] is hill:
+                base = max(base, float(r[:left].min()))
+            if hill_at[last] is hill:
+                base = max(base, float(r[right + 1 :].min()))
+            prominence = hill.top - base
+            if prominence >= threshold and prominence > tie:
+                found.append((0.5 * (x[left] + x[right]), hill.top, prominence))
         hill.recorded = True
 
     # Sink a level through the samples: hills appear at maxima and meet at the dips between them.
@@ -87,9 +95,9 @@ def find_peaks(
             if low.top - level < threshold or low.top - level <= tie:
                 high.summits = [s for s in high.summits + low.summits if r[s] >= high.top - tie]
             else:
-                record(low, low.top - level)
+                record(low, level)
                 if high.top - low.top <= tie:
-                    record(high, high.top - level)
+                    record(high, level)
             hill_at = [high if hill is low else hill for hill in hill_at]
             here = high
         else:
@@ -100,9 +108,7 @@ def find_peaks(
 
     highest = hill_at[0]
     assert highest is not None
-    left_end, right_end = min(highest.summits), max(highest.summits)
-    if left_end > 0 and right_end < last:
-        record(highest, highest.top - max(float(r[:left_end].min()), float(r[right_end + 1 :].min())))
+    record(highest, -np.inf)
     found.sort()
     columns = np.array(found, dtype=float).reshape(-1, 3)
     return Peaks(position=columns[:, 0], height=columns[:, 1], prominence=columns[:, 2])

@@ -1,0 +1,186 @@
+import numpy as np
+import pytest
+from observe_states import contacts, opened, pair_index, slab, state, with_pairs
+
+from granular_response.observe.network import (
+    FALLING,
+    HORIZONTAL,
+    RISING,
+    bulk_disks,
+    contact_angle,
+    contact_angle_histogram,
+    contact_centre,
+    contact_changes,
+    coordination_number,
+    interior_contacts,
+    lattice_direction,
+    mirror_disks,
+    network_asymmetry,
+    rattlers,
+    sliding_count,
+    unmatched_contacts,
+)
+from granular_response.solve.state import FLOOR, OPEN, SLIDING, STICKING
+
+
+def test_contact_changes_between_all_statuses():
+    before = np.repeat([OPEN, STICKING, SLIDING], 3)
+    after = np.tile([OPEN, STICKING, SLIDING], 3)
+    links = [(0, k) for k in range(1, 10)]
+    changes = contact_changes(contacts(links, status=before), contacts(links, status=after))
+    assert np.flatnonzero(changes.opened).tolist() == [3, 6]
+    assert np.flatnonzero(changes.closed).tolist() == [1, 2]
+    assert np.flatnonzero(changes.started_sliding).tolist() == [2, 5]
+    assert np.flatnonzero(changes.stopped_sliding).tolist() == [6, 7]
+
+
+def test_contact_changes_refuse_other_candidates():
+    with pytest.raises(ValueError, match="different candidates"):
+        contact_changes(contacts([(0, 1), (1, 2)]), contacts([(0, 1), (0, 2)]))
+    with pytest.raises(ValueError, match="different candidates"):
+        contact_changes(contacts([(0, 1), (1, 2)]), contacts([(0, 1)]))
+
+
+def test_sliding_count_with_and_without_walls():
+    position = np.array([[1.0, 1.0], [3.0, 1.0], [5.0, 1.0]])
+    pairs = contacts([(0, 1), (1, 2)], status=np.array([SLIDING, STICKING]))
+    walls = contacts([(0, FLOOR), (1, FLOOR), (2, FLOOR)], status=np.array([SLIDING, SLIDING, OPEN]))
+    assert sliding_count(state(position, pairs, walls)) == 3
+    assert sliding_count(state(position, pairs, walls), walls=False) == 1
+
+
+def test_lattice_directions_do_not_depend_on_the_order_of_partners():
+    h = np.sqrt(3.0)
+    position = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, h], [-1.0, h]])
+    links = [(0, 1), (1, 0), (0, 2), (2, 0), (0, 3), (3, 0)]
+    s = state(position, contacts(links))
+    expected = [HORIZONTAL] * 2 + [RISING] * 2 + [FALLING] * 2
+    assert lattice_direction(s).tolist() == expected
+    np.testing.assert_allclose(contact_angle(s), np.repeat([0.0, np.pi / 3, 2 * np.pi / 3], 2), atol=1e-15)
+    tilted = state(
+        position + np.array([[0.0, 1e-17], [0.0, -1e-17], [0.1, 0.0], [0.1, 0.0]]), contacts(links)
+    )
+    assert lattice_direction(tilted).tolist() == expected
+    assert np.all((contact_angle(tilted) >= 0.0) & (contact_angle(tilted) < np.pi))
+
+
+def test_line_that_falls_slightly_is_horizontal():
+    s = state(np.array([[0.0, 0.1], [2.0, 0.0]]), contacts([(0, 1)]))
+    assert contact_angle(s)[0] > 3.0
+    assert lattice_direction(s).tolist() == [HORIZONTAL]
+
+
+def test_interior_contacts_by_their_centres():
+    position = np.array([[1.0, 1.0], [3.0, 1.0], [5.0, 1.0], [7.0, 1.0]])
+    s = state(position, contacts([(0, 1), (1, 2), (3, 2)]))
+    assert contact_centre(s)[:, 0].tolist() == [2.0, 4.0, 6.0]
+    assert interior_contacts(s, 8.0, 3.0).tolist() == [False, True, False]
+    assert interior_contacts(s, 8.0, 2.0).tolist() == [True, True, True]
+    with pytest.raises(ValueError, match="margin"):
+        interior_contacts(s, 8.0, 4.0)
+
+
+def test_coordination_number_of_a_lattice_is_six_in_the_bulk():
+    s = slab(9, 15)
+    bulk = bulk_disks(s, 30.0, side_margin=4.0)
+    assert 0 < bulk.sum() < s.position.shape[0]
+    assert coordination_number(s, bulk) == 6.0
+    assert coordination_number(s) == 2.0 * s.pairs.first.size / s.position.shape[0] < 6.0
+
+
+def test_bulk_disks_keep_all_four_margins():
+    position = np.array([[5.0, 5.0], [1.0, 5.0], [9.0, 5.0], [5.0, 1.0], [5.0, 9.0]])
+    assert bulk_disks(state(position, contacts([])), 10.0, 2.0, 2.0).tolist() == [
+        True,
+        False,
+        False,
+        False,
+        False,
+    ]
+
+
+def chain_with_loose_ends():
+    """A triangle 0, 1, 2, a tail 2-3-4, and disk 5 alone on the floor; the pair 3-4 is closed, 1-5 open."""
+    position = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 2.7], [4.0, 2.7], [6.0, 2.7], [9.0, 1.0]])
+    status = np.array([STICKING] * 5 + [OPEN])
+    pairs = contacts([(0, 1), (1, 2), (0, 2), (2, 3), (3, 4), (1, 5)], status=status)
+    walls = contacts(
+        [(0, FLOOR), (1, FLOOR), (5, FLOOR), (4, FLOOR)], status=np.array([STICKING] * 3 + [OPEN])
+    )
+    return state(position, pairs, walls)
+
+
+def test_rattlers_are_removed_one_after_the_other():
+    s = chain_with_loose_ends()
+    assert np.flatnonzero(rattlers(s)).tolist() == [3, 4, 5]
+    assert np.flatnonzero(rattlers(s, 1)).tolist() == []
+    assert np.flatnonzero(rattlers(s, 3)).tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_coordination_number_by_definition():
+    s = chain_with_loose_ends()
+    assert coordination_number(s) == pytest.approx(10 / 6)
+    assert coordination_number(s, walls=True) == pytest.approx(13 / 6)
+    assert coordination_number(s, without_rattlers=True) == pytest.approx(2.0)
+    assert coordination_number(s, without_rattlers=True, walls=True) == pytest.approx(8 / 3)
+    assert coordination_number(s, np.arange(6) == 2) == 3.0
+    with pytest.raises(ValueError, match="disks"):
+        coordination_number(s, np.arange(6) == 5, without_rattlers=True)
+
+
+def test_contact_angle_histogram_of_a_lattice():
+    s = slab(4, 6)
+    centre, density = contact_angle_histogram(s, 18)
+    assert density.sum() * (centre[1] - centre[0]) == pytest.approx(1.0)
+    assert np.flatnonzero(density).tolist() == [0, 6, 12]
+    direction = lattice_direction(s)
+    share = np.bincount(direction) / direction.size
+    np.testing.assert_allclose(density[[0, 6, 12]] * np.pi / 18, share)
+
+
+def test_contact_angle_histogram_counts_touching_contacts_only():
+    s = slab(4, 6)
+    horizontal = lattice_direction(s) == HORIZONTAL
+    _, density = contact_angle_histogram(opened(s, ~horizontal), 18)
+    assert np.flatnonzero(density).tolist() == [0]
+    assert not contact_angle_histogram(opened(s, np.ones_like(horizontal)), 18)[1].any()
+    _, chosen = contact_angle_histogram(s, 18, contacts=~horizontal)
+    assert np.flatnonzero(chosen).tolist() == [6, 12]
+    with pytest.raises(ValueError, match="bins"):
+        contact_angle_histogram(s, 0)
+
+
+def test_contact_angle_histogram_folds_angles_below_pi():
+    s = state(np.array([[0.0, 0.01], [2.0, 0.0], [4.0, 0.01]]), contacts([(0, 1), (1, 2)]))
+    _, density = contact_angle_histogram(s, 18)
+    assert np.flatnonzero(density).tolist() == [0]
+
+
+def test_mirror_of_a_slab():
+    s = slab(2, 3)  # disks 0 1 2 below, 3 4 above
+    assert mirror_disks(s.position, 3.0).tolist() == [2, 1, 0, 4, 3]
+    with pytest.raises(ValueError, match="no mirror image"):
+        mirror_disks(s.position, 2.5)
+    with pytest.raises(ValueError, match="share"):
+        mirror_disks(np.array([[0.0, 0.0], [0.05, 0.0], [10.0, 0.0]]), 5.0)
+
+
+def test_network_asymmetry_counts_contacts_without_an_image():
+    s = slab(2, 3)
+    mirror = mirror_disks(s.position, 3.0)
+    assert network_asymmetry(s.pairs, mirror) == 0.0
+    left, right = pair_index(s, 0, 1), pair_index(s, 1, 2)
+    lopsided = opened(s, np.array([left]))
+    assert np.flatnonzero(unmatched_contacts(lopsided.pairs, mirror)).tolist() == [right]
+    assert network_asymmetry(lopsided.pairs, mirror) == pytest.approx(1 / (s.pairs.first.size - 1))
+    assert network_asymmetry(opened(s, np.array([left, right])).pairs, mirror) == 0.0
+
+
+def test_network_asymmetry_of_the_sliding_contacts():
+    s = slab(2, 3)
+    mirror = mirror_disks(s.position, 3.0)
+    left, middle = pair_index(s, 0, 3), pair_index(s, 3, 4)
+    sliding = with_pairs(s, np.array([left, middle]), status=SLIDING)
+    assert network_asymmetry(sliding.pairs, mirror) == 0.0
+    assert network_asymmetry(sliding.pairs, mirror, sliding=True) == 0.5
+    assert network_asymmetry(s.pairs, mirror, sliding=True) == 0.0

@@ -1,0 +1,231 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import signal
+
+from granular_response.observe.peaks import (
+    asymmetry,
+    central_dip,
+    find_peaks,
+    has_third_peak,
+    is_double_peaked,
+    peak_count,
+)
+
+X = np.arange(-10.0, 11.0, 2.0)
+
+
+def profile(*right):
+    """Symmetric profile from its values at x = 0, 2, 4, ...; zero further out."""
+    half = np.zeros(6)
+    half[: len(right)] = right
+    return np.concatenate([half[:0:-1], half])
+
+
+ONE = profile(1.0, 0.8, 0.4, 0.1)
+TWO = profile(0.5, 0.7, 1.0, 0.4)
+THREE = profile(0.6, 0.5, 1.0, 0.4)
+
+
+def test_single_peak():
+    peaks = find_peaks(X, ONE)
+    assert peaks.position.tolist() == [0.0]
+    assert peaks.height.tolist() == [1.0]
+    assert peaks.prominence.tolist() == [1.0]
+
+
+def test_equal_peaks_share_the_depth_of_their_dip():
+    peaks = find_peaks(X, TWO)
+    assert peaks.position.tolist() == [-4.0, 4.0]
+    assert peaks.height.tolist() == [1.0, 1.0]
+    assert peaks.prominence.tolist() == [0.5, 0.5]
+
+
+def test_unequal_peaks_have_the_usual_prominence():
+    r = np.array([0.0, 0.6, 0.2, 1.0, 0.7, 0.8, 0.1])
+    peaks = find_peaks(np.arange(7.0), r)
+    assert peaks.position.tolist() == [1.0, 3.0, 5.0]
+    np.testing.assert_allclose(peaks.prominence, [0.4, 0.9, 0.1])
+
+
+def test_third_peak_is_found_with_its_prominence():
+    peaks = find_peaks(X, THREE)
+    assert peaks.position.tolist() == [-4.0, 0.0, 4.0]
+    np.testing.assert_allclose(peaks.prominence, [0.5, 0.1, 0.5])
+
+
+def test_plateau_is_one_peak_at_its_middle():
+    assert find_peaks(X, profile(1.0, 1.0, 0.3)).position.tolist() == [0.0]
+    x = np.arange(6.0)
+    assert find_peaks(x, [0.0, 1.0, 1.0, 0.5, 0.4, 0.0]).position.tolist() == [1.5]
+
+
+def test_ends_are_no_peaks_but_count_as_higher_ground():
+    x = np.arange(5.0)
+    assert peak_count(x, [1.0, 0.5, 0.3, 0.2, 0.1]) == 0
+    assert peak_count(x, [0.1, 0.5, 0.9, 1.0, 1.0]) == 0
+    peaks = find_peaks(x, [2.0, 1.0, 1.5, 0.2, 0.1])
+    assert peaks.position.tolist() == [2.0]
+    np.testing.assert_allclose(peaks.prominence, [0.5])
+
+
+def test_hill_that_hardly_falls_towards_the_end_is_no_peak():
+    x = np.arange(7.0)
+    r = np.array([0.1, 1.0, 0.4, 0.1, 0.5, 0.6, 0.5999])
+    assert find_peaks(x, r).position.tolist() == [1.0]
+    peaks = find_peaks(x, r[::-1], relative_prominence=1e-5)
+    assert peaks.position.tolist() == [1.0, 5.0]
+    np.testing.assert_allclose(peaks.prominence, [1e-4, 0.9])
+
+
+def test_dips_below_the_threshold_do_not_separate_peaks():
+    r = profile(0.995, 1.0, 0.5)
+    assert find_peaks(X, r, relative_prominence=0.004).position.tolist() == [-2.0, 2.0]
+    merged = find_peaks(X, r, relative_prominence=0.006)
+    assert merged.position.tolist() == [0.0]
+    assert merged.height.tolist() == [1.0]
+
+
+def test_small_bumps_beside_a_peak_do_not_count():
+    r = profile(1.0, 0.5, 0.1, 0.1005)
+    assert peak_count(X, r, relative_prominence=1e-3) == 1
+    assert peak_count(X, r, relative_prominence=1e-4) == 3
+
+
+@settings(deadline=None)  # machines are shared
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from([ONE, TWO, THREE, profile(1.0, 1.0, 0.3), profile(0.9, 1, 1)])
+)
+def test_rounding_noise_changes_nothing(seed, r):
+    noise = 1e-13 * np.random.default_rng(seed).standard_normal(r.size)
+    clean, noisy = find_peaks(X, r), find_peaks(X, r + noise)
+    np.testing.assert_array_equal(noisy.position, clean.position)
+    np.testing.assert_allclose(noisy.height, clean.height, atol=1e-12)
+    np.testing.assert_allclose(noisy.prominence, clean.prominence, atol=1e-12)
+
+
+@settings(deadline=None)  # machines are shared
+@given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=12), st.booleans())
+def test_symmetric_profiles_have_symmetric_peaks(half, centre):
+    r = np.array(half[:0:-1] + half if centre else half[::-1] + half)
+    x = np.arange(r.size) - 0.5 * (r.size - 1)
+    peaks = find_peaks(x, r)
+    np.testing.assert_array_equal(peaks.position, -peaks.position[::-1])
+    # Ties are broken by sample order, so equal heights agree up to the rounding tolerance only.
+    np.testing.assert_allclose(peaks.height, peaks.height[::-1], atol=1e-8)
+    np.testing.assert_allclose(peaks.prominence, peaks.prominence[::-1], atol=1e-8)
+
+
+@settings(deadline=None)  # machines are shared
+@given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=25))
+def test_reflected_profiles_have_reflected_peaks(values):
+    r = np.array(values)
+    x = np.arange(r.size) - 0.5 * (r.size - 1)
+    right, left = find_peaks(x, r), find_peaks(x, r[::-1])
+    np.testing.assert_allclose(right.position, -left.position[::-1], atol=1e-12)
+    np.testing.assert_allclose(right.prominence, left.prominence[::-1], atol=1e-8)
+
+
+@settings(deadline=None)  # machines are shared
+@given(st.lists(st.integers(-50, 50), min_size=3, max_size=25, unique=True))
+def test_distinct_heights_agree_with_scipy(values):
+    r = np.array(values, dtype=float)
+    threshold = 0.1 * np.abs(r).max()
+    expected, properties = signal.find_peaks(r, prominence=threshold)
+    peaks = find_peaks(np.arange(r.size), r, relative_prominence=0.1)
+    np.testing.assert_array_equal(peaks.position, expected)
+    np.testing.assert_allclose(peaks.prominence, properties["prominences"])
+
+
+def test_interior_hides_peaks_near_the_walls():
+    r = ONE.copy()
+    r[1] = 3.0
+    assert find_peaks(X, r).position.tolist() == [-8.0, 0.0]
+    assert find_peaks(X, r, interior=np.abs(X) < 7.0).position.tolist() == [0.0]
+
+
+def test_flat_response_has_no_peak():
+    assert peak_count(X, np.zeros(X.size)) == 0
+    assert peak_count(X, np.ones(X.size)) == 0
+
+
+def test_double_peak_needs_both_sides_higher_than_the_centre():
+    assert not is_double_peaked(X, ONE)
+    assert is_double_peaked(X, TWO)
+    one_side = ONE.copy()
+    one_side[X == 6.0] = 1.5
+    assert peak_count(X, one_side) == 2
+    assert not is_double_peaked(X, one_side)
+    lower = profile(1.0, 0.2, 0.6)
+    assert peak_count(X, lower) == 3
+    assert not is_double_peaked(X, lower)
+
+
+def test_double_peak_needs_the_stated_dip():
+    assert is_double_peaked(X, profile(0.998, 1.0, 0.5), relative_prominence=1e-3)
+    assert not is_double_peaked(X, profile(0.9995, 1.0, 0.5), relative_prominence=1e-3)
+
+
+def test_double_peak_on_samples_that_avoid_the_axis():
+    x = np.arange(-5.0, 6.0, 2.0)
+    assert is_double_peaked(x, [0.0, 1.0, 0.5, 0.5, 1.0, 0.0])
+    assert not is_double_peaked(x, [0.0, 0.5, 1.0, 1.0, 0.5, 0.0])
+
+
+def test_third_peak_is_one_between_two():
+    assert has_third_peak(X, THREE)
+    assert is_double_peaked(X, THREE)
+    assert not has_third_peak(X, TWO)
+    assert not has_third_peak(X, ONE)
+    assert not has_third_peak(X, profile(1.0, 0.2, 0.6))
+
+
+def test_central_dip_measures_the_crossover_continuously():
+    assert central_dip(X, TWO) == pytest.approx(0.5)
+    assert central_dip(X, ONE) == pytest.approx(-0.2)
+    lopsided = TWO.copy()
+    lopsided[X == 4.0] = 0.8
+    assert central_dip(X, lopsided) == pytest.approx(0.3)
+    jittered = X.copy()
+    jittered[5] = 1e-13
+    assert central_dip(jittered, ONE) == pytest.approx(-0.2)
+
+
+def test_asymmetry():
+    assert asymmetry(X, TWO) == 0.0
+    lopsided = TWO.copy()
+    lopsided[X == 4.0] = 0.8
+    assert asymmetry(X, lopsided) == pytest.approx(0.2)
+    assert asymmetry(X, lopsided[::-1]) == pytest.approx(0.2)
+
+
+def test_asymmetry_interpolates_positions_off_the_mirror_and_drops_the_unpaired():
+    x = np.array([-4.0, -2.0, 0.5, 2.5, 9.0])
+    r = 10.0 - np.abs(x)  # 9 has no counterpart; the others match except 0.5, against 8.9 at -0.5
+    assert asymmetry(x, r) == pytest.approx(0.6 / 9.5)
+    with pytest.raises(ValueError, match="positive"):
+        asymmetry(X, -np.ones(X.size))
+
+
+@pytest.mark.parametrize(
+    ("x", "r", "message"),
+    [
+        ([0.0, 1.0], [1.0, 2.0], "at least 3"),
+        ([0.0, 1.0, 1.0], [1.0, 2.0, 1.0], "increasing"),
+        ([0.0, 1.0, 2.0], [1.0, np.nan, 1.0], "finite"),
+        ([0.0, 1.0, 2.0], [1.0, 2.0], "shape"),
+    ],
+)
+def test_bad_samples_are_refused(x, r, message):
+    with pytest.raises(ValueError, match=message):
+        find_peaks(x, r)
+
+
+def test_bad_options_are_refused():
+    with pytest.raises(ValueError, match="relative_prominence"):
+        find_peaks(X, ONE, relative_prominence=0.0)
+    with pytest.raises(ValueError, match="interior"):
+        find_peaks(X, ONE, interior=np.arange(X.size))
+    with pytest.raises(ValueError, match="both sides"):
+        is_double_peaked(X + 30.0, ONE)

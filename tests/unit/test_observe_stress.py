@@ -1,0 +1,135 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from observe_states import contacts, pair_index, slab, state, with_pairs
+from scipy.integrate import quad
+
+from granular_response.observe import stress as stress_module
+from granular_response.observe.stress import (
+    ContactForces,
+    antisymmetric_part,
+    antisymmetric_ratio,
+    body_force_density,
+    coarse_grained_stress,
+    contact_forces,
+    grid_points,
+    load_forces,
+    pressure,
+)
+from granular_response.solve.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING
+
+
+def one_contact(point, branch, force):
+    return ContactForces(np.array([point]), np.array([branch]), np.array([force]))
+
+
+@pytest.mark.parametrize("width", [0.7, 2.0])
+def test_line_integral_against_quadrature(width):
+    point, branch, force = np.array([0.3, -0.4]), np.array([1.2, 1.6]), np.array([0.7, -0.2])
+    points = np.array([[0.0, 0.0], [0.3, -0.4], [-0.9, -2.0], [1.5, 0.5], [-0.3, -1.2]])
+    stress = coarse_grained_stress(one_contact(point, branch, force), points, width, cutoff=20.0)
+    for r, got in zip(points, stress, strict=True):
+
+        def gaussian(s, r=r):
+            return np.exp(-np.sum((r - point + s * branch) ** 2) / width**2) / (np.pi * width**2)
+
+        np.testing.assert_allclose(got, np.outer(force, branch) * quad(gaussian, 0.0, 1.0)[0], rtol=1e-9)
+
+
+def test_compression_is_positive_and_swapping_the_partners_changes_nothing():
+    pushed = one_contact([1.0, 0.0], [2.0, 0.0], [3.0, 0.5])
+    swapped = one_contact([-1.0, 0.0], [-2.0, 0.0], [-3.0, -0.5])
+    points = np.array([[0.0, 0.0], [0.7, 1.1]])
+    stress = coarse_grained_stress(pushed, points)
+    np.testing.assert_allclose(stress, coarse_grained_stress(swapped, points), rtol=1e-14)
+    assert np.all(stress[:, 0, 0] > 0.0)
+    # force index first, branch index second
+    np.testing.assert_allclose(stress[:, 1, 0] / stress[:, 0, 0], 0.5 / 3.0)
+    assert np.all(stress[:, :, 1] == 0.0)
+
+
+def test_integral_over_the_plane_is_force_times_branch():
+    axis = np.linspace(-12.0, 12.0, 97)
+    stress = coarse_grained_stress(one_contact([0.5, 0.5], [1.0, 1.7], [0.3, 2.0]), grid_points(axis, axis))
+    np.testing.assert_allclose(stress.sum(axis=(0, 1)) * 0.25**2, np.outer([0.3, 2.0], [1.0, 1.7]), rtol=1e-6)
+
+
+def test_shape_follows_the_points_and_the_grid_is_z_by_x():
+    grid = grid_points(np.array([0.0, 1.0, 2.0]), np.array([5.0, 6.0]))
+    assert grid.shape == (2, 3, 2)
+    assert grid[1, 2].tolist() == [2.0, 6.0]
+    contact = one_contact([1.0, 5.0], [0.0, 2.0], [0.0, 1.0])
+    assert coarse_grained_stress(contact, grid).shape == (2, 3, 2, 2)
+    none = ContactForces(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 2)))
+    assert not coarse_grained_stress(none, grid).any()
+    assert coarse_grained_stress(contact, np.zeros((0, 2))).shape == (0, 2, 2)
+
+
+def test_cutoff_leaves_out_what_is_far_and_hardly_changes_the_rest():
+    contact = one_contact([1.0, 0.0], [2.0, 0.0], [1.0, 0.0])
+    points = np.array([[0.0, 0.0], [8.9, 0.0], [9.1, 0.0], [0.0, 5.0]])  # reach: 4 w and half the branch
+    cut, full = (coarse_grained_stress(contact, points, cutoff=c)[:, 0, 0] for c in (4.0, 30.0))
+    assert cut[2] == 0.0 < full[2]
+    assert cut[1] > 0.0
+    np.testing.assert_allclose(cut, full, atol=1e-7 * full[0])
+
+
+def test_chunks_change_nothing(monkeypatch):
+    rng = np.random.default_rng(3)
+    contacts_ = ContactForces(*(rng.normal(size=(40, 2)) * s for s in (6.0, 2.0, 1.0)))
+    points = rng.normal(size=(50, 2)) * 8.0
+    whole = coarse_grained_stress(contacts_, points)
+    density = body_force_density(contacts_.point, contacts_.force, points)
+    monkeypatch.setattr(stress_module, "_CHUNK", 60)
+    np.testing.assert_allclose(coarse_grained_stress(contacts_, points), whole, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(
+        body_force_density(contacts_.point, contacts_.force, points), density, rtol=1e-12, atol=1e-15
+    )
+
+
+def test_body_force_density_is_a_normalised_gaussian():
+    position, force = np.array([[1.0, 2.0]]), np.array([[0.5, -3.0]])
+    density = body_force_density(position, force, np.array([[1.0, 2.0], [3.0, 2.0]]), 2.0)
+    np.testing.assert_allclose(density, force / (4.0 * np.pi) * np.array([[1.0], [np.exp(-1.0)]]))
+
+
+def test_contacts_of_a_state_with_its_walls():
+    position = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 2.7]])
+    pairs = contacts([(0, 1), (2, 0)], np.array([0.0, 2.0]), 0.0, np.array([OPEN, STICKING]))
+    walls = contacts([(1, FLOOR), (0, LEFT_WALL), (1, RIGHT_WALL)], np.array([1.0, 2.0, 3.0]), 0.25)
+    found = contact_forces(state(position, pairs, walls), 4.0)
+    # The open pair is left out; branches run from the partner to the disk.
+    np.testing.assert_allclose(found.point, [[2.0, 2.7], [3.0, 1.0], [1.0, 1.0], [3.0, 1.0]])
+    np.testing.assert_allclose(found.branch, [[1.0, 1.7], [0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
+    np.testing.assert_allclose(found.force[1:], [[-0.25, 1.0], [2.0, 0.25], [-3.0, -0.25]])
+    np.testing.assert_allclose(found.force[0], 2.0 * np.array([1.0, 1.7]) / np.hypot(1.0, 1.7))
+
+
+def test_added_forces_sit_in_the_loaded_geometry():
+    rest = slab(2, 2)
+    k = pair_index(rest, 0, 1)
+    loaded = with_pairs(rest, k, normal_force=3.0)
+    loaded = replace(loaded, position=rest.position + np.array([0.25, 0.0]))
+    found = load_forces(rest, loaded, 4.0)
+    carries = np.any(np.abs(found.force) > 1e-12, axis=1)
+    assert np.count_nonzero(carries) == 1
+    i = rest.pairs.first[k]
+    np.testing.assert_allclose(found.point[carries], loaded.position[[i]])
+    np.testing.assert_allclose(np.abs(found.force[carries]), [[2.0, 0.0]])
+
+
+def test_pressure_and_antisymmetric_part():
+    stress = np.array([[[3.0, 0.5], [0.3, 1.0]], [[0.0, 1.0], [-1.0, 0.0]], [[-1.0, 0.0], [0.2, -1.0]]])
+    np.testing.assert_allclose(pressure(stress), [2.0, 0.0, -1.0])
+    np.testing.assert_allclose(antisymmetric_part(stress), [0.1, 1.0, -0.1])
+    np.testing.assert_allclose(antisymmetric_ratio(stress), [0.05, np.nan, 0.1])
+
+
+@pytest.mark.parametrize("option", ["width", "cutoff"])
+def test_bad_options_are_refused(option):
+    contact = one_contact([1.0, 0.0], [2.0, 0.0], [1.0, 0.0])
+    with pytest.raises(ValueError, match=option):
+        coarse_grained_stress(contact, np.zeros((1, 2)), **{option: 0.0})
+    with pytest.raises(ValueError, match=option):
+        body_force_density(contact.point, contact.force, np.zeros((1, 2)), **{option: -1.0})

@@ -1,0 +1,116 @@
+import numpy as np
+import pytest
+from observe_states import ROW, opened, pair_index, slab
+
+from granular_response.observe.network import interior_contacts
+from granular_response.observe.teardrop import open_region, teardrop
+
+LAYERS, LONG = 7, 21
+WIDTH = 2.0 * LONG
+REST = slab(LAYERS, LONG)
+TOP = int(np.argmin(np.linalg.norm(REST.position - [LONG, 1.0 + 6 * ROW], axis=1)))
+
+
+def row_pairs(row, *middles):
+    """Horizontal pairs of a row (0 at the bottom) whose centres are ``middles`` off the axis of the slab."""
+    centre = 0.5 * (REST.position[REST.pairs.first] + REST.position[REST.pairs.second])
+    found = []
+    for x in middles:
+        hit = np.flatnonzero(np.linalg.norm(centre - [LONG + x, 1.0 + row * ROW], axis=1) < 1e-9)
+        assert hit.size == 1
+        found.append(int(hit[0]))
+    return found
+
+
+def test_the_loaded_disk_is_in_the_middle_of_the_top_row():
+    np.testing.assert_allclose(REST.position[TOP], [LONG, 1.0 + 6 * ROW])
+
+
+def test_no_opened_contact_is_an_empty_region():
+    region = teardrop(REST, REST, TOP)
+    assert (region.count, region.depth, region.width, region.reaches_floor) == (0, 0.0, 0.0, False)
+
+
+def test_single_contact_below_the_load():
+    chosen = row_pairs(5, 0.0)
+    region = teardrop(REST, opened(REST, chosen), TOP)
+    assert np.flatnonzero(region.contacts).tolist() == chosen
+    assert region.depth == pytest.approx(ROW)
+    assert region.width == pytest.approx(2.0)
+    assert not region.reaches_floor
+
+
+def test_region_is_the_component_nearest_to_the_load():
+    drop = row_pairs(5, 0.0) + row_pairs(4, -1.0, 1.0) + row_pairs(3, -2.0, 0.0, 2.0)
+    apart = row_pairs(1, 0.0) + row_pairs(3, 8.0) + row_pairs(0, -3.0)
+    region = teardrop(REST, opened(REST, drop + apart), TOP)
+    assert np.flatnonzero(region.contacts).tolist() == sorted(drop)
+    assert region.count == 6
+    assert region.depth == pytest.approx(3 * ROW)
+    assert region.width == pytest.approx(6.0)
+    assert not region.reaches_floor
+
+
+def test_width_is_that_of_the_widest_row_not_of_the_whole_region():
+    slanted = row_pairs(5, 0.0) + row_pairs(4, 1.0, 3.0) + row_pairs(3, 4.0)
+    region = teardrop(REST, opened(REST, slanted), TOP)
+    assert region.count == 4
+    assert region.width == pytest.approx(4.0)
+
+
+def test_second_neighbours_are_not_adjacent():
+    # Two rows down on the axis is 3.46 away, four aside in one row is 4 away.
+    region = teardrop(REST, opened(REST, row_pairs(5, 0.0, 4.0) + row_pairs(3, 0.0)), TOP)
+    assert region.count == 1
+    assert teardrop(REST, opened(REST, row_pairs(5, 0.0) + row_pairs(3, 0.0)), TOP, reach=1.8).count == 2
+
+
+def test_equally_near_contacts_begin_the_region_together():
+    pair = row_pairs(5, -2.0, 2.0)
+    assert np.flatnonzero(teardrop(REST, opened(REST, pair), TOP).contacts).tolist() == sorted(pair)
+
+
+def test_region_reaches_the_floor_with_a_contact_of_two_floor_disks():
+    to_row_one = [
+        p for row, x in ((5, 0.0), (4, 1.0), (3, 0.0), (2, 1.0), (1, 0.0)) for p in row_pairs(row, x)
+    ]
+    short = teardrop(REST, opened(REST, to_row_one), TOP)
+    assert short.depth == pytest.approx(5 * ROW)
+    assert not short.reaches_floor
+    full = teardrop(REST, opened(REST, to_row_one + row_pairs(0, 1.0)), TOP)
+    assert full.depth == pytest.approx(6 * ROW)
+    assert full.reaches_floor
+    # An oblique contact has one floor disk only.
+    bottom, above = 10, LONG + 10
+    oblique = pair_index(REST, bottom, above)
+    assert not teardrop(REST, opened(REST, [*to_row_one, oblique]), TOP).reaches_floor
+
+
+def test_contacts_at_the_wall_are_not_a_teardrop():
+    at_wall = row_pairs(2, -19.0)
+    start = interior_contacts(REST, WIDTH, 10.0)
+    assert teardrop(REST, opened(REST, at_wall), TOP).count == 1
+    assert teardrop(REST, opened(REST, at_wall), TOP, start=start).count == 0
+    deep = row_pairs(0, 1.0)
+    region = teardrop(REST, opened(REST, row_pairs(6, -19.0) + deep), TOP, start=start)
+    assert np.flatnonzero(region.contacts).tolist() == deep
+
+
+def test_contacts_open_at_rest_do_not_count():
+    gap = row_pairs(5, 0.0)
+    rest = opened(REST, gap)
+    assert teardrop(rest, opened(rest, row_pairs(4, 1.0)), TOP).count == 1
+    assert teardrop(rest, rest, TOP).count == 0
+
+
+def test_open_region_of_any_mask_and_origin():
+    mask = np.zeros(REST.pairs.first.size, dtype=bool)
+    mask[row_pairs(2, 1.0, 3.0) + row_pairs(5, 0.0)] = True
+    region = open_region(REST, mask, np.array([LONG + 2.0, 1.0]))
+    assert region.count == 2
+    assert region.depth == pytest.approx(-2 * ROW)
+
+
+def test_states_of_other_candidates_are_refused():
+    with pytest.raises(ValueError, match="match_candidates"):
+        teardrop(REST, slab(LAYERS, LONG - 1), TOP)
