@@ -21,7 +21,9 @@ from .system import StaticSystem
 
 #: First and shortest load increments, in mean disk weights.
 FIRST_STEP = 0.5
-SHORTEST_STEP = 0.02
+SHORTEST_STEP = 0.05
+#: Load that dynamics crosses at once, in mean disk weights.
+CROSSING = 2.0
 #: Newton iterations after which the increment is halved instead.
 ITERATIONS = 12
 
@@ -108,9 +110,9 @@ def follow(
             step = 0.5 * (new - factor)
             if step >= shortest:
                 continue
-            # dynamics over a short stretch of load
-            step = shortest
-            new = min(factor + 4 * shortest, target)
+            # dynamics over a stretch of load
+            step = FIRST_STEP / unit
+            new = min(factor + CROSSING / unit, target)
             here = system.state(trial, factor) if trial is not None else rest
             settled = _cross(problem, here, factor, new, integrator, time_step, crossing_ramp)
             record.crossings.append((factor, new))

@@ -17,8 +17,8 @@ from .problem import Problem
 from .state import State
 from .timestep import resolve_time_step
 
-#: Called with a stage's name and the part of it that is done, from 0 to 1.
-Progress = Callable[[str, float], None]
+#: Called as ``progress(done, total, what)``.
+Progress = Callable[[float, float, str], None]
 
 
 class NotSettled(RuntimeError):
@@ -57,7 +57,7 @@ def solve_scene(
     scene : what to solve.
     load_factors : increasing multipliers of the scene's loads at which states are kept; on a path every state
         has passed through the smaller loads before it.
-    progress : called with stage and part done.
+    progress : called with the part done of a stage, 1 and the stage's name.
 
     Raises
     ------
@@ -110,13 +110,13 @@ def loaded_states(
             state = minimise(problem, state, load_factor=factor)
             states.append(state)
             if progress is not None:
-                progress("load", done / len(factors))
+                progress(done, len(factors), "load")
         return choice, states
     largest = max(abs(f) for f in factors)
 
     def report(factor: float) -> None:
         if progress is not None:
-            progress("load", abs(factor) / largest)
+            progress(abs(factor), largest, "load")
 
     step = resolve_time_step(problem)
     states = follow(problem, rest, factors, integrator=protocol.integrator, time_step=step, progress=report)
@@ -137,7 +137,7 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
             span = np.log(highest[0] / stop.kinetic_energy)
             done = np.log(highest[0] / max(energy, stop.kinetic_energy)) / span
             highest[1] = max(highest[1], float(done)) if highest[0] > energy else highest[1]
-            progress(stage, highest[1])
+            progress(highest[1], 1.0, stage)
 
     settled = relax(dynamics, stop, gravity=gravity, load=load, progress=report)
     settled.information["method"] = "dynamics"
