@@ -42,6 +42,14 @@ def test_equal_peaks_share_the_depth_of_their_dip():
     assert peaks.prominence.tolist() == [0.5, 0.5]
 
 
+def test_peaks_that_differ_by_solver_noise_are_equal():
+    noisy = TWO.copy()
+    noisy[X == 4.0] -= 5e-6
+    np.testing.assert_allclose(find_peaks(X, noisy).prominence, [0.5, 0.5], atol=1e-5)
+    noisy[X == 4.0] -= 5e-5
+    np.testing.assert_allclose(find_peaks(X, noisy).prominence, [1.0, 0.5], atol=1e-4)
+
+
 def test_unequal_peaks_have_the_usual_prominence():
     r = np.array([0.0, 0.6, 0.2, 1.0, 0.7, 0.8, 0.1])
     peaks = find_peaks(np.arange(7.0), r)
@@ -113,8 +121,8 @@ def test_symmetric_profiles_have_symmetric_peaks(half, centre):
     peaks = find_peaks(x, r)
     np.testing.assert_array_equal(peaks.position, -peaks.position[::-1])
     # Ties are broken by sample order, so equal heights agree up to the rounding tolerance only.
-    np.testing.assert_allclose(peaks.height, peaks.height[::-1], atol=1e-8)
-    np.testing.assert_allclose(peaks.prominence, peaks.prominence[::-1], atol=1e-8)
+    np.testing.assert_allclose(peaks.height, peaks.height[::-1], atol=2e-5)
+    np.testing.assert_allclose(peaks.prominence, peaks.prominence[::-1], atol=2e-5)
 
 
 @settings(deadline=None)  # machines are shared
@@ -124,7 +132,7 @@ def test_reflected_profiles_have_reflected_peaks(values):
     x = np.arange(r.size) - 0.5 * (r.size - 1)
     right, left = find_peaks(x, r), find_peaks(x, r[::-1])
     np.testing.assert_allclose(right.position, -left.position[::-1], atol=1e-12)
-    np.testing.assert_allclose(right.prominence, left.prominence[::-1], atol=1e-8)
+    np.testing.assert_allclose(right.prominence, left.prominence[::-1], atol=2e-5)
 
 
 @settings(deadline=None)  # machines are shared

@@ -215,7 +215,7 @@ def test_load_needs_no_gravity_in_the_balance():
 
 
 def test_antisymmetric_part_is_small_when_torques_balance():
-    """Torque balance makes the stress symmetric up to gradients over one disk; without it the ratio is large."""
+    """Torque balance makes the stress symmetric up to gradients over a disk; without it, it is not."""
     s, width = slab_in_equilibrium(0.0)
     points = grid_points(np.linspace(9.0, 21.0, 7), np.array([7.0, 9.0]))
     balanced = antisymmetric_ratio(coarse_grained_stress(contact_forces(s, width), points))

@@ -3,7 +3,9 @@
 Two open contacts are adjacent if their centres are within ``reach`` lattice constants of each other: on the
 triangular lattice horizontal contacts of one row and of neighbouring rows are one lattice constant
 apart, the next nearest 1.7, so the default 1.2 joins neighbours and bridges nothing. The region is the
-connected component nearest to the loaded disk. All lengths are measured in the rest state, in mean radii.
+connected component nearest to the loaded disk, if it begins within ``start_distance`` lattice constants of
+it: contacts that the load opens far away, where the side walls have thinned the forces, are no teardrop. All
+lengths are measured in the rest state, in mean radii.
 """
 
 from __future__ import annotations
@@ -45,17 +47,23 @@ def teardrop(
     start: BoolArray | None = None,
     lattice_constant: float = 2.0,
     reach: float = 1.2,
+    start_distance: float = 5.0,
 ) -> OpenRegion:
     """Region of the pairs that touch at rest and are open under load, nearest to ``loaded_disk`` (Fig. 5).
 
-    ``start`` (a mask over pairs, such as ``interior_contacts``) says where the region may begin, so that
-    contacts opened beside a wall are not taken for a teardrop. Raises ``ValueError`` if the states list
-    different candidates.
+    ``start`` (a mask over pairs, such as ``interior_contacts``) can narrow where the region may begin.
+    Raises ``ValueError`` if the states list different candidates.
     """
     require_same_candidates(rest, loaded)
     opened = contact_changes(rest.pairs, loaded.pairs).opened
     return open_region(
-        rest, opened, rest.position[loaded_disk], start=start, lattice_constant=lattice_constant, reach=reach
+        rest,
+        opened,
+        rest.position[loaded_disk],
+        start=start,
+        lattice_constant=lattice_constant,
+        reach=reach,
+        start_distance=start_distance,
     )
 
 
@@ -67,6 +75,7 @@ def open_region(
     start: BoolArray | None = None,
     lattice_constant: float = 2.0,
     reach: float = 1.2,
+    start_distance: float = 5.0,
 ) -> OpenRegion:
     """Connected region of the ``opened`` pairs ((m,) mask) that begins nearest to ``origin`` ((2,)).
 
@@ -78,11 +87,12 @@ def open_region(
     """
     inside = np.zeros(opened.shape, dtype=bool)
     candidate = np.flatnonzero(opened)
-    begin = candidate if start is None else np.flatnonzero(opened & start)
+    centre = contact_centre(state)
+    may_begin = opened & (np.linalg.norm(centre - origin, axis=1) <= start_distance * lattice_constant)
+    begin = np.flatnonzero(may_begin if start is None else may_begin & start)
     if begin.size == 0:
         return OpenRegion(contacts=inside, depth=0.0, width=0.0, reaches_floor=False)
 
-    centre = contact_centre(state)
     label = _components(centre[candidate], reach * lattice_constant)
     distance = np.linalg.norm(centre[begin] - origin, axis=1)
     nearest = begin[distance <= distance.min() + 0.01 * lattice_constant]
