@@ -1,0 +1,114 @@
+"""Pictures of packings: what is drawn is where the arrays say."""
+
+import io
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+from granular_response.figures import network_drawing as nd
+from granular_response.figures import style
+from granular_response.solve.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL
+
+POSITION = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 1.0 + np.sqrt(3.0)], [4.2, 2.5]])
+RADIUS = np.array([1.0, 1.0, 1.0, 0.5])
+FIRST, SECOND = np.array([0, 0, 1, 1]), np.array([1, 2, 2, 3])
+
+
+@pytest.fixture
+def axes():
+    return style.figure()[1][0, 0]
+
+
+def test_disks_have_their_place_and_diameter(axes) -> None:
+    disks = nd.draw_disks(axes, POSITION, RADIUS, values=[1.0, 2.0, 3.0, 4.0])
+    np.testing.assert_array_equal(disks.get_offsets(), POSITION)
+    np.testing.assert_allclose(disks.get_widths(), 2.0 * RADIUS)
+    np.testing.assert_array_equal(disks.get_array(), [1.0, 2.0, 3.0, 4.0])
+    assert axes.get_xlim()[0] <= 0.0 and axes.get_xlim()[1] >= 4.7
+
+
+def test_a_drawn_disk_covers_its_area() -> None:
+    figure, panels = style.figure(width=2.0, height=2.0)
+    axes = panels[0, 0]
+    nd.draw_disks(axes, [[0.0, 0.0]], 1.5, facecolor="black", edgecolor="none")
+    axes.set(xlim=(-2.0, 2.0), ylim=(-2.0, 2.0))
+    style.no_axes(axes)
+    picture = matplotlib.image.imread(io.BytesIO(style.render(figure)))[..., 0]
+    per_unit = axes.bbox.width * 200.0 / figure.dpi / 4.0
+    assert np.sum(1.0 - picture) == pytest.approx(np.pi * 1.5**2 * per_unit**2, rel=5e-3)
+
+
+def test_contacts_join_centres(axes) -> None:
+    lines = nd.draw_contacts(axes, POSITION, FIRST, SECOND)
+    np.testing.assert_allclose(np.array(lines.get_segments()), POSITION[np.stack([FIRST, SECOND], axis=1)])
+
+
+def test_contact_changes_are_sorted_into_kinds(axes) -> None:
+    drawn = nd.draw_contact_changes(
+        axes,
+        POSITION,
+        FIRST,
+        SECOND,
+        touching_before=[True, True, False, True],
+        touching=[True, False, True, True],
+        sliding=[False, False, False, True],
+    )
+    ends = {name: np.array(lines.get_segments())[:, 1].tolist() for name, lines in drawn.items()}
+    expected = {"unchanged": 1, "opened": 2, "closed": 2, "sliding": 3}
+    assert ends == {name: [POSITION[disk].tolist()] for name, disk in expected.items()}
+    width = {name: float(lines.get_linewidth()[0]) for name, lines in drawn.items()}
+    assert width["opened"] > 4.0 * width["unchanged"]
+    unchanged = nd.draw_contact_changes(axes, POSITION, [0], [1], touching_before=[True], touching=[True])
+    assert list(unchanged) == ["unchanged"]
+
+
+def test_contact_points_lie_between_the_surfaces() -> None:
+    point = nd.pair_points(POSITION, RADIUS, FIRST, SECOND)
+    np.testing.assert_allclose(point[0], [2.0, 1.0])
+    for disk in (FIRST, SECOND):
+        distance = np.linalg.norm(point - POSITION[disk], axis=1) - RADIUS[disk]
+        other = np.linalg.norm(POSITION[FIRST] - POSITION[SECOND], axis=1) - RADIUS[FIRST] - RADIUS[SECOND]
+        np.testing.assert_allclose(distance, 0.5 * other, atol=1e-12)
+    np.testing.assert_array_equal(nd.WALL_NORMAL, WALL_NORMAL)
+    walls = nd.wall_points(POSITION, RADIUS, [0, 0, 3], [FLOOR, LEFT_WALL, RIGHT_WALL])
+    np.testing.assert_allclose(walls, [[1.0, 0.0], [0.0, 1.0], [4.7, 2.5]], atol=1e-15)
+
+
+def test_force_lines_are_centred_and_scaled_by_magnitude(axes) -> None:
+    point = nd.pair_points(POSITION, RADIUS, FIRST, SECOND)
+    force = np.array([[3.0, 4.0], [-1.0, 0.0], [0.0, 2.0], [1e-4, 0.0]])
+    scale = nd.force_scale(force, longest=2.0, widest=3.0)
+    lines = nd.draw_force_chains(axes, point, force, smallest=1e-3, **scale)
+    segments = np.array(lines.get_segments())
+    np.testing.assert_allclose(segments.mean(axis=1), point[:3])
+    vector = segments[:, 1] - segments[:, 0]
+    magnitude = np.linalg.norm(force[:3], axis=1)
+    np.testing.assert_allclose(vector, 2.0 * force[:3] / 5.0)
+    np.testing.assert_allclose(lines.get_linewidth(), 3.0 * magnitude / 5.0)
+
+
+def test_rotation_marks_start_vertical_and_turn_counter_clockwise(axes) -> None:
+    marks = np.array(nd.draw_rotations(axes, POSITION[:2], RADIUS[:2], [0.0, np.pi / 2]).get_segments())
+    direction = marks[:, 1] - marks[:, 0]
+    np.testing.assert_allclose(
+        direction / np.linalg.norm(direction, axis=1)[:, None], [[0, 1], [-1, 0]], atol=1e-15
+    )
+    np.testing.assert_allclose(marks.mean(axis=1), POSITION[:2])
+
+
+def test_annotations_extend_the_view(axes) -> None:
+    nd.draw_box(axes, 8.0, 5.0)
+    nd.draw_load(axes, (4.0, 5.0), length=4.0)
+    assert axes.dataLim.ymax >= 9.0 and axes.dataLim.xmax >= 8.0
+    nd.draw_force_key(axes, (0.0, -1.0), 2.0, length_per_force=0.5, width_per_force=0.3)
+    assert "2" in axes.texts[-1].get_text()
+
+
+def test_bad_input_is_named(axes) -> None:
+    with pytest.raises(ValueError, match=r"position: must have shape \(n, 2\)"):
+        nd.draw_disks(axes, [1.0, 2.0], 1.0)
+    with pytest.raises(ValueError, match="force: 1 given for 2"):
+        nd.draw_force_chains(axes, POSITION[:2], POSITION[:1], length_per_force=1.0, width_per_force=1.0)
+    with pytest.raises(ValueError, match="forces"):
+        nd.force_scale(np.zeros((3, 2)))

@@ -1,0 +1,93 @@
+"""The shared look: it does not depend on the user's settings, and files have the same bytes every time."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib import font_manager
+from matplotlib.colors import to_rgb
+
+from granular_response.figures import style
+
+
+@style.context()
+def _drawn():
+    drawn, axes = style.figure(1, 2, width="double", height=2.0)
+    for index in range(3):
+        axes[0, 0].plot([0.0, 1.0], [index, index + 1.0], label=f"$F = {index}\\,mg$")
+    axes[0, 0].legend()
+    axes[0, 1].set_xlabel("$x/R$")
+    style.letters(axes)
+    return drawn
+
+
+@pytest.mark.parametrize("file_format", ["png", "pdf", "svg"])
+def test_bytes_do_not_depend_on_the_users_settings(file_format: str) -> None:
+    plain = style.render(_drawn(), file_format)
+    with mpl.rc_context(
+        {"font.size": 20, "lines.linewidth": 9, "legend.facecolor": "red", "grid.color": "blue"}
+    ):
+        assert style.render(_drawn(), file_format) == plain
+    with style.context():
+        other = _drawn()
+        other.axes[0].set_title("changed")
+    assert style.render(other, file_format) != plain
+
+
+def test_saved_files_carry_no_date_and_no_program(tmp_path) -> None:
+    drawn = _drawn()
+    png, pdf = style.save(drawn, "fig00_test", tmp_path / "new")
+    assert (png.name, pdf.name) == ("fig00_test.png", "fig00_test.pdf")
+    assert png.read_bytes() == style.render(drawn, "png")
+    assert b"Software" not in png.read_bytes()
+    assert b"CreationDate" not in pdf.read_bytes()
+    assert sorted(path.name for path in png.parent.iterdir()) == [pdf.name, png.name]
+
+
+def test_failed_save_leaves_the_old_file(tmp_path, monkeypatch) -> None:
+    (path,) = style.save(_drawn(), "a", tmp_path, formats=("png",))
+    before = path.read_bytes()
+
+    def fail(*arguments, **keywords):
+        raise OSError("no space left")
+
+    monkeypatch.setattr(style.atomic.os, "replace", fail)
+    with pytest.raises(OSError, match="no space left"):
+        style.save(_drawn(), "a", tmp_path, formats=("png",))
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["a.png"]
+
+
+def test_fonts_are_those_that_matplotlib_ships() -> None:
+    with style.context():
+        for properties in ({}, {"style": "italic"}, {"weight": "bold"}):
+            font = font_manager.FontProperties(**properties)
+            assert font_manager.findfont(font, fallback_to_default=False).startswith(mpl.get_data_path())
+
+
+def test_settings_outside_are_untouched() -> None:
+    before = dict(mpl.rcParams)
+    style.render(_drawn())
+    assert dict(mpl.rcParams) == before
+
+
+def test_ordered_colours_darken_to_one_side_and_stay_off_white() -> None:
+    colours = np.array([to_rgb(colour) for colour in style.ordered_colours(9)])
+    lightness = colours @ np.array([0.2126, 0.7152, 0.0722])
+    assert np.all(np.diff(lightness) > 0.0)
+    assert lightness[-1] < 0.8
+
+
+def test_categorical_cycle_has_a_style_of_its_own_for_each_colour() -> None:
+    looks = [str(style.line(index)) for index in range(len(style.COLOURS))]
+    assert len(set(looks)) == len(style.LINE_STYLES) == len(style.MARKERS) == len(style.COLOURS)
+    assert style.line(len(looks)) == style.line(0)
+    assert style.marked_line(1)["marker"] != style.marked_line(2)["marker"]
+
+
+def test_bad_input_is_named() -> None:
+    with pytest.raises(ValueError, match="width = 'triple'"):
+        style.figure(width="triple")
+    with pytest.raises(ValueError, match="count = 0"):
+        style.ordered_colours(0)
+    with pytest.raises(ValueError, match="file_format = 'bmp'"):
+        style.render(_drawn(), "bmp")
