@@ -1,0 +1,72 @@
+# `make reproduce` and `make test` are all a newcomer needs; both set up what they use.
+
+PYTHON ?= python3
+JOBS ?= auto
+
+VENV := $(CURDIR)/.venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+
+# The same order and width of floating-point operations on every x86 machine
+# (src/granular_response/floating_point.py, which the command line applies by itself).
+export OPENBLAS_NUM_THREADS ?= 1
+export OMP_NUM_THREADS ?= 1
+ifneq (,$(filter x86_64 amd64,$(shell uname -m)))
+export OPENBLAS_CORETYPE ?= Haswell
+export NPY_DISABLE_CPU_FEATURES ?= X86_V4 AVX512_ICL AVX512_SPR
+endif
+export DVC_NO_ANALYTICS := 1
+# The stages of the pipeline call granular-response and tools beside it.
+export PATH := $(BIN):$(PATH)
+
+.DEFAULT_GOAL := help
+.PHONY: help setup reproduce figure test coverage lint benchmark lock clean
+
+help: ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+setup: $(STAMP) ## Create .venv with the pinned versions and this package (PYTHON=python3.12 picks another one)
+
+$(STAMP): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "$(PYTHON) is older than Python 3.11: make setup PYTHON=python3.12" >&2; exit 1; }
+	@echo "Installing the pinned versions into .venv (some minutes the first time)"
+	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
+	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check -r requirements.lock
+	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@touch "$@"
+
+reproduce: setup ## Run what is not up to date: simulations, figures, claims, report
+	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
+	"$(BIN)/dvc" repro
+
+figure: setup ## Draw one figure group: make figure GROUP=pile_dip
+	@test -n "$(GROUP)" || { echo "make figure GROUP=name, see the list in dvc.yaml" >&2; exit 1; }
+	"$(BIN)/dvc" repro draw@$(GROUP)
+
+test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two processes)
+	"$(BIN)/python" -m pytest -n $(JOBS)
+
+coverage: setup ## Unit tests with compilation off, so that kernels count too
+	NUMBA_DISABLE_JIT=1 "$(BIN)/coverage" run -m pytest tests/unit
+	"$(BIN)/coverage" report --show-missing --skip-covered
+
+lint: setup ## Run the linters and the type checker alone
+	"$(BIN)/ruff" check
+	"$(BIN)/mypy"
+	"$(BIN)/lint-imports"
+
+benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
+	"$(BIN)/dvc" repro benchmarks/dvc.yaml
+
+lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows
+	$(PYTHON) -m venv --clear "$(VENV)-lock"
+	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[dask,export,pipeline,test]"
+	{ sed -n '/^#/p' requirements.lock; \
+	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response; } > requirements.lock.new
+	mv requirements.lock.new requirements.lock
+	rm -rf "$(VENV)-lock"
+
+clean: ## Remove .venv, caches and datasets; the DVC cache and the figures stay
+	rm -rf .venv .venv-lock .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

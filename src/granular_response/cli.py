@@ -1,0 +1,240 @@
+"""The command line. It knows arguments and messages; what is heavy is imported inside the commands."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from . import __version__, floating_point
+
+# Before anything loads numpy: the stages of the pipeline give the same digits on every x86 machine.
+floating_point.pin()
+
+PAPER = (
+    "C. Goldenberg and I. Goldhirsch, Effects of Friction and Disorder on the Quasi-Static Response of "
+    "Granular Solids to a Localized Force, arXiv:0711.4243"
+)
+PACKAGE = (
+    f"granular-response {__version__}: quasi-static response of two-dimensional granular solids to a "
+    "localized force"
+)
+BIBTEX = f"""\
+@article{{goldenberg-goldhirsch,
+  author = {{Goldenberg, C. and Goldhirsch, I.}},
+  title  = {{Effects of Friction and Disorder on the Quasi-Static Response of Granular Solids
+            to a Localized Force}},
+  eprint = {{0711.4243}},
+  archiveprefix = {{arXiv}}
+}}
+
+@software{{granular-response,
+  author  = {{{{The granular-response authors}}}},
+  title   = {{granular-response: quasi-static response of two-dimensional granular solids
+             to a localized force}},
+  version = {{{__version__}}}
+}}"""
+
+app = typer.Typer(
+    name="granular-response",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,  # plain help answers twice as fast
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _examples(*lines: str) -> str:
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+@app.callback(
+    epilog=_examples(
+        "granular-response run examples/slab.yaml -o slab.nc",
+        "granular-response show slab.nc",
+        "granular-response simulate pile_dip && granular-response draw pile_dip",
+    )
+)
+def start(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
+    """Quasi-static response of two-dimensional granular solids to a localized force."""
+    if version:
+        print_version()
+        raise typer.Exit
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response run examples/slab.yaml -o slab.nc",
+        "granular-response run scene.yaml -o scene-by-dynamics.nc --method dynamics",
+    )
+)
+def run(
+    scene: Annotated[Path, typer.Argument(help="Scene file (YAML).", show_default=False)],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
+    method: Annotated[
+        str | None,
+        typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path or minimise."),
+    ] = None,
+) -> None:
+    """Solve a scene and store the result.
+
+    It settles under gravity and is then loaded; both states are stored with their certificate.
+    """
+    import time
+
+    from . import store
+    from .scene import Scene
+    from .terminal import TerminalProgress
+
+    started = time.perf_counter()
+    described = Scene.from_yaml(scene)
+    if method is not None:
+        described = described.updated({"protocol.method": method})
+    store.check_writable(output)
+
+    from .result import to_dataset
+    from .solve import solve_scene
+
+    with TerminalProgress() as progress:
+        solution = solve_scene(described, progress=progress)
+    dataset = to_dataset(solution)
+    store.write(output, dataset, {"wall_clock_seconds": time.perf_counter() - started})
+    typer.echo(f"{output}: {len(dataset.disk)} disks, {time.perf_counter() - started:.1f} s")
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response simulate frictionless_crossover",
+        "granular-response simulate polydisperse_averages --workers 8",
+        "granular-response simulate phase_diagram --scheduler tcp://10.0.0.5:8786",
+        "granular-response simulate pile_dip --params other.yaml -o other.nc",
+    )
+)
+def simulate(
+    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Local processes; all cores if not given.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a running Dask scheduler, in place of local processes.")
+    ] = None,
+    params: Annotated[Path, typer.Option(help="Parameter file with the sections common and GROUP.")] = Path(
+        "params.yaml"
+    ),
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Datasets (netCDF); data/GROUP.nc if not given.")
+    ] = None,
+) -> None:
+    """Run the simulations of a figure group.
+
+    A run that was interrupted continues where it was.
+    """
+    from .pipeline import simulation
+    from .terminal import TerminalProgress
+
+    with TerminalProgress() as progress:
+        path = simulation.simulate(
+            group,
+            output,
+            parameter_file=params,
+            workers=workers,
+            scheduler=scheduler,
+            progress=progress,
+        )
+    typer.echo(str(path))
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response draw pile_dip",
+        "granular-response draw pile_dip --data other.nc -o other-figures",
+    )
+)
+def draw(
+    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
+    data: Annotated[
+        Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder of the figures; figures/GROUP if not given.")
+    ] = None,
+) -> None:
+    """Draw the figures of a group."""
+    from .pipeline import drawing
+
+    for path in drawing.draw(group, data, output):
+        typer.echo(str(path))
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response show slab.nc",
+        "granular-response show data/pile_dip.nc",
+    )
+)
+def show(
+    file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).", show_default=False)],
+) -> None:
+    """Summarise a stored file.
+
+    Scene, certificate and floor response of a result; groups and dimensions of a study.
+    """
+    from rich.console import Console
+
+    from .summary import summarise
+
+    console = Console(highlight=False)
+    for part in summarise(file):
+        console.print(part)
+
+
+@app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))
+def cite(
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
+) -> None:
+    """Print how to cite the paper and this package."""
+    typer.echo(BIBTEX if bibtex else f"The paper:\n  {PAPER}\n\nThis package:\n  {PACKAGE}")
+
+
+@app.command("version", epilog=_examples("granular-response version"))
+def print_version() -> None:
+    """Print the version."""
+    typer.echo(f"granular-response {__version__}")
+
+
+def _expected_errors() -> tuple[type[BaseException], ...]:
+    """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
+    names = {
+        "pipeline": ["GroupError"],
+        "scene": ["SceneError"],
+        "solve": ["SOLVE_ERRORS"],
+        "store": ["StoreError"],
+        "sweep": ["SweepError"],
+    }
+    found: list[type[BaseException]] = []
+    for module, attributes in names.items():
+        loaded = sys.modules.get(f"{__package__}.{module}")
+        for attribute in attributes:
+            errors = getattr(loaded, attribute, ())
+            found += errors if isinstance(errors, tuple) else (errors,)
+    return tuple(found)
+
+
+def main() -> None:
+    """Entry point. Expected errors are one line on standard error and exit code 2."""
+    try:
+        app()
+    except Exception as error:
+        expected = _expected_errors()
+        cause = error.__cause__
+        programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
+        if not isinstance(error, expected) or programming:
+            raise
+        typer.echo(f"granular-response: {error}", err=True)
+        sys.exit(2)

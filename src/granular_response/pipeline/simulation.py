@@ -1,0 +1,84 @@
+"""From parameters to datasets."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from granular_response import store, sweep
+from granular_response.pipeline import GroupError, data_path, group_function
+from granular_response.scene import SceneError, text
+
+PARAMETERS = Path("params.yaml")
+
+
+def parameters(group: str, path: Path = PARAMETERS) -> dict[str, Any]:
+    """The section ``common`` of a parameter file together with the group's own, which has precedence.
+
+    Raises
+    ------
+    GroupError
+        If the file or a section is missing.
+    granular_response.scene.SceneError
+        If the file is not YAML.
+    """
+    try:
+        sections = text.read(path.read_text(encoding="utf-8"))
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from None
+    except OSError as error:
+        raise GroupError(f"{path}: cannot be read: {error.strerror}") from None
+    merged: dict[str, Any] = {}
+    for name in ("common", group):
+        section = sections.get(name) if isinstance(sections, dict) else None
+        if not isinstance(section, dict):
+            raise GroupError(f"{path}: section {name} is missing, must be a mapping ({{}} for no parameters)")
+        merged |= section
+    return merged
+
+
+def simulate(
+    group: str,
+    output: Path | None = None,
+    *,
+    parameter_file: Path = PARAMETERS,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: sweep.Progress | None = None,
+) -> Path:
+    """Run the simulations of a group and store its datasets; returns the path of the file.
+
+    Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
+    continues.
+    """
+    function = group_function("simulate", group)
+    given = parameters(group, parameter_file)
+    output = output or data_path(group)
+    store.check_writable(output)
+    kept = output.parent / f".{output.stem}.checkpoint"
+    environment = {sweep.CHECKPOINT_VARIABLE: str(kept)}
+    if scheduler:
+        environment[sweep.SCHEDULER_VARIABLE] = scheduler
+    with _environment(environment):
+        datasets = function(given, workers=workers, progress=progress)
+    store.write(output, datasets, {"group": group, "parameters": text.write(given)})
+    shutil.rmtree(kept, ignore_errors=True)
+    return output
+
+
+@contextmanager
+def _environment(changes: dict[str, str]) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in changes}
+    os.environ.update(changes)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

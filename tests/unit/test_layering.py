@@ -1,0 +1,106 @@
+"""The linters, the type checker and the table of docs/architecture.md."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src"
+PACKAGE = SOURCE / "granular_response"
+
+#: What each part may import from outside. What it may import from inside is checked by import-linter.
+ALLOWED = {
+    "core": {"numpy", "numba"},
+    "scene": {"numpy", "pydantic", "pydantic_core", "yaml"},
+    "solve": {"numpy", "scipy", "qdldl"},
+    "observe": {"numpy", "scipy"},
+    "theory": {"numpy", "scipy"},
+    "studies": {"numpy", "scipy", "xarray"},
+    "figures": {"numpy", "scipy", "xarray", "matplotlib", "cmocean", "cycler"},
+    "result": {"numpy", "xarray"},
+    "store": {"netCDF4", "numpy", "xarray"},
+    "sweep": {"numpy", "distributed"},
+    "pipeline": set(),
+    "cli": {"typer", "rich"},
+    "summary": {"numpy", "rich", "xarray"},
+    "terminal": {"rich"},
+    "atomic": set(),
+    "floating_point": set(),
+    "hdf5_image": set(),
+    "claims": {"numpy", "xarray"},
+    "report": {"jinja2", "numpy", "xarray"},
+    "export": {"gsd", "numpy", "pyevtk", "xarray"},
+}
+
+
+def tool(*command: str) -> None:
+    paths = os.pathsep.join([str(SOURCE), os.environ.get("PYTHONPATH", "")])
+    run = subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": paths}
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_ruff():
+    tool(sys.executable, "-m", "ruff", "check", "--no-cache", "--output-format=concise")
+
+
+def test_types():
+    tool(sys.executable, "-m", "mypy")
+
+
+def test_contracts_of_the_layers():
+    tool(str(Path(sys.executable).with_name("lint-imports")), "--no-logo")
+
+
+def outside_imports(part: Path) -> dict[str, str]:
+    """Packages that neither Python nor this project brings, each with a place where it is imported."""
+    found = {}
+    for path in sorted(part.rglob("*.py")) if part.is_dir() else [part]:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                names = [node.module or ""]
+            else:
+                continue
+            for name in (name.partition(".")[0] for name in names):
+                if name not in sys.stdlib_module_names and name != "granular_response":
+                    found[name] = f"{path.relative_to(ROOT)}:{node.lineno}"
+    return found
+
+
+PARTS = sorted(
+    p for p in PACKAGE.iterdir() if (p.suffix == ".py" or (p / "__init__.py").exists()) and p.stem[:2] != "__"
+)
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.stem)
+def test_a_part_imports_what_its_place_allows(part):
+    outside = outside_imports(part)
+    forbidden = {name: place for name, place in outside.items() if name not in ALLOWED[part.stem]}
+    assert not forbidden
+
+
+def test_every_import_is_a_declared_dependency():
+    declared = set(
+        re.findall(r'^    "([A-Za-z0-9_-]+)[>=]', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    )
+    declared |= {"pydantic_core", "distributed", "gsd", "pyevtk"}  # part of pydantic; of the extras
+    declared |= {"cycler", "yaml"}  # part of matplotlib; the package pyyaml
+    used = {name for part in PARTS for name in outside_imports(part)}
+    assert used <= {name.replace("-", "_") for name in declared}
+
+
+def test_the_command_line_loads_nothing_heavy():
+    script = (
+        "import sys, granular_response.cli;"
+        "print(sorted(m for m in sys.modules if m in {'numpy', 'scipy', 'numba', 'xarray', 'matplotlib', 'yaml'}))"
+    )
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"

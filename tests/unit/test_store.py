@@ -1,0 +1,299 @@
+"""Datasets on disk: whole or not there, equal after a round trip, equal bytes for equal data."""
+
+import os
+import random
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+
+from granular_response import __version__, atomic, hdf5_image, store
+from granular_response.store import StoreError
+
+LABEL = {"long_name": "a quantity", "units": "1"}
+KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
+
+
+def dataset(seed: int = 0, size: int = 500) -> xr.Dataset:
+    generator = np.random.default_rng(seed)
+    return xr.Dataset(
+        {
+            "floor_force": ("floor_disk", generator.normal(size=size), LABEL),
+            "status": ("floor_disk", generator.integers(0, 3, size).astype(np.int8), LABEL),
+            "open": ("floor_disk", generator.random(size) < 0.5, LABEL),
+            "name": ("end", np.array(["left", "right"]), LABEL),
+            "total": ((), 3.5, LABEL),
+            "duration": ("floor_disk", generator.random(size), {"long_name": "time", "units": "seconds"}),
+        },
+        coords={
+            "floor_disk": ("floor_disk", np.arange(size), LABEL),
+            "x": ("floor_disk", np.linspace(-1, 1, size), LABEL),
+        },
+        attrs={"method": "auto", "residual": 1e-11, "count": 3, "loads": [1.0, 2.0]},
+    )
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "data" / "result.nc"
+
+
+def test_one_dataset_comes_back(path):
+    store.write(path, dataset(), {"note": "gravity only"})
+    back = store.read(path)
+    assert list(back) == [""]
+    xr.testing.assert_equal(back[""], dataset())
+    for name, variable in dataset().variables.items():
+        assert back[""][name].dtype.kind == variable.dtype.kind
+        assert back[""][name].attrs == variable.attrs
+    assert set(back[""].coords) == {"floor_disk", "x"}
+    attributes = store.read_attributes(path)
+    assert attributes["note"] == "gravity only"
+    assert attributes["package_version"] == __version__
+    assert attributes["residual"] == 1e-11
+
+
+def test_a_study_comes_back_by_group(path):
+    study = {"mu_0.2": dataset(1), "mu_1": dataset(2), "slab/rest": dataset(3)}
+    store.write(path, study, {"group": "test"})
+    back = store.read(path)
+    assert list(back) == list(study)
+    for name in study:
+        xr.testing.assert_equal(back[name], study[name])
+    assert store.read_attributes(path)["group"] == "test"
+
+
+def test_plain_xarray_reads_it(path):
+    store.write(path, {"mu_1": dataset(2)})
+    with xr.open_dataset(path, group="mu_1", decode_timedelta=False) as plain:
+        xr.testing.assert_equal(plain.load(), dataset(2))
+
+
+def test_bytes_depend_on_the_data_alone(path, tmp_path):
+    store.write(path, {"a": dataset(1), "b": dataset(2)})
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[1]); from test_store import *;"
+        "store.write(sys.argv[2], {'a': dataset(1), 'b': dataset(2)})"
+    )
+    other = tmp_path / "other.nc"
+    time.sleep(1.1)  # HDF5 counts time in whole seconds
+    subprocess.run([sys.executable, "-c", script, Path(__file__).parent, other], check=True)
+    assert other.read_bytes() == path.read_bytes()
+    store.write(other, {"a": dataset(1), "b": dataset(3)})
+    assert other.read_bytes() != path.read_bytes()
+
+
+def test_checksums_are_those_of_hdf5(path):
+    # published values of the hash, and the checksum that HDF5 itself put into a superblock
+    assert hdf5_image.lookup3(b"") == 0xDEADBEEF
+    assert hdf5_image.lookup3(b"Four score and seven years ago") == 0x17770551
+    store.write(path, dataset())
+    superblock = path.read_bytes()[:48]
+    assert hdf5_image.lookup3(superblock[:44]) == int.from_bytes(superblock[44:], "little")
+
+
+def test_an_image_of_another_layout_is_refused():
+    with pytest.raises(ValueError, match="superblock"):
+        hdf5_image.plain_bytes(b"CDF\x01" + bytes(100))
+
+
+def test_written_again_after_reading_gives_the_same_bytes(path, tmp_path):
+    store.write(path, {"a": dataset()})
+    store.write(tmp_path / "first.nc", store.read(path))
+    store.write(tmp_path / "second.nc", store.read(tmp_path / "first.nc"))
+    assert (tmp_path / "first.nc").read_bytes() == (tmp_path / "second.nc").read_bytes()
+
+
+def test_it_is_compressed(path):
+    store.write(path, xr.Dataset({"zero": ("n", np.zeros(100_000), LABEL)}))
+    assert path.stat().st_size < 50_000
+    with netCDF4.Dataset(path) as file:
+        assert file["zero"].filters()["zlib"]
+
+
+@pytest.mark.parametrize("label", ["long_name", "units"])
+@pytest.mark.parametrize("name", ["floor_force", "x"])
+def test_every_variable_needs_its_labels(path, label, name):
+    bad = dataset()
+    del bad[name].attrs[label]
+    with pytest.raises(StoreError, match=rf"result.nc: variable rest/{name} needs the attribute {label}"):
+        store.write(path, {"rest": bad})
+    assert not path.exists()
+
+
+def test_truth_values_are_stored_as_numbers(path):
+    store.write(path, dataset().assign_attrs(stable=True, moved=np.bool_(False)))
+    attributes = store.read_attributes(path)
+    assert (attributes["stable"], attributes["moved"]) == (1, 0)
+
+
+@pytest.mark.parametrize("value", [None, {"a": 1}, object()])
+def test_an_attribute_that_no_file_can_hold_is_named(path, value):
+    with pytest.raises(StoreError, match="tricky"):
+        store.write(path, dataset().assign_attrs(tricky=value))
+    assert not path.exists()
+
+
+@pytest.mark.parametrize("name", ["/", "a//b", "a/", "../up", "two words"])
+def test_group_names_are_plain(path, name):
+    with pytest.raises(StoreError, match="group name"):
+        store.write(path, {name: dataset()})
+
+
+def test_missing_and_foreign_files(path, tmp_path):
+    with pytest.raises(StoreError, match="no such file"):
+        store.read(path)
+    with pytest.raises(StoreError, match="cannot be read: Is a directory"):
+        store.read(tmp_path)
+    (tmp_path / "empty.nc").touch()
+    with pytest.raises(StoreError, match="is empty"):
+        store.read(tmp_path / "empty.nc")
+    (tmp_path / "text.nc").write_text("x,z,radius\n")
+    with pytest.raises(StoreError, match="not a netCDF-4 file"):
+        store.read(tmp_path / "text.nc")
+    with netCDF4.Dataset(tmp_path / "classic.nc", "w", format="NETCDF3_CLASSIC"):
+        pass
+    with pytest.raises(StoreError, match="not a netCDF-4 file"):
+        store.read(tmp_path / "classic.nc")
+    with netCDF4.Dataset(tmp_path / "foreign.nc", "w") as file:
+        file.createDimension("n", 3)
+    with pytest.raises(StoreError, match="not written by granular_response"):
+        store.read(tmp_path / "foreign.nc")
+
+
+def test_truncated_anywhere_is_an_error_of_one_line(path):
+    store.write(path, {"a": dataset(1), "b": dataset(2)})
+    whole = path.read_bytes()
+    generator = random.Random(0)
+    for length in [1, 8, len(whole) - 1, *(generator.randrange(1, len(whole)) for _ in range(200))]:
+        path.write_bytes(whole[:length])
+        with pytest.raises(StoreError, match=r"result.nc: is truncated or damaged") as caught:
+            store.read(path)
+        assert "\n" not in str(caught.value)
+
+
+def test_a_damaged_value_is_never_read(path):
+    store.write(path, xr.Dataset({"a": ("n", np.random.default_rng(0).normal(size=20_000), LABEL)}))
+    whole = path.read_bytes()
+    original = store.read(path)[""]
+    generator = random.Random(0)
+    errors = 0
+    for _ in range(100):
+        damaged = bytearray(whole)
+        damaged[generator.randrange(len(whole))] ^= 1 << generator.randrange(8)
+        path.write_bytes(damaged)
+        try:
+            back = store.read(path)[""]
+        except StoreError:
+            errors += 1
+        else:  # the flipped bit was in unused space or in a text
+            np.testing.assert_array_equal(next(iter(back.values())), original["a"])
+    assert errors > 80
+
+
+def test_no_space_left_keeps_the_old_file(path):
+    store.write(path, dataset(0))
+    before = path.read_bytes()
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))
+    try:
+        with pytest.raises(StoreError, match=r"result.nc: cannot be written: File too large"):
+            store.write(path, dataset(1, size=20_000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == before
+    assert [entry.name for entry in path.parent.iterdir()] == [path.name]
+
+
+def test_a_folder_that_cannot_be_made_or_written(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(StoreError, match="cannot be written"):
+        store.write(tmp_path / "file" / "result.nc", dataset())
+    (tmp_path / "folder.nc").mkdir()
+    with pytest.raises(StoreError, match=r"folder.nc: cannot be written: Is a directory"):
+        store.write(tmp_path / "folder.nc", dataset())
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder.nc"]
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="the permissions of a folder do not bind root")
+def test_a_read_only_folder(path):
+    store.write(path, dataset())
+    before = path.read_bytes()
+    path.parent.chmod(0o555)
+    try:
+        with pytest.raises(StoreError, match="cannot be written: Permission denied"):
+            store.write(path, dataset(1))
+    finally:
+        path.parent.chmod(0o755)
+    assert path.read_bytes() == before
+
+
+def test_a_failed_check_keeps_the_old_file(tmp_path):
+    target = tmp_path / "file"
+    atomic.write_bytes(target, b"old")
+
+    def refuse(data: bytes) -> None:
+        raise ValueError(f"{len(data)} bytes")
+
+    with pytest.raises(ValueError, match="3 bytes"):
+        atomic.write_bytes(target, b"new", check=refuse)
+    assert target.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_leftovers_are_removed_but_not_those_of_a_living_writer(tmp_path):
+    target = tmp_path / "result.nc"
+    dead = tmp_path / ".result.nc.0123456789ab.partial"
+    other = tmp_path / ".other.nc.0123456789ab.partial"
+    dead.touch()
+    other.touch()
+    with atomic._temporary(target) as (_, living):
+        assert atomic.remove_leftovers(target) == [dead]
+        assert living.exists()
+        assert other.exists()
+
+
+KILL_LOOP = """
+import os, random, signal, sys, time
+sys.path.insert(0, sys.argv[1])
+from pathlib import Path
+from test_store import dataset, store, xr
+
+path, kills = Path(sys.argv[2]), int(sys.argv[3])
+versions = [dataset(1, 2000), dataset(2, 3000)]
+store.write(path, versions[0])
+started = time.perf_counter()
+store.write(path, versions[1])
+duration = time.perf_counter() - started
+generator = random.Random(0)
+seen = interrupted = 0
+for kill in range(kills):
+    child = os.fork()
+    if child == 0:
+        while True:
+            for version in versions:
+                store.write(path, version)
+    time.sleep(duration * generator.uniform(0.2, 3))
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    interrupted += any(path.parent.glob(".*.partial"))
+    back = store.read(path)[""]
+    seen += any(back.equals(version) for version in versions)
+store.write(path, versions[0])
+print(seen, interrupted, sorted(entry.name for entry in path.parent.iterdir()))
+"""
+
+
+def test_killed_at_random_moments(path):
+    command = [sys.executable, "-c", KILL_LOOP, Path(__file__).parent, path, str(KILLS)]
+    output = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60 + KILLS).stdout
+    seen, interrupted, names = output.split(maxsplit=2)
+    assert int(seen) == KILLS
+    assert int(interrupted) > 0, "no kill fell into a write: the test proves nothing"
+    assert names.strip() == "['result.nc']"

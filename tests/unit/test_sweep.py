@@ -1,0 +1,277 @@
+"""One map: same results wherever it runs, nothing finished is lost, every failure names its task."""
+
+import dataclasses
+import functools
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from granular_response import sweep
+from granular_response.sweep import SweepError, digest, map_tasks
+
+
+def response(item):
+    seed, size = item
+    return np.random.default_rng(seed).normal(size=size).cumsum()
+
+
+def slow_first(item):
+    time.sleep(0.2 if item == 0 else 0.0)
+    return item
+
+
+def fail_at_three(item):
+    if item == 3:
+        raise ValueError("no equilibrium")
+    return item
+
+
+def note(item, folder, die_at=None, always=False):
+    """Leave a mark for each start; kill this process at one item, the first time or always."""
+    with open(Path(folder) / str(item), "a") as file:
+        file.write(f"{os.getpid()}\n")
+    if item == die_at and (always or len(starts(folder, item)) == 1):
+        os.kill(os.getpid(), signal.SIGKILL)
+    time.sleep(0.05)
+    return item * item
+
+
+def starts(folder, item):
+    mark = Path(folder) / str(item)
+    return mark.read_text().split() if mark.exists() else []
+
+
+ITEMS = [(seed, 50 + seed) for seed in range(7)]
+
+
+def assert_same(one, other):
+    assert len(one) == len(other)
+    for a, b in zip(one, other, strict=True):
+        assert a.tobytes() == b.tobytes()
+
+
+def test_results_are_equal_for_any_number_of_workers():
+    expected = [response(item) for item in ITEMS]
+    assert_same(map_tasks(response, ITEMS, workers=1), expected)
+    assert_same(map_tasks(response, ITEMS, workers=2), expected)
+    assert_same(map_tasks(response, iter(ITEMS)), expected)
+
+
+def test_results_have_the_order_of_the_items():
+    assert map_tasks(slow_first, range(5), workers=2) == [0, 1, 2, 3, 4]
+
+
+def test_nothing_to_do():
+    assert map_tasks(response, [], workers=2) == []
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_progress_counts_to_the_end(workers):
+    calls = []
+    map_tasks(slow_first, range(4), workers=workers, progress=lambda *call: calls.append(call), what="scenes")
+    assert calls == [(done, 4, "scenes") for done in range(5)]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_failing_task_is_named(workers):
+    with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) failed: ValueError: no equilibrium") as caught:
+        map_tasks(fail_at_three, range(6), workers=workers)
+    assert isinstance(caught.value.__cause__, ValueError)
+
+
+@pytest.mark.parametrize("workers", [0, -1])
+def test_the_number_of_workers_is_checked(workers):
+    with pytest.raises(SweepError, match=f"workers = {workers}: must be 1 or more"):
+        map_tasks(slow_first, [1], workers=workers)
+
+
+def test_a_killed_worker_loses_only_what_was_in_flight(tmp_path):
+    task = functools.partial(note, folder=tmp_path, die_at=3)
+    assert map_tasks(task, range(8), workers=2) == [item * item for item in range(8)]
+    again = [item for item in range(8) if len(starts(tmp_path, item)) > 1]
+    assert 3 in again
+    assert len(again) <= 2
+
+
+def test_a_task_that_kills_every_worker_is_named(tmp_path):
+    task = functools.partial(note, folder=tmp_path, die_at=3, always=True)
+    with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) killed its worker process 3 times"):
+        map_tasks(task, range(6), workers=2)
+    assert len(starts(tmp_path, 3)) == sweep.ATTEMPTS
+
+
+def test_an_interrupted_sweep_continues(tmp_path):
+    marks, kept = tmp_path / "marks", tmp_path / "kept"
+    marks.mkdir()
+    seen = []
+
+    def interrupt(done, total, what):
+        seen.append(done)
+        if done == 3:
+            raise KeyboardInterrupt
+
+    task = functools.partial(note, folder=marks)
+    with pytest.raises(KeyboardInterrupt):
+        map_tasks(task, range(8), workers=2, checkpoint=kept, progress=interrupt)
+    finished = len(list(kept.iterdir()))
+    assert finished == 3
+    seen.clear()
+    result = map_tasks(
+        task, range(8), workers=2, checkpoint=kept, progress=lambda done, total, what: seen.append(done)
+    )
+    assert result == [item * item for item in range(8)]
+    assert seen == [3, 4, 5, 6, 7, 8]
+    assert sum(len(starts(marks, item)) for item in range(8)) <= 8 + 2  # again: at most one per worker
+
+
+KILLED = """
+import functools, sys
+sys.path.insert(0, sys.argv[1])
+from test_sweep import map_tasks, note
+if __name__ == "__main__":
+    map_tasks(functools.partial(note, folder=sys.argv[2]), range(40), workers=2, checkpoint=sys.argv[3])
+"""
+
+
+def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
+    marks, kept, script = tmp_path / "marks", tmp_path / "kept", tmp_path / "script.py"
+    marks.mkdir()
+    script.write_text(KILLED)
+    run = subprocess.Popen([sys.executable, script, Path(__file__).parent, marks, kept])
+    deadline = time.monotonic() + 60
+    while not kept.exists() or len(list(kept.glob("*.pickle"))) < 5:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    run.kill()
+    run.wait()
+    workers = {int(pid) for item in range(40) for pid in starts(marks, item)}
+    while any(alive(pid) for pid in workers):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    done = len(list(kept.glob("*.pickle")))
+    before = sum(len(starts(marks, item)) for item in range(40))
+    assert done < 40
+    task = functools.partial(note, folder=marks)
+    task.keywords["folder"] = str(marks)  # as the script had it
+    assert map_tasks(task, range(40), workers=1, checkpoint=kept) == [item * item for item in range(40)]
+    assert sum(len(starts(marks, item)) for item in range(40)) - before == 40 - done
+
+
+def alive(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+def test_a_result_that_does_not_load_is_computed_again(tmp_path):
+    expected = map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path)
+    for file in tmp_path.iterdir():
+        file.write_bytes(file.read_bytes()[:-3])
+    assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path) == expected
+
+
+def test_the_environment_names_the_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv(sweep.CHECKPOINT_VARIABLE, str(tmp_path / "kept"))
+    map_tasks(slow_first, range(3), workers=1)
+    assert len(list((tmp_path / "kept").iterdir())) == 3
+
+
+def test_another_function_or_item_finds_nothing(tmp_path):
+    marks = tmp_path / "marks"
+    marks.mkdir()
+    task = functools.partial(note, folder=marks)
+    map_tasks(task, range(3), workers=1, checkpoint=tmp_path / "kept")
+    map_tasks(task, range(1, 4), workers=1, checkpoint=tmp_path / "kept")
+    assert [len(starts(marks, item)) for item in range(4)] == [1, 1, 1, 1]
+    map_tasks(functools.partial(task, die_at=99), range(1, 4), workers=1, checkpoint=tmp_path / "kept")
+    assert [len(starts(marks, item)) for item in range(4)] == [1, 2, 2, 2]
+
+
+@dataclasses.dataclass(frozen=True)
+class Task:
+    friction: float
+    forces: np.ndarray
+
+
+def test_digests_are_equal_for_equal_values_only():
+    def task(friction=0.2, last=3.0):
+        return {"task": Task(friction, np.array([1.0, last])), "seed": 1}
+
+    assert digest(task()) == digest(dict(reversed(task().items())))
+    different = [task(), task(friction=0.3), task(last=4.0), (1, 2), [1, 2], (1, 2.0), "12", b"12", {1, 2}]
+    assert len({digest(value) for value in different}) == len(different)
+
+
+def test_digests_are_equal_in_every_process():
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[1]); from test_sweep import *;"
+        "print(digest((Task, {'b', 'a'})))"
+    )
+    for seed in ("1", "2"):
+        name = subprocess.run(
+            [sys.executable, "-c", script, Path(__file__).parent],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout.strip()
+        assert name == digest((Task, {"a", "b"}))
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """Two worker processes and a scheduler on this machine."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        silence_logs=50,
+        host="127.0.0.1",
+    ) as cluster:
+        yield cluster
+
+
+class TestDask:
+    """A real cluster."""
+
+    def test_results_are_equal_to_local_ones(self, cluster):
+        results = map_tasks(response, ITEMS, scheduler=cluster.scheduler_address)
+        assert_same(results, map_tasks(response, ITEMS, workers=1))
+
+    def test_the_environment_names_the_scheduler(self, cluster, tmp_path, monkeypatch):
+        monkeypatch.setenv("DASK_SCHEDULER_ADDRESS", cluster.scheduler_address)
+        map_tasks(functools.partial(note, folder=tmp_path), range(3), workers=1)
+        assert str(os.getpid()) not in {pid for item in range(3) for pid in starts(tmp_path, item)}
+
+    def test_a_killed_worker_loses_only_what_was_in_flight(self, cluster, tmp_path):
+        marks = tmp_path / "marks"
+        marks.mkdir()
+        task = functools.partial(note, folder=marks, die_at=5)
+        result = map_tasks(task, range(16), scheduler=cluster.scheduler_address, checkpoint=tmp_path / "kept")
+        assert result == [item * item for item in range(16)]
+        assert len(starts(marks, 5)) == 2
+        assert len(list((tmp_path / "kept").iterdir())) == 16
+
+    def test_a_failing_task_is_named(self, cluster):
+        with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) failed: ValueError: no equilibrium"):
+            map_tasks(fail_at_three, range(6), scheduler=cluster.scheduler_address)
+
+    def test_no_cluster_is_an_error_of_one_line(self, monkeypatch):
+        with pytest.raises(SweepError, match=r"no Dask scheduler answers at nowhere://") as caught:
+            map_tasks(response, ITEMS, scheduler="nowhere://127.0.0.1:1")
+        assert "\n" not in str(caught.value)
+
+    def test_without_distributed_the_error_says_what_to_install(self, monkeypatch):
+        monkeypatch.setitem(sys.modules, "distributed", None)
+        with pytest.raises(SweepError, match=r"granular-response\[dask\]"):
+            map_tasks(response, ITEMS, scheduler="tcp://127.0.0.1:8786")
