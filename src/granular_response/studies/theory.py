@@ -1,0 +1,199 @@
+"""Predictions without simulation: Fig. 1, the peak criterion of Sec. V.C, and the lattice moduli tested.
+
+``predictions`` holds the pressure on the floor under the elliptic and the hyperbolic description,
+``peak_criterion`` the function r and its roots, ``moduli`` eqs. (7)-(10) beside the moduli of a periodic
+lattice that was strained.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, get_args
+
+import numpy as np
+import xarray as xr
+
+from granular_response.theory import crossover, half_plane, lattice, rays
+from granular_response.theory.lattice import Springs
+from granular_response.theory.moduli import Moduli
+from granular_response.theory.slab import Slab
+
+#: Lattices whose moduli are measured: equal bonds, normal springs alone, no horizontal ones, all different.
+SPRINGS = (
+    Springs.uniform(1.0, 0.0),
+    Springs.uniform(1.0, 0.8),
+    Springs(0.25, 1.0),
+    Springs(0.0, 1.0, 0.0, 0.3),
+    Springs(0.7, 1.3, 0.2, 0.9),
+    Springs(2.0, 0.5, 1.7, 0.1),
+)
+ROTATIONS = get_args(lattice.Rotations)
+BODIES = get_args(crossover.Body)
+
+_BETA = np.linspace(0.0, 1.0, 101)
+
+
+def simulate(
+    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Any = None
+) -> dict[str, xr.Dataset]:
+    """Datasets ``predictions``, ``peak_criterion`` and ``moduli``; fractions of a second.
+
+    Parameters
+    ----------
+    parameters
+        ``stiffness_ratio`` k_T/k_N >= 0 of the isotropic lattice (it fixes the Poisson ratio), ``ray_angle``
+        in degrees to the vertical (0 to 90), ``diffusion_length`` of the rays in radii (> 0), ``depths`` of
+        the slabs for the rays in radii (> 0), ``half_width`` of the profiles in slab heights (> 0) and their
+        ``points`` (an odd number, at least 3, so that x = 0 is one). Other keys are not read.
+    workers, progress
+        As for every study; not needed here.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is missing or out of range.
+    """
+    del workers, progress
+    values = _Parameters(parameters)
+    return {
+        "predictions": _predictions(values),
+        "peak_criterion": _peak_criterion(),
+        "moduli": _moduli(),
+    }
+
+
+class _Parameters:
+    """The keys this study reads, checked."""
+
+    def __init__(self, parameters: Mapping[str, Any]) -> None:
+        def number(key: str, allowed: str, accept: Callable[[float], bool]) -> float:
+            value = _present(parameters, key)
+            if isinstance(value, bool) or not isinstance(value, int | float) or not accept(float(value)):
+                raise ValueError(f"{key} = {value!r}: must be {allowed}")
+            return float(value)
+
+        self.stiffness_ratio = number("stiffness_ratio", "a number from 0", lambda v: 0.0 <= v < np.inf)
+        self.ray_angle = number("ray_angle", "degrees from 0 to below 90", lambda v: 0.0 <= v < 90.0)
+        self.diffusion_length = number("diffusion_length", "a positive number", lambda v: 0.0 < v < np.inf)
+        self.half_width = number("half_width", "a positive number", lambda v: 0.0 < v < np.inf)
+        self.points = int(number("points", "an odd whole number from 3", lambda v: v >= 3 and v % 2 == 1))
+        depths = _present(parameters, "depths")
+        try:
+            self.depths = np.asarray(depths, dtype=float)
+        except (TypeError, ValueError):
+            self.depths = np.empty(0)
+        if (
+            self.depths.ndim != 1
+            or not self.depths.size
+            or not np.all((self.depths > 0) & (self.depths < np.inf))
+        ):
+            raise ValueError(f"depths = {depths!r}: must be a list of positive numbers")
+
+
+def _present(parameters: Mapping[str, Any], key: str) -> Any:
+    if key not in parameters:
+        raise ValueError(f"{key} is missing from the parameters of the study 'theory'")
+    return parameters[key]
+
+
+def _variable(dims: Any, values: Any, long_name: str) -> xr.Variable:
+    return xr.Variable(dims, values, {"long_name": long_name, "units": "1"})
+
+
+def _predictions(values: _Parameters) -> xr.Dataset:
+    x = np.linspace(-values.half_width, values.half_width, values.points)
+    poisson_ratio = lattice.poisson_ratio(1.0, values.stiffness_ratio)
+    solid = Moduli.isotropic(poisson_ratio)
+    pressure = "floor pressure times slab height / force"
+    hyperbolic = [
+        depth
+        * rays.pressure(
+            x * depth,
+            depth,
+            angle=np.radians(values.ray_angle),
+            diffusion_length=values.diffusion_length,
+        )
+        for depth in values.depths
+    ]
+    return xr.Dataset(
+        {
+            "slab_rough": _variable(
+                "x", Slab(1.0, solid, "rough").floor_pressure(x), f"{pressure}, rough floor"
+            ),
+            "slab_smooth": _variable(
+                "x", Slab(1.0, solid, "smooth").floor_pressure(x), f"{pressure}, smooth floor"
+            ),
+            "half_plane": _variable(
+                "x",
+                half_plane.pressure(x, 1.0, solid),
+                "pressure times depth / force in a half plane, same depth",
+            ),
+            "rays": _variable(("depth", "x"), np.stack(hyperbolic), f"{pressure}, two diffusing rays"),
+            "poisson_ratio": _variable(
+                (), poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"
+            ),
+            "ray_angle": _variable((), values.ray_angle, "angle of the rays to the vertical in degrees"),
+            "diffusion_length": _variable(
+                (), values.diffusion_length, "squared width of a ray over depth, in mean disk radii"
+            ),
+        },
+        coords={
+            "x": _variable("x", x, "distance from the force in slab heights"),
+            "depth": _variable("depth", values.depths, "slab height in mean disk radii"),
+        },
+    )
+
+
+def _peak_criterion() -> xr.Dataset:
+    names = ("rotations", "beta")
+    criterion = [[lattice.peak_criterion(beta, rotations) for beta in _BETA] for rotations in ROTATIONS]
+    ratio = [[crossover.stiffness_ratio(body, rotations) for body in BODIES] for rotations in ROTATIONS]
+    return xr.Dataset(
+        {
+            "criterion": _variable(
+                names, criterion, "r of the lattice without horizontal springs; two peaks if < 0"
+            ),
+            "root": _variable(
+                "rotations", [lattice.peak_criterion_root(r) for r in ROTATIONS], "k_2t/k_2n at which r = 0"
+            ),
+            "root_closed_form": _variable(
+                "rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"
+            ),
+            "crossover": _variable(
+                ("rotations", "body"),
+                ratio,
+                "k_2t/k_2n at which the pressure below the force turns into a minimum",
+            ),
+        },
+        coords={
+            "beta": _variable("beta", _BETA, "k_2t/k_2n"),
+            "rotations": _variable("rotations", list(ROTATIONS), "whether the disks turn"),
+            "body": _variable("body", list(BODIES), "elastic body that carries the force"),
+        },
+    )
+
+
+def _moduli() -> xr.Dataset:
+    component = ["xx", "zz", "xz"]
+    formula = [[lattice.moduli(springs, r).matrix() for springs in SPRINGS] for r in ROTATIONS]
+    measured = [[lattice.measured_moduli(springs, r) for springs in SPRINGS] for r in ROTATIONS]
+    error = np.abs(np.subtract(measured, formula)).max(axis=(2, 3)) / np.max(formula, axis=(2, 3))
+    dims = ("rotations", "case", "stress", "strain")
+    return xr.Dataset(
+        {
+            "formula": _variable(dims, formula, "modulus of eqs. (7)-(10), or with free rotations"),
+            "measured": _variable(dims, measured, "modulus of the strained periodic lattice, relaxed"),
+            "error": _variable(dims[:2], error, "largest difference of the two / largest modulus"),
+            "springs": _variable(
+                ("case", "spring"),
+                [[s.k1n, s.k2n, s.k1t, s.k2t] for s in SPRINGS],
+                "stiffness of the lattice's springs",
+            ),
+        },
+        coords={
+            "rotations": _variable("rotations", list(ROTATIONS), "whether the disks turn"),
+            "spring": _variable("spring", ["k1n", "k2n", "k1t", "k2t"], "spring of Fig. 11"),
+            "stress": _variable("stress", component, "stress component"),
+            "strain": _variable("strain", component, "strain component (tensor)"),
+        },
+    )

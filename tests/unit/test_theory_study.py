@@ -1,0 +1,86 @@
+"""The theory study and its figures, end to end through a file."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import spring_model, style
+from granular_response.figures import theory as figures
+from granular_response.studies import theory
+
+PARAMETERS = {
+    "stiffness_ratio": 0.8,
+    "ray_angle": 30.0,
+    "diffusion_length": 0.5,
+    "depths": [26.0, 52.0],
+    "half_width": 3.0,
+    "points": 121,
+    "some_other_key": "left alone",
+}
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("theory") / "theory.nc"
+    store.write(path, theory.simulate(PARAMETERS))
+    return store.read(path)
+
+
+def test_predictions_are_symmetric_and_carry_the_force(datasets) -> None:
+    data = datasets["predictions"]
+    step = float(data["x"][1] - data["x"][0])
+    for name, missing in (("slab_rough", 0.01), ("slab_smooth", 0.02), ("half_plane", 0.02), ("rays", 1e-6)):
+        pressure = data[name].values
+        np.testing.assert_allclose(pressure, pressure[..., ::-1], rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(pressure.sum(axis=-1) * step, 1.0, atol=missing)
+    assert float(data["x"][60]) == 0.0
+    assert int(data["slab_rough"].argmax("x")) == 60
+    assert float(abs(data["x"][int(data["rays"][1].argmax("x"))])) == pytest.approx(
+        np.tan(np.pi / 6), abs=step
+    )
+
+
+def test_claims_can_be_read_off(datasets) -> None:
+    criterion = datasets["peak_criterion"]
+    root = criterion["root"].sel(rotations="suppressed")
+    assert round(float(root), 4) == 0.2915
+    np.testing.assert_allclose(criterion["root"], criterion["root_closed_form"], atol=1e-14)
+    r = criterion["criterion"].sel(rotations="suppressed")
+    assert float(r.interp(beta=root)) == pytest.approx(0.0, abs=1e-4)
+    assert float(datasets["moduli"]["error"].max()) < 1e-13
+
+
+def test_figures(datasets) -> None:
+    drawn = {**figures.draw(datasets), **spring_model.draw_spring_model()}
+    assert list(drawn) == ["fig01_predictions", "fig11_spring_model"]
+    elliptic, hyperbolic = drawn["fig01_predictions"].axes
+    np.testing.assert_array_equal(elliptic.lines[0].get_ydata(), datasets["predictions"]["slab_rough"])
+    assert len(hyperbolic.get_legend().get_texts()) == 2
+    labels = sorted(text.get_text() for text in drawn["fig11_spring_model"].axes[0].texts)
+    assert labels == ["$k_1^n$", "$k_1^t$", "$k_2^n$", "$k_2^n$", "$k_2^t$", "$k_2^t$"]
+    for figure in drawn.values():
+        assert style.render(figure) == style.render(figure)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("stiffness_ratio", -0.1),
+        ("ray_angle", 90.0),
+        ("ray_angle", "steep"),
+        ("diffusion_length", 0.0),
+        ("depths", []),
+        ("depths", [1.0, -2.0]),
+        ("depths", "deep"),
+        ("half_width", True),
+        ("points", 120),
+    ],
+)
+def test_bad_parameter_is_named(key: str, value) -> None:
+    with pytest.raises(ValueError, match=f"{key} = .*: must be"):
+        theory.simulate({**PARAMETERS, key: value})
+
+
+def test_missing_parameter_is_named() -> None:
+    with pytest.raises(ValueError, match="ray_angle is missing"):
+        theory.simulate({key: value for key, value in PARAMETERS.items() if key != "ray_angle"})
