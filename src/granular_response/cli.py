@@ -18,8 +18,8 @@ PAPER = (
     "Granular Solids to a Localized Force, arXiv:0711.4243"
 )
 PACKAGE = (
-    f"granular-response {__version__}: quasi-static response of two-dimensional granular solids to a "
-    "localized force"
+    "granular-response: quasi-static response of two-dimensional granular solids to a localized force, "
+    f"version {__version__}"
 )
 BIBTEX = f"""\
 @article{{goldenberg-goldhirsch,
@@ -51,6 +51,12 @@ def _examples(*lines: str) -> str:
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
 
+def _print_version(asked: bool) -> None:
+    if asked:
+        print_version()
+        raise typer.Exit
+
+
 @app.callback(
     epilog=_examples(
         "granular-response run examples/slab.yaml -o slab.nc",
@@ -59,13 +65,12 @@ def _examples(*lines: str) -> str:
     )
 )
 def start(
-    context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Print the version and stop.", callback=_print_version, is_eager=True),
+    ] = False,
 ) -> None:
     """Quasi-static response of two-dimensional granular solids to a localized force."""
-    if version:
-        print_version()
-        raise typer.Exit
 
 
 @app.command(
@@ -186,12 +191,13 @@ def show(
     Scene, certificate and floor response of a result; groups and dimensions of a study.
     """
     from rich.console import Console
+    from rich.text import Text
 
     from .summary import summarise
 
     console = Console(highlight=False)
     for part in summarise(file):
-        console.print(part)
+        console.print(part, soft_wrap=isinstance(part, Text))
 
 
 @app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))

@@ -64,13 +64,14 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
 
 
 def _certificate(result: xr.Dataset) -> Table:
-    names = [str(name) for name in result if str(name).startswith("certificate_")]
     table = Table(box=None, pad_edge=False)
-    table.add_column("load factor", justify="right")
-    for name in names:
-        table.add_column(name.removeprefix("certificate_").replace("_", " "), justify="right")
-    for place, factor in enumerate(result["load_factor"].values):
-        table.add_row(f"{factor:g}", *(f"{float(result[name][place]):.3g}" for name in names))
+    table.add_column("at load factor", style="dim")
+    for factor in result["load_factor"].values:
+        table.add_column(f"{factor:g}", justify="right")
+    for name in map(str, result):
+        if name.startswith("certificate_"):
+            title = name.removeprefix("certificate_").replace("_", " ")
+            table.add_row(title, *(f"{value:.3g}" for value in result[name].values))
     return table
 
 

@@ -1,0 +1,308 @@
+"""The command line as a user has it: a process of its own, its output, its exit code."""
+
+import io
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from rich.console import Console
+
+from granular_response import __version__, cli, floating_point, pipeline, store, terminal
+from granular_response.pipeline import drawing, simulation
+from granular_response.scene import SceneError
+
+ROOT = Path(__file__).parents[2]
+COMMANDS = ["run", "simulate", "draw", "show", "cite", "version"]
+SCENE = """\
+packing: {kind: slab, layers: 3, disks_per_row: 5}
+contact: {friction: 0.0}
+loads: [{disk: top-centre, force: [0.0, -1.0]}]
+"""
+
+
+def call(*arguments, folder=None, **options):
+    command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
+
+
+def assert_one_line_error(finished, *parts):
+    assert finished.returncode == 2
+    assert finished.stderr.count("\n") == 1
+    for part in ("granular-response: ", *parts):
+        assert part in finished.stderr
+
+
+def test_help_answers_within_half_a_second():
+    durations = []
+    for _ in range(5):
+        started = time.perf_counter()
+        finished = call("--help")
+        durations.append(time.perf_counter() - started)
+        assert finished.returncode == 0
+    assert min(durations) < 0.5
+
+
+@pytest.mark.parametrize("command", [None, *COMMANDS])
+def test_every_help_has_examples(command):
+    finished = call(*([command] if command else []), "--help")
+    assert finished.returncode == 0
+    examples = finished.stdout.partition("Examples:")[2].strip().splitlines()
+    assert examples
+    assert all(re.match(r"\s*granular-response [a-z]+", line) for line in examples)
+    if command:
+        assert f"granular-response {command}" in examples[0]
+
+
+def test_no_command_shows_the_help():
+    assert "Commands:" in call().stdout + call().stderr
+
+
+def test_version():
+    assert call("version").stdout == f"granular-response {__version__}\n"
+    assert call("--version").stdout == f"granular-response {__version__}\n"
+
+
+def test_cite_agrees_with_the_citation_file():
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert citation["version"] == __version__
+    reference = citation["references"][0]
+    identifier = reference["identifiers"][0]["value"]
+    for options in ([], ["--bibtex"]):
+        text = " ".join(call("cite", *options).stdout.split())
+        assert reference["title"] in text
+        assert identifier.removeprefix("arXiv:") in text
+        assert all(author["family-names"] in text for author in reference["authors"])
+        assert citation["title"] in text
+        assert __version__ in text
+
+
+def test_run_and_show(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    finished = call("run", "scene.yaml", "-o", "out/result.nc", folder=tmp_path)
+    assert finished.returncode == 0, finished.stderr
+    assert finished.stderr == ""  # no progress where nobody looks
+    assert "out/result.nc: 14 disks" in finished.stdout
+    attributes = store.read_attributes(tmp_path / "out" / "result.nc")
+    assert 0 < attributes["wall_clock_seconds"] < 600
+    assert attributes["package_version"] == __version__
+    result = store.read(tmp_path / "out" / "result.nc")[""]
+    assert float(result["floor_response"].sum()) == pytest.approx(1.0, abs=1e-8)
+
+    shown = call("show", "out/result.nc", folder=tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    assert re.search(r"1\.0000000\d\d|0\.999999999", shown.stdout)
+    for part in ("certificate", "force residual", "layers: 3", "minimise"):
+        assert part in shown.stdout
+
+
+def test_run_by_another_method(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    assert_one_line_error(
+        call("run", "scene.yaml", "-o", "result.nc", "--method", "magic", folder=tmp_path),
+        "protocol.method",
+        "magic",
+        "minimise",
+    )
+    assert not (tmp_path / "result.nc").exists()
+    finished = call("run", "scene.yaml", "-o", "result.nc", "--method", "minimise", folder=tmp_path)
+    assert finished.returncode == 0, finished.stderr
+    assert "method: minimise" in store.read_attributes(tmp_path / "result.nc")["scene"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        (["run", "absent.yaml", "-o", "result.nc"], ["absent.yaml: no such file"]),
+        (["run", "wrong.yaml", "-o", "result.nc"], ["wrong.yaml", "layers", "-3"]),
+        (["run", "scene.yaml", "-o", "."], ["cannot be written"]),
+        (["run", "scene.yaml", "-o", "scene.yaml/result.nc"], ["cannot be written"]),
+        (["show", "absent.nc"], ["absent.nc: no such file"]),
+        (["show", "scene.yaml"], ["scene.yaml: is not a netCDF-4 file"]),
+        (["simulate", "nonsense"], ["nonsense: no such figure group to simulate"]),
+        (["simulate", "theory"], ["params.yaml: cannot be read"]),
+        (["draw", "nonsense"], ["nonsense: no such figure group to draw"]),
+        (["draw", "theory"], ["data/theory.nc: no such file"]),
+    ],
+)
+def test_expected_errors_are_one_line_and_code_2(tmp_path, arguments, parts):
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    (tmp_path / "wrong.yaml").write_text("packing: {kind: slab, layers: -3}\n")
+    assert_one_line_error(call(*arguments, folder=tmp_path), *parts)
+    assert (tmp_path / "scene.yaml").read_text() == SCENE
+
+
+def test_a_failed_run_keeps_the_old_result(tmp_path):
+    unstable = SCENE.replace("friction: 0.0", "friction: 0.2") + "protocol: {time_step: 0.5}\n"
+    (tmp_path / "scene.yaml").write_text(unstable)
+    store.write(tmp_path / "result.nc", xr.Dataset(attrs={"old": 1}))
+    before = (tmp_path / "result.nc").read_bytes()
+    assert_one_line_error(call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path), "time_step")
+    assert (tmp_path / "result.nc").read_bytes() == before
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["result.nc", "scene.yaml"]
+
+
+LABEL = {"long_name": "square", "units": "1"}
+
+
+def square(item):
+    if item < 0:
+        raise SceneError("count = -1: must be 0 or more")
+    return item * item
+
+
+class Study:
+    """Stands where the module of a figure group would."""
+
+    @staticmethod
+    def simulate(parameters, *, workers=None, progress=None):
+        from granular_response.sweep import map_tasks
+
+        squares = map_tasks(square, range(parameters["count"]), workers=workers, progress=progress)
+        return {"squares": xr.Dataset({"square": ("item", np.array(squares), LABEL)})}
+
+    @staticmethod
+    def draw(datasets):
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(2, 2))
+        figure.add_subplot().plot(datasets["squares"]["square"])
+        return {"fig99_squares": figure}
+
+
+@pytest.fixture
+def group(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "params.yaml").write_text("common: {count: 2, scale: 1e-3}\nsquares: {count: 4}\n")
+    monkeypatch.setattr(pipeline, "_modules", lambda verb: ["squares"])
+    monkeypatch.setattr(pipeline, "_verb", lambda verb, name: getattr(Study, verb))
+    return "squares"
+
+
+def test_a_group_has_the_common_parameters_and_its_own(group):
+    assert simulation.parameters(group) == {"count": 4, "scale": 1e-3}
+    with pytest.raises(pipeline.GroupError, match=r"params.yaml: section cubes is missing"):
+        simulation.parameters("cubes")
+
+
+def test_simulate_and_draw(group, tmp_path):
+    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
+    assert store.read("data/squares.nc")["squares"]["square"].values.tolist() == [0, 1, 4, 9]
+    attributes = store.read_attributes("data/squares.nc")
+    assert yaml.safe_load(attributes["parameters"])["count"] == 4
+    paths = drawing.draw(group)
+    assert sorted(map(str, paths)) == [f"figures/squares/fig99_squares.{kind}" for kind in ("pdf", "png")]
+    before = [path.read_bytes() for path in paths]
+    first = Path("data/squares.nc").read_bytes()
+    simulation.simulate(group, workers=1)
+    assert Path("data/squares.nc").read_bytes() == first
+    assert [path.read_bytes() for path in drawing.draw(group)] == before
+    assert sorted(path.name for path in (tmp_path / "data").iterdir()) == ["squares.nc"]
+
+
+def test_finished_tasks_outlive_an_interruption(group, monkeypatch):
+    def interrupt(done, total, what=""):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        simulation.simulate(group, workers=1, progress=interrupt)
+    assert len(list(Path("data/.squares.checkpoint").iterdir())) == 2
+    assert not Path("data/squares.nc").exists()
+    assert "GRANULAR_RESPONSE_CHECKPOINT" not in os.environ
+    calls = []
+    simulation.simulate(group, workers=1, progress=lambda done, total, what="": calls.append(done))
+    assert calls == [2, 3, 4]
+    assert not Path("data/.squares.checkpoint").exists()
+
+
+def test_the_address_of_a_scheduler_reaches_the_sweep(group, monkeypatch):
+    seen = []
+    monkeypatch.setattr(
+        Study, "simulate", lambda *_, **__: seen.append(os.environ["DASK_SCHEDULER_ADDRESS"]) or {}
+    )
+    simulation.simulate(group, scheduler="tcp://127.0.0.1:8786")
+    assert seen == ["tcp://127.0.0.1:8786"]
+    assert "DASK_SCHEDULER_ADDRESS" not in os.environ
+
+
+def test_progress_is_silent_where_nobody_looks():
+    stream = io.StringIO()
+    with terminal.TerminalProgress(Console(file=stream), patience=0) as progress:
+        progress(1, 2, "scenes")
+    assert stream.getvalue() == ""
+
+
+def test_progress_on_a_terminal_shows_time_left_after_a_while():
+    stream = io.StringIO()
+    console = Console(file=stream, force_terminal=True, width=100)
+    with terminal.TerminalProgress(console, patience=0.2) as progress:
+        progress(0, 4, "scenes")
+        assert stream.getvalue() == ""
+        time.sleep(0.3)
+        progress(1, 4, "scenes")
+        time.sleep(0.2)
+        progress(2, 4, "scenes")
+        time.sleep(0.2)
+        progress(0, 1, "paths")
+    shown = stream.getvalue()
+    for part in ("scenes", "50 %", "left", "paths"):
+        assert part in shown
+
+
+def test_an_interrupted_command_ends_quietly(tmp_path):
+    """A real terminal, a real Ctrl-C."""
+    (tmp_path / "scene.yaml").write_text(
+        "packing: {kind: slab}\nprotocol: {method: dynamics, stop_kinetic_energy: 1e-30}\n"
+    )
+    parent, child = pty.openpty()
+    command = [sys.executable, "-m", "granular_response", "run", "scene.yaml", "-o", "result.nc"]
+    run = subprocess.Popen(
+        command, cwd=tmp_path, stdin=child, stdout=child, stderr=child, start_new_session=True
+    )
+    os.close(child)
+    time.sleep(4)
+    assert run.poll() is None
+    run.send_signal(signal.SIGINT)
+    run.wait(timeout=60)
+    output = b""
+    try:
+        while chunk := os.read(parent, 4096):
+            output += chunk
+    except OSError:  # the other end is closed
+        pass
+    os.close(parent)
+    assert run.returncode not in (0, None)
+    assert b"Traceback" not in output
+    assert not (tmp_path / "result.nc").exists()
+
+
+def test_every_command_is_listed():
+    assert sorted(COMMANDS) == sorted(
+        command.name or command.callback.__name__ for command in cli.app.registered_commands
+    )
+
+
+def test_floating_point_choices_are_accepted_by_numpy_without_warning():
+    script = (
+        f"import os; os.environ.update({floating_point.variables()}); import numpy as np;"
+        "from numpy._core._multiarray_umath import __cpu_features__ as f;"
+        "print(f.get('AVX512_SKX', False) and f.get('X86_V4', False))"
+    )
+    run = subprocess.run([sys.executable, "-W", "error", "-c", script], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.strip() == "False"
+
+
+def test_what_the_user_sets_stays(monkeypatch):
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "3")
+    floating_point.pin()
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "3"
