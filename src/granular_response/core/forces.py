@@ -4,10 +4,11 @@ Candidate contacts of disks are stored as *runs*: ``(first disk, second disk, co
 the pairs ``(i + k, j + k)`` for ``k < count``. On a lattice numbered row by row the whole network is three
 runs, one for each lattice direction, and the loop over a run reads and writes contiguous memory, so that the
 compiler vectorises it. A run may hold pairs that never touch (the end of a row and the start of the next):
-they cost a little arithmetic and no branch. Pairs that fit no run are runs of count one, looped over apart.
+they cost a little arithmetic and no branch. Pairs that fit no run are runs of count one at the end of the
+table; they are looped over apart, and most of the work is left out for those that do not touch.
 
-Every pair force goes to a buffer first and is then added to its two disks in a fixed order, so results do not
-depend on vector width.
+Every pair force of a run goes to a buffer first and is then added to its two disks in a fixed order, so results
+do not depend on vector width.
 """
 
 from __future__ import annotations
@@ -92,6 +93,46 @@ def _subtract(target, values):
 
 
 @nb.njit(cache=True, error_model="numpy")
+def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, law, rule, dt):
+    """Add the forces of the runs of count one, ``singles`` (s, 4); other arguments as in :func:`add_pair_forces`."""
+    for r in range(singles.shape[0]):
+        i = singles[r, 0]
+        j = singles[r, 1]
+        k = singles[r, 3]
+        dx = dx0[k] + (q[i] - q[j])
+        dz = dz0[k] + (q[n + i] - q[n + j])
+        square = dx * dx + dz * dz
+        if square >= reach[k] * reach[k]:
+            if spring is not None:
+                spring[k] = 0.0
+            continue
+        distance = math.sqrt(square)
+        inverse = 1.0 / distance
+        nx = dx * inverse
+        nz = dz * inverse
+        du = v[i] - v[j]
+        dw = v[n + i] - v[n + j]
+        fn = normal_force(reach[k] - distance, du * nx + dw * nz, law)
+        px = fn * nx
+        pz = fn * nz
+        if spring is not None:
+            slip = dw * nx - du * nz - (rim[i] + rim[j])
+            if rule == LITERAL:
+                force, new = tangential_literal(spring[k], slip, fn, law, dt)
+            else:
+                force, new = tangential_cut(spring[k], slip, fn, law, dt)
+            spring[k] = new
+            px -= force * nz
+            pz += force * nx
+            f[2 * n + i] += force
+            f[2 * n + j] += force
+        f[i] += px
+        f[j] -= px
+        f[n + i] += pz
+        f[n + j] -= pz
+
+
+@nb.njit(cache=True, error_model="numpy")
 def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, buffer, law, rule, dt):
     """Add the forces of all disk-disk candidates to ``f``.
 
@@ -100,7 +141,7 @@ def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, buffer, law,
     q, v, f : (2 n,) or (3 n,) generalised displacements, velocities, forces. With friction the third part
         of ``f`` collects the sum of tangential forces, not yet multiplied by ``-radius``.
     rim : (n,) radius times angular velocity, or None without friction.
-    runs : (r, 4) int64 candidate runs; ``dx0``, ``dz0``, ``reach`` : (m,) reference separation and sum of
+    runs : (r, 4) int64 candidate runs, those of count one last; ``dx0``, ``dz0``, ``reach`` : (m,) reference separation and sum of
         radii of each slot; ``spring`` : (m,) tangential springs, updated in place, or None without friction.
     buffer : (3, m) or (2, m) scratch.
     law : tuple, see ``core.law``; ``rule`` : CUT or LITERAL; ``dt`` : time step of the spring update.
@@ -116,6 +157,9 @@ def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, buffer, law,
         j0 = runs[r, 1]
         count = runs[r, 2]
         s0 = runs[r, 3]
+        if count == 1:
+            _add_single_pairs(q, v, rim, f, n, runs[r:], dx0, dz0, reach, spring, law, rule, dt)
+            break
         i1 = i0 + count
         j1 = j0 + count
         s1 = s0 + count

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-#: Runs shorter than this are not worth a vector loop of their own.
+#: Runs with fewer pairs than this are not worth a vector loop of their own.
 SHORTEST_RUN = 6
 #: Missing pairs bridged to keep a run together; they cost less than a new run.
 LONGEST_GAP = 3
@@ -62,35 +62,49 @@ def close_pairs(position, radius, skin):
     return first[by].astype(np.int32), second[by].astype(np.int32)
 
 
-def make_runs(first, second, n, longest_gap=LONGEST_GAP):
+def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_RUN):
     """Store pairs as runs of constant index difference.
 
     Parameters
     ----------
-    first, second : (m,) int pairs with ``first < second``; ``n`` : number of disks; ``longest_gap`` : number of
-        missing pairs bridged inside a run.
+    first, second : (m,) int pairs with ``first < second``, each listed once, sorted by ``(first, second)``;
+        ``n`` : number of disks; ``longest_gap`` : number of missing pairs bridged inside a run;
+        ``shortest_run`` : runs that hold fewer of the pairs are taken apart.
 
     Returns
     -------
-    runs : (r, 4) int64 ``first disk, second disk, count, first slot``; ``slot`` : (m,) int64 slot of each given
-        pair. There are ``runs[-1, 2] + runs[-1, 3]`` slots; those of no given pair fill gaps.
+    runs : (r, 4) int64 ``first disk, second disk, count, first slot``, single pairs last in their given order;
+        ``slot`` : (m,) int64 slot of each given pair. There are ``runs[-1, 2] + runs[-1, 3]`` slots; those of no
+        given pair fill gaps.
     """
-    if len(first) == 0:
+    m = len(first)
+    if m == 0:
         return np.zeros((0, 4), np.int64), np.zeros(0, np.int64)
-    i = first.astype(np.int64)
-    offset = second.astype(np.int64) - i
-    by = np.lexsort((i, offset))
-    step = np.diff(i[by])
-    breaks = np.flatnonzero((np.diff(offset[by]) != 0) | (step > longest_gap + 1)) + 1
-    begin = np.concatenate([[0], breaks])
-    end = np.concatenate([breaks, [len(by)]]) - 1
-    i0, i1 = i[by][begin], i[by][end]
-    count = i1 - i0 + 1
-    first_slot = np.concatenate([[0], np.cumsum(count)[:-1]])
-    runs = np.stack([i0, i0 + offset[by][begin], count, first_slot], axis=1)
-    slot = np.empty(len(by), np.int64)
-    which = np.repeat(np.arange(len(begin)), end - begin + 1)
-    slot[by] = first_slot[which] + i[by] - i0[which]
+    i, j = first.astype(np.int64), second.astype(np.int64)
+    by = np.lexsort((i, j - i))
+    a, b = i[by], j[by]
+    new = (np.diff(b - a) != 0) | (np.diff(a) > longest_gap + 1)
+    begin = np.concatenate([[0], np.flatnonzero(new) + 1])
+    members = np.diff(np.concatenate([begin, [m]]))
+    alone = np.empty(m, bool)
+    alone[by] = np.repeat(members < shortest_run, members)
+    kept = members >= shortest_run
+    begin, members = begin[kept], members[kept]
+    count = a[begin + members - 1] - a[begin] + 1
+    first_slot = np.cumsum(count) - count
+    slot = np.empty(m, np.int64)
+    which = np.repeat(np.arange(len(begin)), members)
+    in_run = by[~alone[by]]
+    slot[in_run] = first_slot[which] + i[in_run] - a[begin][which]
+    single = np.flatnonzero(alone)
+    slot[single] = int(count.sum()) + np.arange(len(single))
+    ones = np.ones(len(single), np.int64)
+    runs = np.concatenate(
+        [
+            np.stack([a[begin], b[begin], count, first_slot], axis=1),
+            np.stack([i[single], j[single], ones, slot[single]], axis=1),
+        ]
+    )
     return runs, slot
 
 

@@ -49,14 +49,15 @@ def _fill_tangent(g, nx, nz, normal, tangential, inverse, k, kt_w_t, kt_w_n, kt_
 
 @nb.njit(cache=True, error_model="numpy")
 def pair_statics(
-    q, q0, n, first, second, dx0, dz0, gap0, radius, overlap0, spring0, law,
+    q, q0, n, first, second, dx0, dz0, gap0, radius, overlap0, spring0, limits, law,
     overlap, normal, tangential, spring, status, force, g,
 ):  # fmt: skip
     """Forces of disk-disk contacts at ``q`` and their local tangents.
 
     ``dx0, dz0, gap0`` : (m,) separation and gap at zero displacement; ``overlap0, spring0`` : (m,) at ``q0``
     (``spring0`` None without friction). Filled: ``overlap, normal, tangential, spring, status`` (m,), the
-    generalised contact force ``force`` (dof,) is added to, and ``g`` (m, 3, 3).
+    generalised contact force ``force`` (dof,) is added to, and ``g`` (m, 3, 3). ``limits`` : (m,) gives every
+    contact a fixed Coulomb limit in place of ``mu f_n`` (None: the true law); the tangent is then symmetric.
     """
     k, kt, mu = law[0], law[2], law[4]
     for c in range(first.size):
@@ -103,13 +104,13 @@ def pair_statics(
         share = 1.0 if overlap0[c] >= 0.0 else xi / (xi - overlap0[c])
         s = spring0[c] + share * (mean * turn - roll)
         ft = -kt * s
-        limit = mu * fn
+        limit = mu * fn if limits is None else limits[c]
         if abs(ft) > limit:
             sign = 1.0 if ft > 0.0 else -1.0
             ft = sign * limit
             s = -ft / kt
             status[c] = SLIDING
-            _fill_tangent(g[c], nx, nz, fn, ft, 1.0 / d, k, 0.0, 0.0, 0.0, sign * mu)
+            _fill_tangent(g[c], nx, nz, fn, ft, 1.0 / d, k, 0.0, 0.0, 0.0, sign * mu if limits is None else 0.0)
         else:
             stiff = kt * share
             _fill_tangent(
@@ -129,7 +130,7 @@ def pair_statics(
 
 @nb.njit(cache=True, error_model="numpy")
 def wall_statics(
-    q, q0, n, disk, wall_normal, gap0, radius, overlap0, spring0, law,
+    q, q0, n, disk, wall_normal, gap0, radius, overlap0, spring0, limits, law,
     overlap, normal, tangential, spring, status, force, g,
 ):  # fmt: skip
     """As :func:`pair_statics` for disk-wall contacts; ``wall_normal`` : (w, 2)."""
@@ -160,13 +161,13 @@ def wall_statics(
             share = 1.0 if overlap0[c] >= 0.0 else xi / (xi - overlap0[c])
             s = spring0[c] + share * slip
             ft = -kt * s
-            limit = mu * fn
+            limit = mu * fn if limits is None else limits[c]
             if abs(ft) > limit:
                 sign = 1.0 if ft > 0.0 else -1.0
                 ft = sign * limit
                 s = -ft / kt
                 status[c] = SLIDING
-                _fill_tangent(g[c], nx, nz, fn, ft, 0.0, k, 0.0, 0.0, 0.0, sign * mu)
+                _fill_tangent(g[c], nx, nz, fn, ft, 0.0, k, 0.0, 0.0, 0.0, sign * mu if limits is None else 0.0)
             else:
                 stiff = kt * share
                 _fill_tangent(g[c], nx, nz, fn, ft, 0.0, k, stiff, 0.0, stiff, 0.0)

@@ -1,9 +1,14 @@
 """Quasi-static loading: a sequence of equilibria under a growing load (the limit of an infinitely slow ramp).
 
-Each increment is solved with the return map of ``core.statics``. Where a contact goes on opening, sliding or
-sticking throughout an increment the return map is exact for any length of the increment, so steps are chosen by
-what Newton's method converges on. Where it does not converge even on the shortest step, explicit dynamics
-carries the packing over the next bit of load and statics takes over again; both are recorded.
+Each increment is solved with the return map of ``core.statics`` (see :mod:`.increment`). Where a contact goes on
+opening, sliding or sticking throughout an increment the return map is exact for any length of the increment.
+Where none is found on the shortest increment, or the equilibrium has lost its stability, the branch has ended:
+explicit dynamics carries the packing to the next equilibrium and statics goes on from there. Every such crossing
+is recorded with its load and its reason.
+
+Stability is looked at about once per mean disk weight of load. With sliding contacts a negative eigenvalue of the
+tangent is only a suspicion (the tangent belongs to one direction of sliding), so it is tried: dynamics starts
+from the state displaced a little along the suspicious direction, and either comes back or leaves.
 """
 
 from __future__ import annotations
@@ -14,32 +19,44 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .dynamics import Dynamics, Stop, relax
-from .equilibrium import EquilibriumError, certify, external_force, finish, newton
+from .equilibrium import EquilibriumError, certify, external_force, finish
+from .increment import Work, solve_increment
 from .problem import Problem
 from .state import State
-from .system import StaticSystem
+from .system import Configuration, StaticSystem, Trial
 
-#: First and shortest load increments, in mean disk weights.
-FIRST_STEP = 0.5
-SHORTEST_STEP = 0.05
+#: First, longest and shortest load increments, in mean disk weights.
+FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1.0, 2.0, 0.01
 #: Load that dynamics crosses at once, in mean disk weights.
-CROSSING = 2.0
-#: Newton iterations after which the increment is halved instead.
-ITERATIONS = 12
+CROSSING = 0.1
+#: Load between two looks at the stability.
+STABILITY_STEP = 1.0
+#: Displacement along a suspicious direction with which dynamics starts, and the one that counts as leaving.
+NUDGE, LEFT = 1e-6, 2e-5
 
 
 class PathError(RuntimeError):
     """The load path could not be continued."""
 
 
+@dataclass(frozen=True)
+class Crossing:
+    """A stretch of load that dynamics crossed: between these load factors the static branch ended."""
+
+    start: float
+    end: float
+    reason: str  #: unstable, or no equilibrium
+    displacement: float  #: largest displacement of a disk on the way (mean radii)
+
+
 @dataclass
 class PathRecord:
-    """What happened on a load path: one entry per crossing by dynamics, ``(from, to)`` load factors."""
+    """What happened on a load path."""
 
-    increments: int = 0
-    iterations: int = 0
-    factorisations: int = 0
-    crossings: list[tuple[float, float]] = field(default_factory=list)
+    work: Work = field(default_factory=Work)
+    crossings: list[Crossing] = field(default_factory=list)
+    stability_checks: int = 0
+    stability_trials: int = 0
 
 
 def follow(
@@ -49,7 +66,7 @@ def follow(
     *,
     integrator: str = "beeman",
     time_step: float = 5e-4,
-    longest_step: float = np.inf,
+    longest_step: float = LONGEST_STEP,
     crossing_ramp: float = 20.0,
     progress: Callable[[float], None] | None = None,
     record: PathRecord | None = None,
@@ -59,7 +76,7 @@ def follow(
     Parameters
     ----------
     problem : with its loads chosen.
-    rest : certified state at load factor ``rest.load_factor``.
+    rest : certified state at load factor ``rest.load_factor``; a path may start from any of its own states.
     factors : increasing multipliers of the loads.
     longest_step : bound on an increment, in mean disk weights.
     crossing_ramp : duration of the load ramp where dynamics takes over, in sqrt(R/g).
@@ -69,84 +86,147 @@ def follow(
     PathError
         When dynamics does not settle either: the packing collapses or cycles under this load.
     """
-    record = PathRecord() if record is None else record
-    unit = max(float(np.abs(problem.load[:, :2]).sum()), float(np.abs(problem.load).sum()), 1e-300)
-    system = StaticSystem(problem, rest)
-    known = system.start(rest)
-    factor = rest.load_factor
-    step = FIRST_STEP / unit
-    shortest = SHORTEST_STEP / unit
-    before: tuple[float, np.ndarray] | None = None
-    results: list[State] = []
-    trial = None
-    for target in factors:
-        if target < factor - 1e-12 * max(1.0, abs(factor)):
-            raise PathError(f"load factors must increase, got {target:g} after {factor:g}")
-        while trial is None or factor < target:
-            new = min(factor + min(step, longest_step / unit), target)
-            if target - new < 1e-3 * step:
-                new = target
-            start = known.q
-            if before is not None and factor > before[0]:
-                start = known.q + (known.q - before[1]) * ((new - factor) / (factor - before[0]))
-            found, report = newton(
-                system, known, external_force(problem, new), start, maximum_iterations=ITERATIONS
-            )
-            record.iterations += report.iterations
-            if not report.converged and start is not known.q:
-                found, report = newton(system, known, external_force(problem, new), maximum_iterations=ITERATIONS)
-                record.iterations += report.iterations
-            if report.converged:
-                record.increments += 1
-                before = (factor, known.q)
-                factor, trial, known = new, found, found.configuration
-                if report.iterations <= 5:
-                    step *= 1.6
-                elif report.iterations > 8:
-                    step *= 0.7
-                if progress is not None:
-                    progress(factor)
-                continue
-            step = 0.5 * (new - factor)
-            if step >= shortest:
-                continue
-            # dynamics over a stretch of load
-            step = FIRST_STEP / unit
-            new = min(factor + CROSSING / unit, target)
-            here = system.state(trial, factor) if trial is not None else rest
-            settled = _cross(problem, here, factor, new, integrator, time_step, crossing_ramp)
-            record.crossings.append((factor, new))
-            system = StaticSystem(problem, settled)
-            known = system.start(settled)
-            trial = system.trial(known, known.q)
-            factor, before = new, None
-        state = system.state(trial, target)
-        certificate = certify(problem, state, modes=system.negative_modes(trial))
-        results.append(
-            replace(
-                state,
-                information={
-                    "method": "path",
-                    "certificate": certificate,
-                    "increments": record.increments,
-                    "newton_iterations": record.iterations,
-                    "crossings": list(record.crossings),
-                },
-            )
+    return _Path(problem, rest, integrator, time_step, longest_step, crossing_ramp, progress, record).states(factors)
+
+
+class _Path:
+    """The present end of a load path."""
+
+    def __init__(self, problem, rest, integrator, time_step, longest_step, crossing_ramp, progress, record):
+        self.problem: Problem = problem
+        self.record: PathRecord = PathRecord() if record is None else record
+        self.progress = progress
+        self.dynamics = (integrator, time_step, crossing_ramp)
+        applied = np.hypot(problem.load[:, 0], problem.load[:, 1]).sum()
+        #: mean disk weights of one unit of the load factor; a pure torque counts as a force at one radius
+        self.unit = max(float(applied), float(np.abs(problem.load[:, 2]).sum()), 1e-300)
+        self.longest = longest_step / self.unit
+        self.step = min(FIRST_STEP / self.unit, self.longest)
+        self.factor = rest.load_factor
+        self._begin(rest)
+
+    def _begin(self, state: State) -> None:
+        """Go on from a state, with nothing known of how displacements grow with the load."""
+        self.system = StaticSystem(self.problem, state)
+        self.known: Configuration = self.system.start(state)
+        self.trial: Trial = self.system.trial(self.known, self.known.q)
+        self.rate: np.ndarray | None = None
+        self.modes = 0
+        #: the last state whose stability was looked at
+        self.stable_at = self.factor
+        self.stable_known, self.stable_trial = self.known, self.trial
+
+    def states(self, factors: Sequence[float]) -> list[State]:
+        results = []
+        for target in factors:
+            if target < self.factor - 1e-12 * max(1.0, abs(self.factor)):
+                raise PathError(f"load factors must increase, got {target:g} after {self.factor:g}")
+            while self.factor < target:
+                self._advance(target)
+                if self.progress is not None:
+                    self.progress(self.factor)
+            results.append(self._state())
+        return results
+
+    def _advance(self, target: float) -> None:
+        """One increment towards ``target``, by statics or across the end of a branch by dynamics."""
+        shortest = SHORTEST_STEP / self.unit
+        new = min(self.factor + self.step, target)
+        if target - new < 0.1 * self.step:
+            new = target
+        increment = new - self.factor
+        guess = self.known.q if self.rate is None else self.known.q + increment * self.rate
+        rounds = self.record.work.rounds
+        found = solve_increment(
+            self.system, self.known, external_force(self.problem, new), guess, self.record.work
         )
-    return results
+        if found is None:
+            if increment > shortest:
+                self.step = max(0.5 * increment, shortest)
+                self.rate = None
+            else:
+                self._cross(min(self.factor + CROSSING / self.unit, target), "no equilibrium")
+            return
+        self.rate = (found.configuration.q - self.known.q) / increment
+        self.known, self.trial, self.factor = found.configuration, found, new
+        easy = self.record.work.rounds == rounds
+        self.step = min(self.step * (1.4 if easy else 0.9), self.longest)
+        if new == target or new - self.stable_at >= STABILITY_STEP / self.unit:
+            self._look_at_stability()
 
+    def _look_at_stability(self) -> None:
+        self.modes = self.system.negative_modes(self.trial)
+        self.record.stability_checks += 1
+        if self.modes and self._leaves():
+            self._go_back_and_cross()
+            return
+        self.modes = 0
+        self.stable_at, self.stable_known, self.stable_trial = self.factor, self.known, self.trial
 
-def _cross(problem, state, factor, new, integrator, time_step, ramp_time) -> State:
-    dynamics = Dynamics(problem, state, integrator, time_step)
-    load = (factor, new, ramp_time)
-    energy = 1e-10
-    for _ in range(4):
-        settled = relax(dynamics, Stop(energy, maximum_steps=2_000_000), load=load)
-        load = (new, new, 0.0)
-        energy *= 1e-2
-        try:
-            return finish(problem, settled, load_factor=new)
-        except EquilibriumError as error:
-            last = error
-    raise PathError(f"no equilibrium beyond load factor {factor:g}: {last}")
+    def _leaves(self) -> bool:
+        """Whether the present equilibrium, slightly displaced, moves away for good."""
+        n = self.problem.n
+        state = self._state()
+        nudge = NUDGE * self.system.unstable_direction(self.trial)[: 2 * n].reshape(2, n).T
+        nudged = self.problem.with_static_forces(replace(state, position=state.position + nudge))
+        dynamics = Dynamics(self.problem, nudged, *self.dynamics[:2])
+        self.record.stability_trials += 1
+        settled = relax(dynamics, Stop(1e-11, maximum_steps=200_000), load=(self.factor, self.factor, 0.0))
+        return bool(np.abs(settled.position - state.position).max() > LEFT)
+
+    def _go_back_and_cross(self) -> None:
+        """The branch lost its stability since the last look: narrow down where, then cross by dynamics."""
+        unstable = self.factor
+        self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
+        self.rate = None
+        while unstable - self.factor > CROSSING / self.unit:
+            middle = 0.5 * (self.factor + unstable)
+            external = external_force(self.problem, middle)
+            found = solve_increment(self.system, self.known, external, self.known.q, self.record.work)
+            if found is None:
+                break
+            before = (self.factor, self.known, self.trial)
+            self.factor, self.known, self.trial = middle, found.configuration, found
+            if self.system.negative_modes(found) and self._leaves():
+                unstable = middle
+                self.factor, self.known, self.trial = before
+        self._cross(unstable, "unstable")
+
+    def _cross(self, new: float, reason: str) -> None:
+        """Dynamics from the last equilibrium to one at load factor ``new``."""
+        integrator, time_step, ramp_time = self.dynamics
+        here = self._state()
+        dynamics = Dynamics(self.problem, here, integrator, time_step)
+        load = (self.factor, new, ramp_time)
+        energy = 1e-9
+        settled = here
+        for _ in range(4):
+            settled = relax(dynamics, Stop(energy, maximum_steps=2_000_000), load=load)
+            load = (new, new, 0.0)
+            energy *= 1e-2
+            try:
+                settled = finish(self.problem, settled, load_factor=new)
+                break
+            except EquilibriumError as error:
+                failure = error
+        else:
+            raise PathError(f"no equilibrium beyond load factor {self.factor:g}: {failure}")
+        moved = float(np.abs(settled.position - here.position).max())
+        self.record.crossings.append(Crossing(float(self.factor), float(new), reason, moved))
+        self.factor = new
+        self.step = min(FIRST_STEP / self.unit, self.longest)
+        self._begin(settled)
+
+    def _state(self) -> State:
+        state = self.system.state(self.trial, self.factor)
+        work = self.record.work
+        return replace(
+            state,
+            information={
+                "method": "path",
+                "certificate": certify(self.problem, state, modes=self.modes),
+                "increments": work.increments,
+                "factorisations": work.factorisations,
+                "crossings": list(self.record.crossings),
+            },
+        )

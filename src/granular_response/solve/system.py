@@ -91,8 +91,13 @@ class StaticSystem:
         )
         return replace(self.trial(bare, q).configuration, pair_spring=bare.pair_spring, wall_spring=bare.wall_spring)
 
-    def trial(self, known: Configuration, q: FloatArray) -> Trial:
-        """Forces at ``q``, one increment after ``known``."""
+    def trial(
+        self, known: Configuration, q: FloatArray, limits: tuple[FloatArray, FloatArray] | None = None
+    ) -> Trial:
+        """Forces at ``q``, one increment after ``known``.
+
+        ``limits`` fixes the Coulomb limits of pairs (m,) and walls (w,) in place of ``mu f_n``.
+        """
         problem = self.problem
         m, w = len(self.first), len(self.wall_disk)
         force = np.zeros(self.dof)
@@ -105,12 +110,14 @@ class StaticSystem:
         radius = problem.packing.radius
         statics.pair_statics(
             q, known.q, problem.n, self.first, self.second, self.dx0, self.dz0, self.gap0, radius,
-            known.pair_overlap, known.pair_spring if problem.pair_friction else None, problem.pair_law,
+            known.pair_overlap, known.pair_spring if problem.pair_friction else None,
+            None if limits is None or not problem.pair_friction else limits[0], problem.pair_law,
             *pair, force, g,
         )  # fmt: skip
         statics.wall_statics(
             q, known.q, problem.n, self.wall_disk, self.wall_normals, self.wall_gap0, radius,
-            known.wall_overlap, known.wall_spring if problem.wall_friction else None, problem.wall_law,
+            known.wall_overlap, known.wall_spring if problem.wall_friction else None,
+            None if limits is None or not problem.wall_friction else limits[1], problem.wall_law,
             *wall, force, wall_g,
         )  # fmt: skip
         return Trial(

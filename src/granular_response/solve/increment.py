@@ -1,0 +1,124 @@
+"""One increment of a quasi-static path: from an equilibrium to the next.
+
+Newton's method with the return map converges in a few steps unless several contacts change their status together
+(above all, contacts that begin to slide while their neighbours open): the tangent of a wrong guess of sliding
+contacts is nearly a mechanism, and the iteration runs away. Then the Coulomb limits are held fixed at their
+last values. With fixed limits the increment has an energy (elastic, plus friction at a known limit), whose
+minimum Newton's method with an exact line search finds from anywhere; limits are updated and the minimisation is
+repeated. Two or three rounds bring the guess so near that Newton's method finishes on the true law. This fixed
+point on the limits is the one of Panagiotopoulos for contact with friction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .equilibrium import newton
+from .state import FloatArray
+from .system import Configuration, StaticSystem, Trial
+
+#: Newton iterations on the true law before limits are held fixed.
+DIRECT_ITERATIONS = 8
+#: Rounds of fixed limits, and the round from which the true law is tried again.
+ROUNDS, FIRST_TRY = 24, 2
+#: Levenberg shift of the minimisation, in units of the normal stiffness.
+SHIFT = 1e-7
+#: Residual at which a minimisation with fixed limits ends; they change anyway.
+ROUGH = 1e-7
+LONGEST_STEP = 0.05
+
+
+@dataclass
+class Work:
+    """What increments cost."""
+
+    increments: int = 0
+    factorisations: int = 0
+    rounds: int = 0
+
+
+def solve_increment(
+    system: StaticSystem, known: Configuration, external: FloatArray, guess: FloatArray, work: Work
+) -> Trial | None:
+    """Equilibrium under ``external``, one increment after ``known``; None where none is found.
+
+    ``guess`` (dof,) is a prediction of the displacements.
+    """
+    trial, report = newton(system, known, external, guess, maximum_iterations=DIRECT_ITERATIONS)
+    work.factorisations += report.iterations
+    if report.converged:
+        work.increments += 1
+        return trial
+    pair_mu, wall_mu = system.problem.pair_law[4], system.problem.wall_law[4]
+    if not system.problem.rotations:
+        return None
+    here = system.trial(known, known.q)
+    limits = (pair_mu * here.pair_normal, wall_mu * here.wall_normal)
+    q = known.q
+    for done in range(1, ROUNDS + 1):
+        work.rounds += 1
+        trial = _minimise_with_limits(system, known, external, q, limits, work)
+        q = trial.configuration.q
+        limits = (pair_mu * trial.pair_normal, wall_mu * trial.wall_normal)
+        if done > FIRST_TRY:
+            true, report = newton(system, known, external, q, maximum_iterations=DIRECT_ITERATIONS - 2)
+            work.factorisations += report.iterations
+            if report.converged:
+                work.increments += 1
+                return true
+    return None
+
+
+def _minimise_with_limits(
+    system: StaticSystem,
+    known: Configuration,
+    external: FloatArray,
+    start: FloatArray,
+    limits: tuple[FloatArray, FloatArray],
+    work: Work,
+    maximum_iterations: int = 40,
+) -> Trial:
+    """Minimise the energy of an increment with fixed Coulomb limits; returns the last trial."""
+    q = start
+    trial = system.trial(known, q, limits)
+    shift = SHIFT * system.problem.pair_law[0]
+    for _ in range(maximum_iterations):
+        r = trial.contact_force + external
+        if float(np.abs(r).max()) < ROUGH:
+            break
+        work.factorisations += 1
+        try:
+            step = system.deinterleave(system.factorise(trial, shift).solve(system.interleave(r)))
+        except RuntimeError:  # exactly singular
+            break
+        length = float(np.abs(step).max())
+        if not np.isfinite(length):
+            break
+        if length > LONGEST_STEP:
+            step *= LONGEST_STEP / length
+        slope = float(r @ step)
+        trial, q = _line_search(system, known, external, limits, q, step, slope)
+    return trial
+
+
+def _line_search(system, known, external, limits, q, step, slope) -> tuple[Trial, FloatArray]:
+    """Go along ``step`` to where the energy's slope has fallen to a tenth, never beyond the full step."""
+    low, at_low, high = 0.0, slope, 1.0
+    part = 1.0
+    trial = system.trial(known, q + step, limits)
+    at_high = float((trial.contact_force + external) @ step)
+    if at_high >= -0.1 * slope:
+        return trial, q + step
+    for k in range(8):
+        part = low + (high - low) * at_low / (at_low - at_high) if k % 2 == 0 else 0.5 * (low + high)
+        trial = system.trial(known, q + part * step, limits)
+        here = float((trial.contact_force + external) @ step)
+        if abs(here) < 0.1 * slope:
+            break
+        if here > 0:
+            low, at_low = part, here
+        else:
+            high, at_high = part, here
+    return trial, q + part * step
