@@ -1,0 +1,1 @@
+"""One module per figure group: datasets to figures; one shared style."""
