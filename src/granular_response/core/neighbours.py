@@ -6,13 +6,16 @@ import numba as nb
 import numpy as np
 
 #: Runs with fewer pairs than this are not worth a vector loop of their own.
-SHORTEST_RUN = 6
+SHORTEST_RUN = 24
+#: Close pairs per disk for which room is made at first.
+USUAL_PAIRS = 6
 #: Missing pairs bridged to keep a run together; they cost less than a new run.
 LONGEST_GAP = 3
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _grid_pairs(x, z, radius, skin, cell, column, row, columns, rows, order, start, first, second, fill):
+def _grid_pairs(x, z, radius, skin, column, row, columns, rows, order, start, first, second):
+    """Fill ``first`` and ``second`` as far as they reach; returns how many pairs there are."""
     count = 0
     for i in range(x.size):
         for c in range(max(column[i] - 1, 0), min(column[i] + 2, columns)):
@@ -26,7 +29,7 @@ def _grid_pairs(x, z, radius, skin, cell, column, row, columns, rows, order, sta
                     dz = z[i] - z[j]
                     reach = radius[i] + radius[j] + skin
                     if dx * dx + dz * dz < reach * reach:
-                        if fill:
+                        if count < first.size:
                             first[count] = i
                             second[count] = j
                         count += 1
@@ -53,12 +56,15 @@ def close_pairs(position, radius, skin):
     home = column * rows + row
     order = np.argsort(home, kind="stable")
     start = np.searchsorted(home[order], np.arange(columns * rows + 1))
-    none = np.empty(0, np.int64)
-    arguments = (x, z, radius, skin, cell, column, row, columns, rows, order, start)
-    count = _grid_pairs(*arguments, none, none, False)
-    first, second = np.empty(count, np.int64), np.empty(count, np.int64)
-    _grid_pairs(*arguments, first, second, True)
-    by = np.lexsort((second, first))
+    count = USUAL_PAIRS * len(radius)
+    while True:
+        first, second = np.empty(count, np.int64), np.empty(count, np.int64)
+        room = count
+        count = _grid_pairs(x, z, radius, skin, column, row, columns, rows, order, start, first, second)
+        if count <= room:
+            break
+    first, second = first[:count], second[:count]
+    by = np.argsort(first * len(radius) + second)
     return first[by].astype(np.int32), second[by].astype(np.int32)
 
 

@@ -126,6 +126,11 @@ class Problem:
             parts.append(1.0 / self.packing.inertia)
         return np.concatenate(parts)
 
+    @cached_property
+    def lattice_pairs(self) -> NDArray[np.int32] | None:
+        """(m, 2) neighbours on the lattice; None without one."""
+        return self.packing.neighbour_pairs()
+
     def with_loads(self, position: FloatArray) -> Problem:
         """The same problem with the scene's loads on disks chosen at the rest ``position`` (n, 2)."""
         loads = self.scene.loads
@@ -155,7 +160,7 @@ class Problem:
         touch, and nothing is searched. ``search=True`` forces the search.
         """
         packing, radius = self.packing, self.packing.radius
-        pairs = None if search else packing.neighbour_pairs()
+        pairs = None if search else self.lattice_pairs
         limit = 0.0
         if pairs is not None and packing.lattice_constant is not None:
             # second neighbours touch once two disks have moved this far towards each other
