@@ -165,6 +165,10 @@ def test_double_peak_needs_both_sides_higher_than_the_centre():
     one_side[X == 6.0] = 1.5
     assert peak_count(X, one_side) == 2
     assert not is_double_peaked(X, one_side)
+    one_side[X == -6.0] = 0.8
+    assert peak_count(X, one_side) == 3
+    assert not is_double_peaked(X, one_side)
+    assert not is_double_peaked(X, one_side[::-1])
     lower = profile(1.0, 0.2, 0.6)
     assert peak_count(X, lower) == 3
     assert not is_double_peaked(X, lower)

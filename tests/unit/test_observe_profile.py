@@ -38,7 +38,7 @@ def test_magnitude_of_the_vector_difference():
 
 
 def test_positions_are_those_at_rest():
-    sunk = replace(REST, position=REST.position - np.array([0.0, 0.3]))
+    sunk = replace(REST, position=REST.position - np.array([0.2, 0.3]))
     np.testing.assert_array_equal(
         force_profile(REST, sunk, TOP, row_depth(1))[0], force_profile(REST, REST, TOP, row_depth(1))[0]
     )

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from observe_states import ROW, opened, pair_index, slab
@@ -67,6 +69,10 @@ def test_second_neighbours_are_not_adjacent():
 
 def test_equally_near_contacts_begin_the_region_together():
     pair = row_pairs(5, -2.0, 2.0)
+    moved = REST.position.copy()
+    moved[REST.pairs.first[pair[0]]] += 1e-4
+    uneven = replace(REST, position=moved)
+    assert teardrop(uneven, opened(uneven, pair), TOP).count == 2
     assert np.flatnonzero(teardrop(REST, opened(REST, pair), TOP).contacts).tolist() == sorted(pair)
 
 
