@@ -115,9 +115,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     states = common_candidates([solution.rest, *solution.loaded], packing.radius, packing.width)
     rest, loaded = states[0], states[1:]
     disks = floor_disks(states, np.flatnonzero(packing.row == 0))
-    origin = (
-        float(rest.position[problem.load_disk[0], 0]) if len(problem.load_disk) == 1 else 0.5 * packing.width
-    )
+    origin = float(rest.position[problem.load_disk[0], 0]) if len(problem.load_disk) == 1 else 0.5 * packing.width
     at_rest = floor_force(rest, disks)
     forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
     applied = np.array([abs(f) * solution.total_force for f in solution.load_factors] or [np.nan])
@@ -148,15 +146,16 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     ).merge(certificates_dataset(states))
     data = data.assign_coords(
         floor_disk=variable(("floor_disk",), disks, "index of the floor disk"),
-        x=variable(
-            ("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"
-        ),
+        x=variable(("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"),
         component=("component", ["force_x", "force_z", "torque"]),
     )
     for name in ("axis", "component"):
         data[name].attrs.update(long_name=f"{name} labels", units="1")
     methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
-    reasons = {"rest": solution.rest_choice.reason, "load": getattr(solution.load_choice, "reason", "no loads")}
+    reasons = {
+        "rest": solution.rest_choice.reason,
+        "load": getattr(solution.load_choice, "reason", "no loads"),
+    }
     data.attrs = {
         "title": "quasi-static response of a granular packing",
         "package": "granular_response",
@@ -187,9 +186,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
 
     def contacts(prefix: str, partner: str) -> Contacts:
         values = [one[f"{prefix}_{name}"].values for name in _CONTACT_VARIABLES]
-        return Contacts(
-            one[f"{prefix}_disk"].values.astype(np.int32), one[partner].values.astype(np.int32), *values
-        )
+        return Contacts(one[f"{prefix}_disk"].values.astype(np.int32), one[partner].values.astype(np.int32), *values)
 
     return State(
         **{name: one[name].values.astype(float) for name in _STATE_VARIABLES},

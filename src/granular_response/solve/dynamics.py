@@ -171,9 +171,14 @@ class Dynamics:
             angular_velocity=self.v[2 * n :].copy() if problem.rotations else np.zeros(n),
             pairs=Contacts(c.first, c.second, zero_pairs, zero_pairs, zero_pairs, spring, none),
             walls=Contacts(
-                c.wall_disk.astype(np.int32), c.wall, zero_walls, zero_walls, zero_walls, wall_spring,
+                c.wall_disk.astype(np.int32),
+                c.wall,
+                zero_walls,
+                zero_walls,
+                zero_walls,
+                wall_spring,
                 zero_walls.astype(np.int8),
-            ),  # fmt: skip
+            ),
             load_factor=self.load[1],
             information={"steps": self.steps, "time": self.time, "rebuilds": self.rebuilds, **information},
         )

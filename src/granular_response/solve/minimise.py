@@ -9,7 +9,6 @@ left along its unstable direction.
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse.linalg import SuperLU, splu
 
 from .equilibrium import TOLERANCE, EquilibriumError, certify, external_force
 from .problem import Problem
@@ -29,13 +28,6 @@ def energy(system: StaticSystem, trial: Trial, external: FloatArray) -> float:
     elastic = 0.5 * k * (np.maximum(c.pair_overlap, 0.0) ** 2).sum()
     elastic += 0.5 * k_wall * (np.maximum(c.wall_overlap, 0.0) ** 2).sum()
     return float(elastic - external @ c.q)
-
-
-def _symmetric_factor(system: StaticSystem, trial: Trial, shift: float) -> tuple[SuperLU, int]:
-    """LDL-like factorisation (no row exchanges) and its number of negative pivots."""
-    matrix = system.tangent(trial, shift)
-    lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return lu, int((lu.U.diagonal() < 0).sum())
 
 
 def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> State:
@@ -75,7 +67,7 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
             damping = 1e-4 * k
             iterations += 1
             continue
-        lu, negative = _symmetric_factor(system, trial, damping + REGULARISATION * k)
+        lu, negative = system.symmetric_factor(trial, damping + REGULARISATION * k)
         iterations += 1
         if negative:
             damping = max(4.0 * damping, 1e-8 * k)

@@ -137,9 +137,7 @@ class _Path:
         increment = new - self.factor
         guess = self.known.q if self.rate is None else self.known.q + increment * self.rate
         rounds = self.record.work.rounds
-        found = solve_increment(
-            self.system, self.known, external_force(self.problem, new), guess, self.record.work
-        )
+        found = solve_increment(self.system, self.known, external_force(self.problem, new), guess, self.record.work)
         if found is None:
             if increment > shortest:
                 self.step = max(0.5 * increment, shortest)

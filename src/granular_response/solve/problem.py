@@ -297,12 +297,16 @@ def _wall_candidates(position, radius, width: float, margin: float):
 def _empty_contacts(first, second) -> Contacts:
     zero = np.zeros(len(first))
     return Contacts(
-        np.asarray(first, np.int32), np.asarray(second, np.int32), zero, zero, zero, zero, zero.astype(np.int8)
+        np.asarray(first, np.int32),
+        np.asarray(second, np.int32),
+        zero,
+        zero,
+        zero,
+        zero,
+        zero.astype(np.int8),
     )
 
 
 def wall_normals(wall) -> FloatArray:
     """(w, 2) inward normals of the given walls."""
     return np.ascontiguousarray(WALL_NORMAL[np.asarray(wall, np.int64)])
-
-

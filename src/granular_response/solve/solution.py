@@ -47,9 +47,7 @@ class Solution:
         return float(np.hypot(self.problem.load[:, 0], self.problem.load[:, 1]).sum())
 
 
-def solve_scene(
-    scene: Scene, *, load_factors: Sequence[float] = (1.0,), progress: Progress | None = None
-) -> Solution:
+def solve_scene(scene: Scene, *, load_factors: Sequence[float] = (1.0,), progress: Progress | None = None) -> Solution:
     """Settle a scene under gravity, then load it.
 
     Parameters

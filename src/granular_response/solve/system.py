@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import SuperLU, eigs, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 
 from ..core import statics
+from .linear import WIDEST_BAND, Band, Factor, node_order, sparse_factor, symmetric_factor
 from .problem import Problem, wall_gap, wall_normals
 from .state import SLIDING, Contacts, FloatArray, State
 
@@ -87,13 +88,15 @@ class StaticSystem:
 
     def _known(self, q, pair_spring, wall_spring) -> Configuration:
         bare = Configuration(
-            q, pair_spring.copy(), wall_spring.copy(), np.zeros(len(self.first)), np.zeros(len(self.wall_disk))
+            q,
+            pair_spring.copy(),
+            wall_spring.copy(),
+            np.zeros(len(self.first)),
+            np.zeros(len(self.wall_disk)),
         )
         return replace(self.trial(bare, q).configuration, pair_spring=bare.pair_spring, wall_spring=bare.wall_spring)
 
-    def trial(
-        self, known: Configuration, q: FloatArray, limits: tuple[FloatArray, FloatArray] | None = None
-    ) -> Trial:
+    def trial(self, known: Configuration, q: FloatArray, limits: tuple[FloatArray, FloatArray] | None = None) -> Trial:
         """Forces at ``q``, one increment after ``known``.
 
         ``limits`` fixes the Coulomb limits of pairs (m,) and walls (w,) in place of ``mu f_n``.
@@ -136,7 +139,11 @@ class StaticSystem:
     def _pattern(self) -> None:
         """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
         n, d = self.problem.n, self.problem.freedoms
-        i, j = self.first, self.second
+        self._order = node_order(self.reference, self.first, self.second)
+        place_of = np.empty(n, np.int64)
+        place_of[self._order] = np.arange(n)
+        i, j = place_of[self.first], place_of[self.second]
+        wall_place = place_of[self.wall_disk]
         nodes = np.arange(n)
         row = np.concatenate([nodes, i, j])
         column = np.concatenate([nodes, j, i])
@@ -152,7 +159,7 @@ class StaticSystem:
         ii, ij, ji = nodes, n + np.arange(m), n + m + np.arange(m)
         order = np.stack([ii[i], ij, ji, ii[j]], axis=1) if m else np.zeros((0, 4), np.int64)
         self._base, self._stride = base[order], stride[order]
-        self._wall_base, self._wall_stride = base[self.wall_disk], stride[self.wall_disk]
+        self._wall_base, self._wall_stride = base[wall_place], stride[wall_place]
         rows_of = row[by]
         indices = []
         for component in range(d):
@@ -166,9 +173,14 @@ class StaticSystem:
         self._indices = block_rows[np.repeat(starts, lengths) + offset]
         self._diagonal = (base[:n, None] + np.arange(d) * (stride[:n, None] + 1)).ravel()
         self._data = np.zeros(self._indptr[-1])
+        half_width = (int(np.abs(i - j).max(initial=0)) + 1) * d - 1
+        self._band = Band(self._indptr, self._indices, half_width) if half_width <= WIDEST_BAND else None
 
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
-        """K = -dF/dq with interleaved unknowns, ``shift`` added to the diagonal (scalar or (dof,) interleaved)."""
+        """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`).
+
+        ``shift`` (scalar or (dof,)) is added to the diagonal.
+        """
         statics.assemble(
             self._data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius,
             trial.pair_tangent, self._base, self._stride,
@@ -179,20 +191,20 @@ class StaticSystem:
         return sp.csc_array((data, self._indices, self._indptr), shape=(self.dof, self.dof))
 
     def interleave(self, vector: FloatArray) -> FloatArray:
-        """``[x | z | angle]`` to node by node."""
-        return vector.reshape(self.problem.freedoms, -1).T.ravel()
+        """``[x | z | angle]`` to disk by disk, in the order of the tangent."""
+        return vector.reshape(self.problem.freedoms, -1).T[self._order].ravel()
 
     def deinterleave(self, vector: FloatArray) -> FloatArray:
-        """Node by node to ``[x | z | angle]``."""
-        return vector.reshape(-1, self.problem.freedoms).T.ravel()
+        """Disk by disk, in the order of the tangent, to ``[x | z | angle]``."""
+        result = np.empty((self.problem.n, self.problem.freedoms))
+        result[self._order] = vector.reshape(-1, self.problem.freedoms)
+        return result.T.ravel()
 
-    def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> SuperLU:
-        """Sparse LU of the tangent, a tiny regularisation included."""
+    def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Factor:
+        """LU of the tangent, a tiny regularisation included."""
         k = self.problem.pair_law[0]
         matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
-        return splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.001, options={"SymmetricMode": True}
-        )
+        return sparse_factor(matrix) if self._band is None else self._band.factor(matrix)
 
     def state(self, trial: Trial, load_factor: float, **information) -> State:
         """The state at rest of a solved trial."""
@@ -217,36 +229,43 @@ class StaticSystem:
             information=information,
         )  # fmt: skip
 
+    def symmetric_factor(self, trial: Trial, shift: float) -> tuple[Factor, int]:
+        """Factorisation of the symmetric part of the tangent and its number of negative eigenvalues."""
+        matrix = self.tangent(trial, shift)
+        return symmetric_factor(_symmetric_part(matrix), self._band)
+
     def negative_modes(self, trial: Trial, shift: float = 1e-6) -> int:
         """Number of unstable directions of the tangent.
 
-        Without sliding the tangent is symmetric (up to the turn of the contacts) and they are counted from
-        the pivots of a factorisation without row exchanges (Sylvester's law of inertia). Sliding makes it
-        unsymmetric; then the eigenvalues nearest to zero are computed and those with a negative real part counted.
-        ``shift`` keeps disks that roll freely from counting.
+        Without sliding the tangent is symmetric (up to the turn of the contacts) and they are counted exactly.
+        Sliding makes it unsymmetric; then the four eigenvalues nearest to zero are computed and those with
+        a negative real part counted. ``shift`` keeps disks that roll freely from counting.
         """
-        matrix = self.tangent(trial, shift)
-        if SLIDING in trial.pair_status or SLIDING in trial.wall_status:
-            start = np.random.default_rng(0).standard_normal(self.dof)
-            values = eigs(
-                matrix, k=4, sigma=-1e-4 * self.problem.pair_law[0], v0=start, return_eigenvectors=False
-            )
-            return int((values.real < 0).sum())
-        matrix = (matrix + matrix.T) * 0.5
-        lu = splu(
-            sp.csc_array(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
+        if SLIDING not in trial.pair_status and SLIDING not in trial.wall_status:
+            return self.symmetric_factor(trial, shift)[1]
+        origin = -1e-4 * self.problem.pair_law[0]
+        factor = self.factorise(trial, shift - origin)
+        values = eigs(
+            self.tangent(trial, shift), k=4, sigma=origin, return_eigenvectors=False,
+            OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
+            v0=np.random.default_rng(0).standard_normal(self.dof),
         )  # fmt: skip
-        return int((lu.U.diagonal() < 0).sum())
+        return int((values.real < 0).sum())
 
     def unstable_direction(self, trial: Trial) -> FloatArray:
         """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1."""
-        matrix = self.tangent(trial)
-        matrix = sp.csc_array((matrix + matrix.T) * 0.5)
+        matrix = _symmetric_part(self.tangent(trial))
         start = np.random.default_rng(0).standard_normal(self.dof)
         _, vectors = eigsh(matrix, k=1, sigma=-1e-2 * self.problem.pair_law[0], which="LM", v0=start)
         vector = self.deinterleave(vectors[:, 0])
         return vector / vector[np.argmax(np.abs(vector))]
+
+
+def _symmetric_part(matrix: sp.csc_array) -> sp.csc_array:
+    """(K + K^T) / 2 on the same (symmetric) pattern."""
+    transposed = sp.csc_array(matrix.T)
+    transposed.sort_indices()
+    return sp.csc_array((0.5 * (matrix.data + transposed.data), matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
 def sliding_count(trial: Trial) -> int:

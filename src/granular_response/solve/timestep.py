@@ -61,7 +61,6 @@ def resolve_time_step(problem: Problem) -> float:
         return SAFETY * limit
     if step > limit:
         raise UnstableTimeStep(
-            f"protocol.time_step: {step:g} is unstable for this scene, must be at most {limit:.3g} "
-            "(or auto)"
+            f"protocol.time_step: {step:g} is unstable for this scene, must be at most {limit:.3g} (or auto)"
         )
     return float(step)

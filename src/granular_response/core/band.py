@@ -1,0 +1,48 @@
+"""LU factorisation of banded matrices without row exchanges.
+
+Row ``i`` of ``a`` (n, 2 b + 1) holds the matrix entries ``(i, i - b) ... (i, i + b)``. The tangent of a shallow
+packing, numbered along its length, is such a matrix with a narrow band, and close to symmetric and positive: rows
+need not be exchanged, and the inner loop is one vectorised row update. A caller checks the residual.
+"""
+
+from __future__ import annotations
+
+import numba as nb
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _update(row, pivot_row, factor):
+    for j in range(row.size):
+        row[j] -= factor * pivot_row[j]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def factorise(a, b):
+    """Overwrite ``a`` with its factors L (unit diagonal, below) and U."""
+    n = a.shape[0]
+    for k in range(n):
+        inverse = 1.0 / a[k, b]
+        width = min(b, n - 1 - k)
+        pivot_row = a[k, b + 1 : b + 1 + width]
+        for d in range(1, width + 1):
+            i = k + d
+            factor = a[i, b - d] * inverse
+            a[i, b - d] = factor
+            if factor != 0.0:
+                _update(a[i, b - d + 1 : b - d + 1 + width], pivot_row, factor)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def solve(a, b, x):
+    """Overwrite ``x`` (n,) with the solution of L U x = x."""
+    n = a.shape[0]
+    for i in range(n):
+        total = x[i]
+        for j in range(max(0, i - b), i):
+            total -= a[i, b - i + j] * x[j]
+        x[i] = total
+    for i in range(n - 1, -1, -1):
+        total = x[i]
+        for j in range(i + 1, min(n, i + b + 1)):
+            total -= a[i, b - i + j] * x[j]
+        x[i] = total / a[i, b]
