@@ -5,3 +5,7 @@ Nothing here knows a scene. Motion lives in flat vectors of generalised coordina
 them; ``v`` and ``f`` are laid out alike. Displacements are measured from the reference positions at which
 the candidate contacts were listed, so small overlaps keep their digits.
 """
+
+from .machine_code import drop_stale
+
+drop_stale()

@@ -47,6 +47,17 @@ def start(q, v, history, dt):
     history[1] = history[0]
 
 
+def amplification(w2, c):
+    """(4, 4) matrix of one step of length 1 for ``x'' = -w2 x - c x'``."""
+
+    def step(x, v, a, a_before):
+        x = x + v + (4.0 * a - a_before) / 6.0
+        a_new = -w2 * x - c * (v + (3.0 * a - a_before) / 2.0)
+        return x, v + (2.0 * a_new + 5.0 * a - a_before) / 6.0, a_new, a
+
+    return np.array([step(*unit) for unit in np.eye(4)]).T
+
+
 RECORD = Integrator(
     name="beeman",
     title="Beeman",
@@ -55,4 +66,5 @@ RECORD = Integrator(
     reference="D. Beeman, J. Comput. Phys. 20, 130 (1976); the paper, Sec. III",
     advance=advance,
     start=start,
+    amplification=amplification,
 )

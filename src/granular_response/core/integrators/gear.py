@@ -64,6 +64,21 @@ def start(q, v, history, dt):
     history[1:3] = 0.0
 
 
+def amplification(w2, c):
+    """(5, 5) matrix of one step of length 1 for ``x'' = -w2 x - c x'``."""
+
+    def step(x, v, a, b, d):
+        x = x + v + a / 2.0 + b / 6.0 + d / 24.0
+        v = v + a + b / 2.0 + d / 6.0
+        a = a + b + d / 2.0
+        b = b + d
+        a_new = -w2 * x - c * v
+        change = a_new - a
+        return x + 0.5 * _C0 * change, v + 0.5 * _C1 * change, a_new, b + 3.0 * _C3 * change, d + 12.0 * _C4 * change
+
+    return np.array([step(*unit) for unit in np.eye(5)]).T
+
+
 RECORD = Integrator(
     name="gear",
     title="Gear 5-value predictor-corrector",
@@ -72,4 +87,5 @@ RECORD = Integrator(
     reference="C. W. Gear, Argonne report ANL-7126 (1966); the paper, Sec. III",
     advance=advance,
     start=start,
+    amplification=amplification,
 )

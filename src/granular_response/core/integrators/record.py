@@ -17,7 +17,8 @@ class Integrator:
     """One time integrator.
 
     ``rows`` is the number of history rows, ``order`` the global order of its positions on a smooth problem,
-    ``start(q, v, history, dt)`` fills the history from its row 0.
+    ``start(q, v, history, dt)`` fills the history from its row 0. ``amplification(w2, c)`` is the matrix of one step
+    of length 1 for the damped oscillator ``x'' = -w2 x - c x'``: the step is stable while no eigenvalue exceeds 1.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Integrator:
     reference: str
     advance: Callable
     start: Callable
+    amplification: Callable
 
 
 @nb.njit(cache=True, error_model="numpy")

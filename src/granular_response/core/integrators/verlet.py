@@ -44,6 +44,17 @@ def start(q, v, history, dt):
     """Needs nothing beyond the present acceleration."""
 
 
+def amplification(w2, c):
+    """(3, 3) matrix of one step of length 1 for ``x'' = -w2 x - c x'``."""
+
+    def step(x, v, a):
+        x = x + v + a / 2.0
+        a_new = -w2 * x - c * (v + a)
+        return x, v + (a + a_new) / 2.0, a_new
+
+    return np.array([step(*unit) for unit in np.eye(3)]).T
+
+
 RECORD = Integrator(
     name="verlet",
     title="velocity Verlet",
@@ -52,4 +63,5 @@ RECORD = Integrator(
     reference="W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
     advance=advance,
     start=start,
+    amplification=amplification,
 )
