@@ -240,12 +240,13 @@ def _over_dask(function: Callable, items: Sequence[Any], todo: Sequence[int], ad
         try:
             for future in as_completed(futures, loop=client.loop):
                 index = futures[future]
-                if future.status != "finished":
-                    failure = future.exception()
-                    if isinstance(failure, KilledWorker):
-                        raise _failed(index, items, "killed its worker process several times")
-                    raise _raised(index, items, failure) from failure
-                yield index, future.result()
+                try:
+                    result = future.result()  # waits once more if it was lost with its worker
+                except KilledWorker:
+                    raise _failed(index, items, "killed its worker process several times") from None
+                except Exception as error:
+                    raise _raised(index, items, error) from error
+                yield index, result
         finally:
             client.cancel(list(futures))
 
