@@ -4,6 +4,7 @@ import io
 import os
 import pty
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -42,12 +43,15 @@ def assert_one_line_error(finished, *parts):
 
 
 def test_help_answers_within_half_a_second():
-    durations = []
-    for _ in range(5):
-        started = time.perf_counter()
-        finished = call("--help")
-        durations.append(time.perf_counter() - started)
-        assert finished.returncode == 0
+    def processor_time():
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
+    durations = []  # of the processor, so that other work on the machine does not count
+    for _ in range(3):
+        before = processor_time()
+        assert call("--help").returncode == 0
+        durations.append(processor_time() - before)
     assert min(durations) < 0.5
 
 
