@@ -93,6 +93,7 @@ def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_R
     begin = np.concatenate([[0], np.flatnonzero(new) + 1])
     members = np.diff(np.concatenate([begin, [m]]))
     alone = np.empty(m, bool)
+    shortest_run = max(shortest_run, 2)  # a run of one would stand before the single pairs, which come last
     alone[by] = np.repeat(members < shortest_run, members)
     kept = members >= shortest_run
     begin, members = begin[kept], members[kept]

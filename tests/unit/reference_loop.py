@@ -1,0 +1,63 @@
+"""The contact law and the force loop once more, in plain Python, contact by contact: what kernels are held against."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class Material:
+    """Constants of one kind of contact."""
+
+    kn: float = 3000.0
+    nun: float = 54.0
+    kt: float = 2400.0
+    nut: float = 49.0
+    mu: float = 0.2
+    least: float = -np.inf
+
+    @property
+    def law(self):
+        return (self.kn, self.nun, self.kt, self.nut, self.mu, self.least)
+
+
+def contact_force(m: Material, overlap, velocity_normal, velocity_tangential, spring, dt, literal=False):
+    """Normal force, tangential force and new spring of a closed contact (docs/architecture.md for the signs)."""
+    fn = max(m.kn * overlap - m.nun * velocity_normal, m.least)
+    if literal:
+        if m.kt * abs(spring) < m.mu * abs(fn):
+            spring = spring + velocity_tangential * dt
+        return fn, -m.kt * spring - m.nut * velocity_tangential, spring
+    new = spring + velocity_tangential * dt
+    ft = -m.kt * new - m.nut * velocity_tangential
+    limit = m.mu * abs(fn)
+    if abs(ft) > limit:
+        ft = limit if ft > 0 else -limit
+        new = -(ft + m.nut * velocity_tangential) / m.kt
+    return fn, ft, new
+
+
+def forces(position, velocity, spin, radius, pairs, springs, material, dt, literal=False):
+    """Forces (n, 2), torques (n,), new springs of the listed pairs; ``material.mu == 0`` means no friction at all."""
+    force, torque = np.zeros_like(position), np.zeros(len(radius))
+    new_springs = np.zeros(len(pairs))
+    for c, (i, j) in enumerate(pairs):
+        d = position[i] - position[j]
+        distance = float(np.sqrt(d @ d))
+        overlap = radius[i] + radius[j] - distance
+        if overlap <= 0:
+            continue
+        normal = d / distance
+        tangent = np.array([-normal[1], normal[0]])
+        relative = velocity[i] - velocity[j]
+        slip = relative @ tangent - (radius[i] * spin[i] + radius[j] * spin[j])
+        fn, ft, s = contact_force(material, overlap, relative @ normal, slip, springs[c], dt, literal)
+        if material.mu == 0:
+            ft, s = 0.0, 0.0
+        new_springs[c] = s
+        total = fn * normal + ft * tangent
+        force[i] += total
+        force[j] -= total
+        torque[i] -= radius[i] * ft
+        torque[j] -= radius[j] * ft
+    return force, torque, new_springs

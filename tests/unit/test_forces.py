@@ -1,0 +1,252 @@
+"""The force loops: hand-made pairs, an independent loop over pairs, momentum and torque balance."""
+
+import math
+
+import numpy as np
+import pytest
+from reference_loop import Material, forces
+
+from granular_response.core import neighbours
+from granular_response.core.forces import add_pair_forces, add_wall_forces
+from granular_response.core.law import CUT, LITERAL
+from granular_response.scene import SlabPacking
+
+
+def run_kernel(position, velocity, spin, radius, first, second, springs, material, dt, rule=CUT, **runs_options):
+    """The kernel on given pairs: forces (n, 2), torques (n,), springs of the pairs, springs of all slots, slots."""
+    n = len(radius)
+    runs, slot = neighbours.make_runs(np.asarray(first), np.asarray(second), n, **runs_options)
+    i, j = neighbours.run_pairs(runs)
+    friction = material.mu > 0
+    # reference positions a little off, so that displacements count
+    reference = position + 0.01 * np.sin(np.arange(2 * n)).reshape(n, 2)
+    q = np.concatenate([(position - reference).T.ravel(), np.zeros(n)])
+    v = np.concatenate([velocity.T.ravel(), spin])
+    d = (reference[i] - reference[j]).T
+    slots = len(i)
+    spring = np.zeros(slots)
+    spring[slot] = springs
+    out = np.zeros(3 * n if friction else 2 * n)
+    size = len(out)
+    add_pair_forces(
+        q[:size], v[:size], radius * spin if friction else None, out, n, runs,
+        np.ascontiguousarray(d[0]), np.ascontiguousarray(d[1]), radius[i] + radius[j],
+        spring if friction else None, np.zeros((3 if friction else 2, slots)), material.law, rule, dt,
+    )  # fmt: skip
+    force = out[: 2 * n].reshape(2, n).T
+    torque = -radius * out[2 * n :] if friction else np.zeros(n)
+    return force, torque, spring[slot], spring, slot
+
+
+def pair(material=None, *, velocity=((0.0, 0.0), (0.0, 0.0)), spin=(0.0, 0.0), angle=0.0, overlap=0.01, spring=0.0,
+         radius=(1.0, 1.0), dt=1e-3, rule=CUT):  # fmt: skip
+    """Force on disk 0, torques and spring of one pair whose normal (from 1 to 0) is at ``angle`` to x."""
+    material = Material(1000.0, 10.0, 800.0, 5.0, 0.5) if material is None else material
+    radius = np.array(radius)
+    normal = np.array([math.cos(angle), math.sin(angle)])
+    position = np.array([normal * (radius.sum() - overlap), [0.0, 0.0]])
+    force, torque, new, _, _ = run_kernel(
+        position, np.array(velocity), np.array(spin), radius, [0], [1], [spring], material, dt, rule
+    )
+    assert force[1] == pytest.approx(-force[0], abs=1e-14)
+    return force[0], torque, new[0]
+
+
+def test_head_on_pair():
+    """1000 * 0.01 + 10 * (0.3 + 0.2) of approach."""
+    force, torque, spring = pair(velocity=[(-0.3, 0.0), (0.2, 0.0)])
+    assert force == pytest.approx([15.0, 0.0])
+    assert np.all(torque == 0) and spring == 0
+
+
+def test_oblique_pair_sticks():
+    """Normal along z; disk 0 moves along -x, which is +t = (-1, 0): the spring takes 0.2 * 1e-3."""
+    force, torque, spring = pair(angle=math.pi / 2, velocity=[(-0.2, 0.0), (0.0, 0.0)])
+    ft = -(800.0 * 2e-4 + 5.0 * 0.2)
+    assert spring == pytest.approx(2e-4)
+    assert force == pytest.approx([-ft, 10.0])
+    assert torque == pytest.approx([-ft, -ft])
+
+
+def test_oblique_pair_slides():
+    force, torque, spring = pair(angle=math.pi / 2, velocity=[(-2.0, 0.0), (0.0, 0.0)])
+    assert force == pytest.approx([5.0, 10.0])
+    assert torque == pytest.approx([5.0, 5.0])
+    assert spring == pytest.approx((5.0 - 10.0) / 800.0)
+
+
+def test_spinning_pair_of_unequal_disks():
+    """Surface speeds 2 * 0.1 and 0.5 * 0.2 add up; a torque is the radius times the tangential force."""
+    force, torque, spring = pair(radius=(2.0, 0.5), spin=(0.1, 0.2), dt=1e-3)
+    ft = 800.0 * 3e-4 + 5.0 * 0.3
+    assert spring == pytest.approx(-3e-4)
+    assert force == pytest.approx([10.0, ft])
+    assert torque == pytest.approx([-2.0 * ft, -0.5 * ft])
+
+
+def test_gears_turn_without_slip():
+    _, torque, spring = pair(radius=(2.0, 0.5), spin=(0.1, -0.4))
+    assert spring == pytest.approx(0.0, abs=1e-18)
+    assert torque == pytest.approx([0.0, 0.0], abs=1e-14)
+
+
+def test_literal_rule_reaches_the_kernel():
+    force, _, spring = pair(angle=math.pi / 2, velocity=[(-2.0, 0.0), (0.0, 0.0)], rule=LITERAL)
+    assert spring == pytest.approx(2e-3)
+    assert force == pytest.approx([1.6 + 10.0, 10.0])  # beyond the limit of 5
+
+
+@pytest.mark.parametrize(("least", "expected"), [(-math.inf, -10.0), (0.0, 0.0)])
+def test_dashpot_pulls_or_not(least, expected):
+    force, *_ = pair(Material(1000.0, 10.0, 800.0, 5.0, 0.5, least), velocity=[(2.0, 0.0), (0.0, 0.0)])
+    assert force == pytest.approx([expected, 0.0])
+
+
+def test_open_contact_forgets_its_spring():
+    force, torque, spring = pair(overlap=-1e-9, spring=0.01, velocity=[(-1.0, 1.0), (0.0, 0.0)])
+    assert not force.any() and not torque.any() and spring == 0
+
+
+def lattice(rng, disks_per_row=61, layers=3):
+    packing = SlabPacking(kind="slab", layers=layers, disks_per_row=disks_per_row).build()
+    pairs = packing.neighbour_pairs()
+    return packing.position + rng.normal(0, 0.02, (packing.n, 2)), packing.radius, pairs[:, 0], pairs[:, 1]
+
+
+def random_packing(rng):
+    n = 80
+    position = rng.uniform(0, 14, (n, 2))
+    # no two centres coincide nearly, where a normal means nothing
+    keep = [0]
+    for k in range(1, n):
+        if np.linalg.norm(position[keep] - position[k], axis=1).min() > 0.8:
+            keep.append(k)
+    position = position[keep]
+    radius = rng.uniform(0.5, 1.2, len(keep))
+    return position, radius, *neighbours.close_pairs(position, radius, 0.6)
+
+
+PACKINGS = {"lattice": lattice, "random": random_packing}
+RUNS = {
+    "as used": {},
+    "single pairs": {"shortest_run": 10**9},
+    "long gaps": {"shortest_run": 1, "longest_gap": 50},
+}
+
+
+@pytest.mark.parametrize("rule", [CUT, LITERAL], ids=["cut", "literal"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("runs", RUNS)
+@pytest.mark.parametrize("packing", PACKINGS)
+def test_loops_agree_with_plain_python(packing, runs, friction, rule):
+    rng = np.random.default_rng(7)
+    position, radius, first, second = PACKINGS[packing](rng)
+    n = len(radius)
+    velocity, spin = rng.normal(0, 0.1, (n, 2)), rng.normal(0, 0.1, n)
+    material = Material(mu=friction)
+    springs = rng.normal(0, 3e-3, len(first)) if friction else np.zeros(len(first))
+    pairs = list(zip(first.tolist(), second.tolist(), strict=True))
+    dt = 5e-4
+    expected = forces(position, velocity, spin, radius, pairs, springs, material, dt, rule == LITERAL)
+    closed = sum(np.linalg.norm(position[i] - position[j]) < radius[i] + radius[j] for i, j in pairs)
+    assert 20 < closed < len(pairs)
+    force, torque, new, _, _ = run_kernel(
+        position, velocity, spin, radius, first, second, springs, material, dt, rule, **RUNS[runs]
+    )
+    assert force == pytest.approx(expected[0], abs=1e-10)
+    assert torque == pytest.approx(expected[1], abs=1e-10)
+    assert new == pytest.approx(expected[2], abs=1e-13)
+    # momentum: internal forces add up to nothing
+    assert force.sum(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_torques_balance_up_to_the_overlap():
+    """Orbital torque of a pair is (R_i + R_j - overlap) f_t, its spins take (R_i + R_j) f_t."""
+    rng = np.random.default_rng(3)
+    position, radius, first, second = lattice(rng, 21, 5)
+    n = len(radius)
+    velocity, spin = rng.normal(0, 0.1, (n, 2)), rng.normal(0, 0.1, n)
+    material = Material()
+    springs = rng.normal(0, 1e-3, len(first))
+    force, torque, *_ = run_kernel(position, velocity, spin, radius, first, second, springs, material, 5e-4)
+    total = (position[:, 0] * force[:, 1] - position[:, 1] * force[:, 0]).sum() + torque.sum()
+    left = 0.0
+    for c, (i, j) in enumerate(zip(first, second, strict=True)):
+        _, t, _ = forces(
+            position[[i, j]], velocity[[i, j]], spin[[i, j]], radius[[i, j]], [(0, 1)], springs[[c]], material, 5e-4
+        )
+        overlap = 2.0 - np.linalg.norm(position[i] - position[j])
+        left += max(overlap, 0.0) * t[0] / radius[i]
+    assert abs(left) > 1e-3
+    assert total == pytest.approx(left, abs=1e-9)
+
+
+def test_slots_of_no_listed_pair_stay_silent_even_when_their_disks_are_far_or_level():
+    """Gaps inside a run hold pairs such as the end of one row and the start of the next."""
+    rng = np.random.default_rng(5)
+    position, radius, first, second = lattice(rng)
+    n = len(radius)
+    material = Material()
+    _, _, _, spring, slot = run_kernel(
+        position, rng.normal(0, 0.1, (n, 2)), np.zeros(n), radius, first, second, np.zeros(len(first)), material, 5e-4
+    )
+    gaps = np.setdiff1d(np.arange(len(spring)), slot)
+    assert len(gaps) > 0
+    assert not spring[gaps].any()
+
+
+def test_vector_loop_and_single_pairs_agree():
+    rng = np.random.default_rng(11)
+    position, radius, first, second = lattice(rng)
+    n = len(radius)
+    args = (position, rng.normal(0, 0.1, (n, 2)), rng.normal(0, 0.1, n), radius, first, second)
+    springs = rng.normal(0, 1e-3, len(first))
+    in_runs = run_kernel(*args, springs, Material(), 5e-4)
+    again = run_kernel(*args, springs, Material(), 5e-4)
+    alone = run_kernel(*args, springs, Material(), 5e-4, shortest_run=10**9)
+    for a, b, c in zip(in_runs[:3], again[:3], alone[:3], strict=True):
+        assert np.array_equal(a, b)
+        assert c == pytest.approx(a, abs=1e-11)
+
+
+WALLS = {"floor": (0.0, 1.0), "left": (1.0, 0.0), "right": (-1.0, 0.0)}
+
+
+@pytest.mark.parametrize("rule", [CUT, LITERAL], ids=["cut", "literal"])
+@pytest.mark.parametrize("wall", WALLS)
+def test_wall_by_hand(wall, rule):
+    """Overlap 0.01, approach 0.3, slip along t and spin: one disk against each wall."""
+    nx, nz = WALLS[wall]
+    material = Material(1000.0, 10.0, 800.0, 5.0, 0.5)
+    along, spin, dt = 0.1, 0.05, 1e-3
+    v = np.array([-0.3 * nx - along * nz, -0.3 * nz + along * nx, spin])
+    q = np.array([-0.01 * nx, -0.01 * nz, 0.0])
+    f, spring = np.zeros(3), np.array([1e-4])
+    add_wall_forces(
+        q, v, np.array([1.0 * spin]), f, 1, np.array([0]), np.array([[nx, nz]]), np.zeros(1), spring, material.law,
+        rule, dt,
+    )  # fmt: skip
+    fn = 10.0 + 3.0
+    slip = along - spin
+    ft = -(800.0 * (1e-4 + slip * dt) + 5.0 * slip)
+    assert abs(ft) < 0.5 * fn
+    assert spring[0] == pytest.approx(1e-4 + slip * dt)
+    assert f == pytest.approx([fn * nx - ft * nz, fn * nz + ft * nx, ft])
+
+
+def test_open_wall_contact_forgets_its_spring():
+    f, spring = np.zeros(3), np.array([1e-2])
+    add_wall_forces(
+        np.array([0.0, 1e-9, 0.0]), np.zeros(3), np.zeros(1), f, 1, np.array([0]), np.array([[0.0, 1.0]]),
+        np.zeros(1), spring, Material().law, CUT, 1e-3,
+    )  # fmt: skip
+    assert not f.any() and spring[0] == 0
+
+
+def test_frictionless_wall_beside_rotating_disks():
+    f = np.zeros(3)
+    add_wall_forces(
+        np.array([0.3, -0.01, 0.0]), np.array([1.0, 0.0, 1.0]), np.array([1.0]), f, 1, np.array([0]),
+        np.array([[0.0, 1.0]]), np.zeros(1), None, Material(mu=0.0).law, CUT, 1e-3,
+    )  # fmt: skip
+    assert f == pytest.approx([0.0, 30.0, 0.0])

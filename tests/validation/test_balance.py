@@ -1,0 +1,84 @@
+"""Certified states are in balance: forces, torques, floor forces against weight and load."""
+
+import numpy as np
+import pytest
+from solved import FLOOR_DISKS, response, slab
+
+from granular_response.observe.floor import floor_force
+from granular_response.scene import Scene
+from granular_response.solve import solve_scene
+from granular_response.solve.state import FLOOR, LEFT_WALL, RIGHT_WALL
+
+CASES = [(0.0, 4.0, "auto"), (0.2, 4.0, "path"), (0.2, 4.0, "dynamics"), (1.0, 4.0, "path"), (1.0, 4.0, "dynamics")]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_floor_carries_the_weight_and_the_load(case):
+    solution = slab(*case)
+    assert floor_force(solution.rest, FLOOR_DISKS).sum() == pytest.approx(908.0, rel=1e-9)
+    assert floor_force(solution.loaded[-1], FLOOR_DISKS).sum() == pytest.approx(908.0 + case[1], rel=1e-9)
+    assert response(solution).sum() == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_no_disk_is_out_of_balance(case):
+    """Summed here from positions, springs and stiffnesses alone, contact by contact in plain Python."""
+    solution = slab(*case)
+    kn, kt = 3000.0, 2400.0
+    for state, load in ((solution.rest, 0.0), (solution.loaded[-1], case[1])):
+        force = np.zeros((908, 3))
+        force[:, 1] = -1.0
+        force[877, 1] -= load
+        for i, j, spring in zip(state.pairs.first, state.pairs.second, state.pairs.spring, strict=True):
+            d = state.position[i] - state.position[j]
+            distance = float(np.hypot(*d))
+            if distance >= 2.0:
+                continue
+            nx, nz = d / distance
+            fn, ft = kn * (2.0 - distance), (-kt * spring if case[0] else 0.0)
+            assert abs(ft) <= case[0] * fn + 1e-9
+            fx, fz = fn * nx - ft * nz, fn * nz + ft * nx
+            force[i] += fx, fz, -ft
+            force[j] += -fx, -fz, -ft
+        force[:, 1] += 6000.0 * np.maximum(1.0 - state.position[:, 1], 0.0)
+        force[:, 0] += 6000.0 * np.maximum(1.0 - state.position[:, 0], 0.0)
+        force[:, 0] -= 6000.0 * np.maximum(state.position[:, 0] - (122.0 - 1.0), 0.0)
+        assert np.abs(force).max() < 1e-9
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_certificate_says_so(case):
+    for state in (slab(*case).rest, slab(*case).loaded[-1]):
+        certificate = state.information["certificate"]
+        assert certificate.force_residual < 1e-9
+        assert certificate.torque_residual < 1e-9
+        assert certificate.coulomb_excess < 1e-9
+        assert certificate.smallest_normal_force > 0
+        assert certificate.stable
+
+
+def test_frictional_walls_carry_part_of_the_weight_and_balance_sideways():
+    scene = {
+        "packing": {"kind": "slab", "layers": 6, "disks_per_row": 11},
+        "wall": {"friction": 0.3},
+        "loads": [{"disk": "top-centre", "force": [1.0, -3.0], "torque": 0.5}],
+    }
+    solution = solve_scene(Scene.from_dict(scene))
+    state, problem = solution.loaded[-1], solution.problem
+    force = state.wall_force()
+    assert force.sum(axis=0) == pytest.approx([-1.0, problem.n + 3.0], abs=1e-9)
+    sides = np.isin(state.walls.second, [LEFT_WALL, RIGHT_WALL])
+    assert abs(force[sides, 1].sum()) > 1e-3
+    # Torque about the corner of the box: weights, load, wall forces. Both disks of a contact feel R f_t, although
+    # their centres are closer than two radii by the overlap: the difference is what is left.
+    x, z = state.position.T
+    total = -(problem.weight * x).sum() + 0.5
+    k = problem.load_disk[0]
+    total += x[k] * -3.0 - z[k] * 1.0
+    arm = {FLOOR: (0.0, -1.0), LEFT_WALL: (-1.0, 0.0), RIGHT_WALL: (1.0, 0.0)}
+    for disk, wall, (fx, fz) in zip(state.walls.first, state.walls.second, force, strict=True):
+        px, pz = state.position[disk] + arm[int(wall)]
+        total += px * fz - pz * fx
+    left = (np.maximum(state.pairs.overlap, 0.0) * state.pairs.tangential_force).sum()
+    assert abs(left) > 1e-7
+    assert total == pytest.approx(left, abs=1e-10)

@@ -1,0 +1,61 @@
+"""Floor forces of the paper's slab against LAMMPS (tests/data/README.md)."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from solved import FLOOR_DISKS, response, slab
+
+from granular_response.observe.floor import floor_force
+
+DATA = Path(__file__).parents[1] / "data"
+
+#: Largest difference of the normalised response: dynamics as in LAMMPS, and the quasi-static limit of the ramp.
+LIMITS = {
+    ("0", "auto"): 2e-6,
+    ("0.2", "dynamics"): 4e-6,
+    ("1", "dynamics"): 1e-5,
+    ("0.2", "path"): 5e-5,
+    ("1", "path"): 5e-5,
+}
+
+
+def reference(friction: str) -> dict:
+    return json.loads((DATA / f"lammps_mu{friction}_F4.json").read_text())
+
+
+@pytest.mark.parametrize(("friction", "method"), LIMITS)
+def test_response_agrees_with_lammps(friction, method):
+    solution = slab(float(friction), 4.0, method)
+    expected = np.array(reference(friction)["tol_1e-22"]["response"])
+    assert response(solution) == pytest.approx(expected, abs=LIMITS[friction, method], rel=0)
+
+
+@pytest.mark.parametrize(
+    ("friction", "method", "limit"), [("0", "auto", 2e-6), ("0.2", "dynamics", 3e-3), ("1", "dynamics", 3e-3)]
+)
+def test_floor_forces_at_rest_agree_with_lammps(friction, method, limit):
+    """With friction the rest state remembers the fall, and with it the integrator and its time step."""
+    expected = np.array(reference(friction)["tol_1e-22"]["floor_force_gravity"])
+    rest = slab(float(friction), 4.0, method).rest
+    assert floor_force(rest, FLOOR_DISKS) == pytest.approx(expected, abs=limit, rel=0)
+
+
+@pytest.mark.parametrize(("friction", "method"), [("0", "auto"), ("0.2", "dynamics"), ("1", "dynamics")])
+def test_contact_network_agrees_with_lammps(friction, method):
+    """The number of closed contacts, but for those closer to opening than two codes agree."""
+    solution = slab(float(friction), 4.0, method)
+    for state, key in ((solution.rest, "contacts_gravity"), (solution.loaded[-1], "contacts_loaded")):
+        expected = reference(friction)["tol_1e-22"][key]
+        doubtful = int((np.abs(state.pairs.overlap) < 1e-7).sum())
+        assert abs(int(state.pairs.touching.sum()) - expected["closed"]) <= doubtful
+        assert state.pairs.overlap.max() == pytest.approx(expected["max_overlap"], rel=2e-4)
+
+
+def test_stopping_at_the_papers_kinetic_energy_is_less_exact():
+    """E_stop = 1e-13 leaves errors in the response that the static finish removes (Sec. III.C)."""
+    data = reference("0")
+    early = np.abs(np.array(data["tol_1e-13"]["response"]) - data["tol_1e-22"]["response"]).max()
+    finished = np.abs(response(slab(0.0, 4.0)) - data["tol_1e-22"]["response"]).max()
+    assert finished < 1e-3 * early
