@@ -49,3 +49,19 @@ def load_method(problem: Problem) -> Choice:
             raise ValueError("protocol.method: minimise needs a scene without friction (allowed: path, dynamics, auto)")
         return Choice("path", "friction and a load that only grows: a path of equilibria")
     return Choice("minimise", "no friction: equilibrium is a minimum of the energy")
+
+
+def stop_energy(problem: Problem) -> float:
+    """Kinetic energy per disk at which dynamics hands over to the static finish (Sec. III.C).
+
+    The paper's own: 1e-6 without friction, 1e-9 with disorder, and else what the protocol says. With
+    ``method: dynamics``, or without a static finish, the protocol is taken at its word.
+    """
+    protocol = problem.scene.protocol
+    if protocol.method == "dynamics" or not protocol.static_finish:
+        return protocol.stop_kinetic_energy
+    if not problem.rotations:
+        return max(protocol.stop_kinetic_energy, 1e-6)
+    if not problem.packing.ordered:
+        return max(protocol.stop_kinetic_energy, 1e-9)
+    return protocol.stop_kinetic_energy

@@ -24,6 +24,10 @@ class EquilibriumError(RuntimeError):
     """No static equilibrium was found near the start."""
 
 
+class Rearranged(EquilibriumError):
+    """Disks have met that were not neighbours: equilibrium is not near the start."""
+
+
 @dataclass(frozen=True)
 class Certificate:
     """What a static state guarantees, measured on the state itself.

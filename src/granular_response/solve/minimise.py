@@ -10,13 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from .equilibrium import TOLERANCE, EquilibriumError, certify, external_force
+from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, certify, external_force
 from .problem import Problem
 from .state import FloatArray, State
 from .system import REGULARISATION, StaticSystem, Trial
 
 #: Most iterations of one minimisation.
 MAXIMUM_ITERATIONS = 2000
+#: Iterations between two looks at whether the packing has rearranged.
+LOOK_EVERY = 10
 #: No disk moves farther than this in one step (mean radii).
 LONGEST_STEP = 0.2
 
@@ -39,6 +41,8 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
         When the scene has friction (no energy to minimise).
     EquilibriumError
         When no minimum is found: something falls for ever, or too many iterations.
+    Rearranged
+        When disks meet that were not neighbours at the start.
     """
     if problem.rotations:
         raise ValueError("method minimise needs a scene without friction; use path or dynamics")
@@ -54,7 +58,10 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
     while iterations < MAXIMUM_ITERATIONS:
         r = trial.contact_force + external
         size = float(np.abs(r).max())
-        if size < 0.01 * TOLERANCE or (size < TOLERANCE and damping == 0.0):
+        settled = size < 0.01 * TOLERANCE or (size < TOLERANCE and damping == 0.0)
+        if (settled or iterations % LOOK_EVERY == LOOK_EVERY - 1) and system.meets_unlisted(q):
+            raise Rearranged("the packing rearranges on its way to a minimum of the energy; use method dynamics")
+        if settled:
             modes = system.negative_modes(trial)
             if modes == 0:
                 break

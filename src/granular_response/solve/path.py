@@ -45,7 +45,7 @@ class Crossing:
 
     start: float
     end: float
-    reason: str  #: unstable, or no equilibrium
+    reason: str  #: unstable, no equilibrium, or rearrangement
     displacement: float  #: largest displacement of a disk on the way (mean radii)
 
 
@@ -149,6 +149,10 @@ class _Path:
         self.known, self.trial, self.factor = found.configuration, found, new
         easy = self.record.work.rounds == rounds
         self.step = min(self.step * (1.4 if easy else 0.9), self.longest)
+        if new == target and self.system.meets_unlisted(self.known.q):
+            self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
+            self._cross(target, "rearrangement")
+            return
         if new == target or new - self.stable_at >= STABILITY_STEP / self.unit:
             self._look_at_stability()
 

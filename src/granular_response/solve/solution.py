@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..scene import Scene
-from .choice import Choice, load_method, rest_method
+from .choice import Choice, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .equilibrium import EquilibriumError, certify, finish
 from .minimise import minimise
 from .path import follow
 from .problem import Problem
 from .state import State
+from .system import StaticSystem
 from .timestep import resolve_time_step
 
 #: Called as ``progress(done, total, what)``.
@@ -105,7 +106,12 @@ def loaded_states(
         states = []
         state = rest
         for done, factor in enumerate(factors, 1):
-            state = minimise(problem, state, load_factor=factor)
+            try:
+                state = minimise(problem, state, load_factor=factor)
+            except EquilibriumError:
+                # the packing collapses or rearranges here: its motion decides where it comes to rest
+                ramp = (state.load_factor, factor, protocol.ramp_time)
+                state = _relaxed(problem, state, "load", progress, gravity=(1.0, 1.0, 0.0), load=ramp)
             states.append(state)
             if progress is not None:
                 progress(done, len(factors), "load")
@@ -125,7 +131,7 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
     """Dynamics to rest as the protocol says, and the static finish."""
     protocol = problem.scene.protocol
     dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
-    stop = Stop(protocol.stop_kinetic_energy, protocol.stop_rule, protocol.maximum_steps)
+    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps)
     report = None
     if progress is not None:
         highest = [stop.kinetic_energy * 10.0, 0.0]
@@ -142,20 +148,38 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
     if not protocol.static_finish:
         certificate = certify(problem, settled)
         return replace(settled, information={**settled.information, "certificate": certificate})
-    for _ in range(3):
+    failure: Exception | None = None
+    for _ in range(4):
         try:
-            return finish(problem, settled)
+            if not problem.rotations:
+                finished = minimise(problem, problem.relisted(settled), load_factor=load[1])
+                return replace(finished, information={**settled.information, **finished.information})
+            finished = finish(problem, settled)
+            if finished.information["certificate"].stable:
+                return finished
+            failure = EquilibriumError("the equilibrium found is unstable")
+            dynamics = Dynamics(problem, _nudged(problem, finished), protocol.integrator, dynamics.time_step)
+            dynamics.load = (load[1], load[1], 0.0)
         except EquilibriumError as error:
-            last = error
+            failure = error
         if not settled.information["settled"]:
             break
-        stop = replace(stop, kinetic_energy=stop.kinetic_energy * 1e-3)
+        stop = replace(stop, kinetic_energy=stop.kinetic_energy * 1e-2)
         settled = relax(dynamics, stop, load=(load[1], load[1], 0.0))
         settled.information["method"] = "dynamics"
     raise NotSettled(
         f"the packing did not come to rest under {stage} within protocol.maximum_steps = {protocol.maximum_steps} "
-        f"(kinetic energy {settled.information['kinetic_energy']:.1e} per disk): {last}"
+        f"(kinetic energy {settled.information['kinetic_energy']:.1e} per disk): {failure}"
     )
+
+
+def _nudged(problem: Problem, state: State) -> State:
+    """An unstable equilibrium displaced a little along its unstable direction."""
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    direction = system.unstable_direction(system.trial(known, known.q))[: 2 * problem.n]
+    moved = state.position + 1e-6 * direction.reshape(2, problem.n).T
+    return problem.with_static_forces(replace(state, position=moved))
 
 
 __all__ = ["DynamicsError", "NotSettled", "Solution", "loaded_states", "rest_state", "solve_scene"]

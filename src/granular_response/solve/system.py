@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 
 from ..core import statics
+from ..core.neighbours import close_pairs
 from .linear import WIDEST_BAND, Band, Factor, node_order, sparse_factor, symmetric_factor
 from .problem import Problem, wall_gap, wall_normals
 from .state import SLIDING, Contacts, FloatArray, State
@@ -233,6 +234,14 @@ class StaticSystem:
         """Factorisation of the symmetric part of the tangent and its number of negative eigenvalues."""
         matrix = self.tangent(trial, shift)
         return symmetric_factor(_symmetric_part(matrix), self._band)
+
+    def meets_unlisted(self, q: FloatArray) -> bool:
+        """Whether some disks overlap that are not among the candidates: the packing has rearranged."""
+        n = self.problem.n
+        position = self.reference + q[: 2 * n].reshape(2, n).T
+        first, second = close_pairs(position, self.problem.packing.radius, 0.0)
+        listed = self.first * n + self.second
+        return bool(np.isin(first.astype(np.int64) * n + second, listed, invert=True).any())
 
     def negative_modes(self, trial: Trial, shift: float = 1e-6) -> int:
         """Number of unstable directions of the tangent.
