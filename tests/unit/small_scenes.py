@@ -1,0 +1,44 @@
+"""Small problems for tests of the solvers."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from granular_response.scene import Packing, Scene
+from granular_response.solve import Problem, State
+
+
+def scene(layers=4, disks_per_row=7, **changes) -> Scene:
+    """A small slab; ``changes`` as in ``Scene.updated`` with ``__`` for the dot."""
+    base = Scene.from_dict({"packing": {"kind": "slab", "layers": layers, "disks_per_row": disks_per_row}})
+    return base.updated({key.replace("__", "."): value for key, value in changes.items()})
+
+
+def free_disks(position, radius=None, *, width=1000.0, velocity=None, spin=None, **changes) -> tuple[Problem, State]:
+    """Disks at given places far from side walls (unless ``width`` is small), with given motion."""
+    position = np.array(position, float)
+    n = len(position)
+    radius = np.ones(n) if radius is None else np.array(radius, float)
+    packing = Packing(position, radius, np.full(n, -1, np.int32), width, "file")
+    problem = Problem.from_scene(scene(**changes), packing)
+    state = problem.bare_state()
+    if velocity is not None:
+        state = replace(state, velocity=np.array(velocity, float))
+    if spin is not None:
+        state = replace(state, angular_velocity=np.array(spin, float))
+    return problem, state
+
+
+def shaken(problem: Problem, seed=0, *, size=2e-3, spring=2e-4) -> State:
+    """The bare packing pressed together a little, shaken, and with random springs in closed contacts."""
+    rng = np.random.default_rng(seed)
+    bare = problem.bare_state()
+    position = bare.position * (1.0 - 2e-3) + rng.normal(0, size, bare.position.shape)
+    state = replace(
+        bare,
+        position=position,
+        angle=rng.normal(0, 1e-2, problem.n),
+        pairs=replace(bare.pairs, spring=rng.normal(0, spring, len(bare.pairs.first))),
+        walls=replace(bare.walls, spring=rng.normal(0, spring, len(bare.walls.first))),
+    )
+    return problem.with_static_forces(state)

@@ -1,0 +1,181 @@
+"""Static forces against the dynamics' kernels, and tangents against finite differences."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scenes import free_disks, scene, shaken
+
+from granular_response.solve import Dynamics, Problem
+from granular_response.solve.state import OPEN, SLIDING, STICKING
+from granular_response.solve.system import StaticSystem
+
+FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
+
+
+def problem_with(friction: str) -> Problem:
+    pair, wall = FRICTION[friction]
+    return Problem.from_scene(scene(contact__friction=pair, wall__friction=wall))
+
+
+@pytest.mark.parametrize("friction", FRICTION)
+def test_forces_agree_with_dynamics_at_rest(friction):
+    """A shaken packing with springs below the Coulomb limit, no velocities: two codes, one force."""
+    problem = problem_with(friction)
+    state = shaken(problem, spring=1e-5)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    dynamics = Dynamics(problem, state)
+    force = dynamics.history[0] / problem.inverse_mass
+    trial = system.trial(known, known.q)
+    assert (trial.status == STICKING).sum() > 20 and (trial.status == OPEN).any()
+    assert trial.contact_force + problem.weight_vector() == pytest.approx(force, abs=1e-9)
+    # and the third place where forces are made: the state itself
+    assert trial.pair_normal == pytest.approx(state.pairs.normal_force, abs=1e-11)
+    assert trial.pair_tangential == pytest.approx(state.pairs.tangential_force, abs=1e-11)
+    assert trial.wall_normal == pytest.approx(state.walls.normal_force, abs=1e-11)
+    assert trial.wall_tangential == pytest.approx(state.walls.tangential_force, abs=1e-11)
+
+
+def test_sliding_forces_agree_with_dynamics_at_rest():
+    problem = problem_with("both")
+    state = shaken(problem, spring=5e-3)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    trial = system.trial(known, known.q)
+    assert (trial.status == SLIDING).sum() > 10
+    force = Dynamics(problem, state).history[0] / problem.inverse_mass
+    assert trial.contact_force + problem.weight_vector() == pytest.approx(force, abs=1e-9)
+
+
+def dense_tangent(system, trial):
+    """The tangent as a dense matrix in the order ``[x | z | angle]``."""
+    matrix = system.tangent(trial).toarray()
+    unit = np.eye(system.dof)
+    order = np.array([int(np.flatnonzero(system.interleave(e))[0]) for e in unit])
+    return matrix[np.ix_(order, order)]
+
+
+def numerical_tangent(system, known, q, limits=None, h=1e-7):
+    columns = []
+    for k in range(len(q)):
+        e = np.zeros(len(q))
+        e[k] = h
+        up, down = system.trial(known, q + e, limits), system.trial(known, q - e, limits)
+        assert np.array_equal(up.status, down.status)  # else the derivative has two values
+        columns.append((down.contact_force - up.contact_force) / (2.0 * h))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("friction", FRICTION)
+@pytest.mark.parametrize("step", [1e-6, 3e-3], ids=["sticking", "sliding"])
+def test_tangent_is_the_derivative(friction, step):
+    problem = problem_with(friction)
+    # pressed so hard that no contact opens or closes within the increment
+    state = shaken(problem, seed=4, size=1e-4, spring=1e-5)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    q = known.q + np.random.default_rng(1).normal(0, step, system.dof)
+    trial = system.trial(known, q)
+    before = np.concatenate([known.pair_overlap, known.wall_overlap])
+    now = np.concatenate([trial.configuration.pair_overlap, trial.configuration.wall_overlap])
+    if step < 1e-4:
+        assert np.array_equal(before > 0, now > 0)
+        assert (trial.status == STICKING).sum() > 30
+    elif problem.rotations:
+        assert (trial.status == SLIDING).sum() > 3
+    if step < 1e-4 or not problem.rotations:
+        assert dense_tangent(system, trial) == pytest.approx(numerical_tangent(system, known, q), abs=2e-3)
+        return
+    # contacts that close within the increment have a tangent of their own (tested below): compare the others
+    newly = np.flatnonzero((before <= 0) & (now > 0))
+    involved = set()
+    for c in newly:
+        m = len(system.first)
+        involved |= {int(system.first[c]), int(system.second[c])} if c < m else {int(system.wall_disk[c - m])}
+    free = np.array([k for k in range(problem.n) if k not in involved])
+    assert len(free) >= 3
+    rows = np.concatenate([free + part * problem.n for part in range(3)])
+    difference = dense_tangent(system, trial) - numerical_tangent(system, known, q)
+    assert np.abs(difference[rows]).max() < 2e-3
+
+
+def test_tangent_with_fixed_limits_is_the_derivative_and_symmetric_but_for_the_turn():
+    problem = problem_with("both")
+    state = shaken(problem, seed=4, size=1e-4, spring=1e-5)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    q = known.q + np.random.default_rng(1).normal(0, 1e-4, system.dof)
+    limits = (np.full(len(system.first), 0.05), np.full(len(system.wall_disk), 0.05))
+    trial = system.trial(known, q, limits)
+    assert (trial.status == SLIDING).sum() > 3
+    matrix = dense_tangent(system, trial)
+    assert matrix == pytest.approx(numerical_tangent(system, known, q, limits), abs=2e-3)
+    assert np.abs(matrix - matrix.T).max() < 1e-3 * np.abs(matrix).max()
+
+
+def two_disks(wall: bool):
+    """A pair, or a disk above the floor, that is open by 1e-4."""
+    if wall:
+        return free_disks([[500.0, 1.0001]], wall__friction=0.4)
+    return free_disks([[500.0, 50.0], [502.0001, 50.0]], contact__friction=0.4)
+
+
+@pytest.mark.parametrize("wall", [False, True], ids=["pair", "wall"])
+def test_newly_closed_contact_collects_slip_from_where_it_closed(wall):
+    """It closes after 1/3 of the increment: two thirds of the tangential displacement stretch the spring."""
+    problem, state = two_disks(wall)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    n = problem.n
+    q = np.zeros(system.dof)
+    q[n if wall else 0] = -3e-4 if wall else 3e-4  # 1e-4 to close, then 2e-4 of overlap
+    q[0 if wall else n] = 3e-6
+    trial = system.trial(known, q)
+    spring = trial.configuration.wall_spring if wall else trial.configuration.pair_spring
+    status = trial.wall_status if wall else trial.pair_status
+    slip = -3e-6  # on disk 0: t = (-1, 0) at the floor, (0, -1) beside a disk at its right
+    assert status[0] == STICKING
+    assert spring[0] == pytest.approx(slip * 2 / 3, rel=1e-3)
+
+
+@pytest.mark.parametrize("wall", [False, True], ids=["pair", "wall"])
+def test_tangent_of_a_newly_closed_contact(wall):
+    """Exact where no slip has been collected yet; the change of the share of slip is left out of it."""
+    problem, state = two_disks(wall)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    q = np.zeros(system.dof)
+    q[problem.n if wall else 0] = -3e-4 if wall else 3e-4
+    trial = system.trial(known, q)
+    assert trial.status[0] == STICKING
+    matrix = dense_tangent(system, trial)
+    assert np.abs(matrix).max() > 1000
+    assert matrix == pytest.approx(numerical_tangent(system, known, q), abs=2e-3)
+
+
+def test_large_turn_of_a_pair_is_followed_exactly():
+    """Disk 0 is carried by 1 radian around disk 1 without spinning: the spring is distance times angle."""
+    problem, state = free_disks([[500.0, 50.0], [501.9, 50.0]], contact__friction=1.0, contact__stiffness_ratio=1e-3)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    q = np.zeros(6)
+    # disk 0 starts on the left of disk 1: n = (-1, 0), t = (0, -1); counter-clockwise is along +t
+    q[0], q[2] = 1.9 * (1.0 - np.cos(1.0)), -1.9 * np.sin(1.0)
+    trial = system.trial(known, q)
+    assert trial.status[0] == STICKING
+    assert trial.configuration.pair_spring[0] == pytest.approx(1.9)
+    q[4] = q[5] = 0.95  # rolling: both turn by as much as takes the slip away
+    assert system.trial(known, q).configuration.pair_spring[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_open_contacts_forget():
+    problem, state = free_disks([[500.0, 50.0], [501.99, 50.0]], contact__friction=1.0)
+    state = problem.with_static_forces(replace(state, pairs=replace(state.pairs, spring=np.array([1e-3]))))
+    assert state.pairs.tangential_force[0] == pytest.approx(-2.4)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    trial = system.trial(known, np.array([-0.02, 0, 0, 0, 0, 0.0]))
+    assert trial.pair_status[0] == OPEN
+    assert trial.configuration.pair_spring[0] == 0.0
+    assert not trial.contact_force.any()
