@@ -71,13 +71,12 @@ Positive = Annotated[float, Field(strict=True, gt=0), allowed("must be a number 
 NonNegative = Annotated[float, Field(strict=True, ge=0), allowed("must be a number, 0 or greater")]
 #: A dimensionless parameter. The limit keeps products of parameters finite.
 Ratio = Annotated[float, Field(strict=True, ge=0, le=1e6), allowed("must be a number from 0 to 1e6")]
+MOST_STIFFNESS = 1e12
 #: Beyond 1e12 an overlap of one disk weight is lost in the rounding of a position.
 Stiffness = Annotated[
-    float, Field(strict=True, gt=0, le=1e12), allowed("must be a number greater than 0, at most 1e12")
+    float, Field(strict=True, gt=0, le=MOST_STIFFNESS), allowed("must be a number greater than 0, at most 1e12")
 ]
-Fraction = Annotated[
-    float, Field(strict=True, ge=0, lt=1), allowed("must be a number, 0 or greater and less than 1")
-]
+Fraction = Annotated[float, Field(strict=True, ge=0, lt=1), allowed("must be a number, 0 or greater and less than 1")]
 Count = Annotated[int, Field(strict=True, ge=1), allowed("must be a whole number, 1 or greater")]
 Index = Annotated[
     int,

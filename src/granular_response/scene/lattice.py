@@ -16,12 +16,8 @@ from .packing import Packing, exact_mean
 TOUCHING_LARGEST = "touching-largest"
 MOST_DISKS = 100_000_000
 
-Rows = Annotated[
-    int, Field(strict=True, ge=1, le=100_000), allowed("must be a whole number from 1 to 100000")
-]
-RowLength = Annotated[
-    int, Field(strict=True, ge=2, le=100_000), allowed("must be a whole number from 2 to 100000")
-]
+Rows = Annotated[int, Field(strict=True, ge=1, le=100_000), allowed("must be a whole number from 1 to 100000")]
+RowLength = Annotated[int, Field(strict=True, ge=2, le=100_000), allowed("must be a whole number from 2 to 100000")]
 LatticeConstant = Annotated[
     Annotated[float, Field(strict=True, gt=0, le=1000)] | Literal["touching-largest"],
     allowed(f"must be a number greater than 0, at most 1000, or {TOUCHING_LARGEST}"),

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from .base import Description, Finite, allowed
-from .errors import Problem, SceneError, describe
+from .errors import Problem, SceneError, show, show_key
 from .packing import Packing
 
 TOP_CENTRE: Final = "top-centre"
@@ -30,8 +30,7 @@ class RowSelector(Description):
     row: RowName = Field(description="top, bottom, or the number of the row, 0 at the bottom.")
     offset: Annotated[int, Field(strict=True), allowed("must be a whole number")] = Field(
         default=0,
-        description="Places to the right of the middle disk of the row (of the left one of the two in the "
-        "middle).",
+        description="Places to the right of the middle disk of the row (of the left one of the two in the middle).",
     )
 
 
@@ -51,9 +50,7 @@ class Load(Description):
         "places from the middle of the row}."
     )
     force: Vector = Field(description="Force x, z in mean disk weights; z points up.")
-    torque: Finite = Field(
-        default=0.0, description="Torque in mean disk weights times mean radius, counter-clockwise."
-    )
+    torque: Finite = Field(default=0.0, description="Torque in mean disk weights times mean radius, counter-clockwise.")
 
 
 def resolve_disk(
@@ -77,7 +74,8 @@ def resolve_disk(
     try:
         return check_disk(selector, packing.n, packing.row_count)
     except Problem as problem:
-        raise SceneError(describe((key, *problem.key), problem.value, problem.allowed)) from None
+        part = f".{show_key(problem.key)}" if problem.key else ""
+        raise SceneError(f"{key}{part} = {show(problem.value)}: {problem.allowed}") from None
 
 
 def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.int64]) -> int:

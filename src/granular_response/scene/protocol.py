@@ -24,8 +24,7 @@ class Preparation(Description):
     )
     ramp_time: Positive = Field(
         default=100.0,
-        description="Time over which slow gravity grows, in sqrt(R/g). Without effect when gravity is at- "
-        "once.",
+        description="Time over which slow gravity grows, in sqrt(R/g). Without effect when gravity is at- once.",
     )
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
 from . import text as yaml_text
-from .base import PACKING_KINDS, Description
+from .base import MOST_STIFFNESS, PACKING_KINDS, Description
 from .errors import Problem, SceneError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, check_disk
@@ -62,6 +62,16 @@ class Scene(Description):
         default_factory=Preparation, description="How gravity is brought onto the packing."
     )
     protocol: Protocol = Field(default_factory=Protocol, description="How equilibrium is reached.")
+
+    @model_validator(mode="after")
+    def _check_wall(self) -> Scene:
+        if self.wall.normal_stiffness is None and self.contact.normal_stiffness > 0.5 * MOST_STIFFNESS:
+            raise Problem(
+                "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open",
+                key=("contact", "normal_stiffness"),
+                value=self.contact.normal_stiffness,
+            )
+        return self
 
     @model_validator(mode="after")
     def _check_loaded_disks(self) -> Scene:

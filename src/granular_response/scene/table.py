@@ -23,9 +23,7 @@ def _printable(text: str) -> str:
     return text
 
 
-FileName = Annotated[
-    str, Field(strict=True), AfterValidator(_printable), allowed("must be the path of a CSV file")
-]
+FileName = Annotated[str, Field(strict=True), AfterValidator(_printable), allowed("must be the path of a CSV file")]
 
 
 class FilePacking(Description):
@@ -38,8 +36,7 @@ class FilePacking(Description):
 
     kind: Literal["file"] = Field(default="file", description="Disks from a CSV file.")
     path: FileName = Field(
-        description="CSV file with the columns x, z, radius. A relative path starts at the folder of the "
-        "scene file."
+        description="CSV file with the columns x, z, radius. A relative path starts at the folder of the scene file."
     )
     width: Positive = Field(description="Distance of the side walls, in the unit of length of the file.")
 

@@ -118,6 +118,4 @@ def read(text: str) -> Any:
 
 def write(data: Any) -> str:
     """``data`` as YAML that ``read`` turns into equal data; numbers keep every digit."""
-    return yaml.dump(
-        data, Dumper=_Writer, sort_keys=False, default_flow_style=None, allow_unicode=True, width=110
-    )
+    return yaml.dump(data, Dumper=_Writer, sort_keys=False, default_flow_style=None, allow_unicode=True, width=110)

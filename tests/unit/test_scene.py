@@ -1,0 +1,174 @@
+"""A scene's defaults, derived values, updates and way to YAML and back."""
+
+import math
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from granular_response.scene import (
+    Contact,
+    Load,
+    PilePacking,
+    Protocol,
+    RowSelector,
+    Scene,
+    SceneError,
+    SlabPacking,
+    Wall,
+    resolve_disk,
+)
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def test_defaults_are_the_papers():
+    scene = Scene()
+    assert scene.packing == SlabPacking(layers=15, disks_per_row=61, polydispersity=0.0, lattice_constant=2.0)
+    assert scene.contact == Contact(normal_stiffness=3000.0, stiffness_ratio=0.8, friction=0.2, damping_ratio=0.5)
+    assert scene.resolved_wall == Contact(normal_stiffness=6000.0, stiffness_ratio=0.8, friction=0.0, damping_ratio=0.5)
+    assert scene.loads == (Load(disk="top-centre", force=(0.0, -15.0), torque=0.0),)
+    protocol = scene.protocol
+    assert (protocol.integrator, protocol.time_step, protocol.stop_kinetic_energy) == ("beeman", 5e-4, 1e-13)
+    assert scene.preparation.gravity == "at-once"
+    assert Scene.from_text("{}") == scene
+
+
+def test_dashpots_are_half_critical():
+    contact = Contact()
+    assert contact.tangential_stiffness == pytest.approx(2400.0)
+    assert contact.normal_damping == pytest.approx(math.sqrt(3000.0))
+    assert contact.tangential_damping == pytest.approx(math.sqrt(2400.0))
+    assert Contact(damping_ratio=0.25).normal_damping == pytest.approx(0.5 * math.sqrt(3000.0))
+    # The same for the walls, with their own stiffness.
+    assert Scene().resolved_wall.normal_damping == pytest.approx(math.sqrt(6000.0))
+
+
+def test_wall_follows_the_contacts_unless_told():
+    contact = Contact(normal_stiffness=1000.0, stiffness_ratio=0.5, friction=0.9, damping_ratio=0.1)
+    assert Wall(friction=0.3).resolved(contact) == Contact(
+        normal_stiffness=2000.0, stiffness_ratio=0.5, friction=0.3, damping_ratio=0.1
+    )
+    own = Wall(normal_stiffness=7.0, stiffness_ratio=0.0, friction=0.1, damping_ratio=0.0)
+    assert own.resolved(contact) == Contact(normal_stiffness=7.0, stiffness_ratio=0.0, friction=0.1, damping_ratio=0.0)
+
+
+def test_frozen():
+    scene = Scene()
+    with pytest.raises(ValueError, match="frozen"):
+        scene.contact.friction = 1.0
+    with pytest.raises(ValueError, match="frozen"):
+        scene.contact = Contact()
+    assert len({scene, Scene(), scene.updated({"contact.friction": 1.0})}) == 2
+
+
+def test_text_is_complete_and_exact():
+    scene = Scene(
+        contact=Contact(friction=0.1 + 0.2, normal_stiffness=1e5 / 3),
+        protocol=Protocol(stop_kinetic_energy=1e-13),
+        loads=[Load(disk=RowSelector(row="top", offset=-3), force=(1 / 3, -5e-324), torque=-0.0)],
+    )
+    text = scene.to_yaml()
+    assert Scene.from_text(text) == scene
+    assert Scene.from_text(text).to_yaml() == text
+    assert Scene.from_dict(scene.to_dict()) == scene
+    written = Scene().to_dict()
+    assert list(written) == ["packing", "contact", "wall", "loads", "preparation", "protocol"]
+    assert set(written["protocol"]) == set(Protocol.model_fields)
+
+
+@pytest.mark.parametrize("number", ["1e-13", "1E-13", "1.0e-13", ".1e-12", "0.0000000000001", "+1e-13"])
+def test_numbers_as_people_write_them(number):
+    scene = Scene.from_text(f"protocol: {{stop_kinetic_energy: {number}}}")
+    assert scene.protocol.stop_kinetic_energy == 1e-13
+
+
+def test_whole_numbers_serve_as_numbers_and_are_decimal():
+    scene = Scene.from_text("contact: {normal_stiffness: 3000}\npacking: {kind: slab, layers: 010}")
+    assert scene.contact.normal_stiffness == 3000.0 and isinstance(scene.contact.normal_stiffness, float)
+    assert scene.packing.layers == 10
+
+
+def test_updated_replaces_values_and_sections():
+    scene = Scene()
+    other = scene.updated(
+        {
+            "contact.friction": 1.0,
+            "loads.0.force": [0.0, -4.0],
+            "loads[0].torque": 2.0,
+            "packing": PilePacking(),
+            "packing.layers": 5,
+            "wall": {"friction": 0.5},
+        }
+    )
+    assert other.contact.friction == 1.0 and other.contact.normal_stiffness == 3000.0
+    assert other.loads == (Load(disk="top-centre", force=(0.0, -4.0), torque=2.0),)
+    assert other.packing == PilePacking(layers=5)
+    assert other.wall == Wall(friction=0.5)
+    assert scene == Scene()
+    # A wall that was left open follows the new contacts.
+    assert scene.updated({"contact.normal_stiffness": 1e4}).resolved_wall.normal_stiffness == 2e4
+    assert scene.updated({"loads": []}).loads == ()
+    assert scene.updated({"loads": scene.loads * 2}).loads == scene.loads * 2
+
+
+def test_numpy_values_from_sweeps():
+    scene = Scene().updated(
+        {
+            "contact.friction": np.float32(0.5),
+            "packing.layers": np.int64(7),
+            "loads": [{"disk": np.int64(3), "force": np.array([0.0, -1.0])}],
+            "protocol.static_finish": np.bool_(False),
+        }
+    )
+    assert type(scene.contact.friction) is float and type(scene.packing.layers) is int
+    assert scene.loads[0] == Load(disk=3, force=(0.0, -1.0))
+    assert scene.protocol.static_finish is False
+    assert Load(disk=0, force=(np.float32(0.5), np.int64(-1))).force == (0.5, -1.0)
+
+
+def test_fields_are_documented():
+    def fields(schema):
+        for part in (schema, *schema["$defs"].values()):
+            for name, field in part.get("properties", {}).items():
+                yield part["title"], name, field
+
+    described = list(fields(Scene.model_json_schema()))
+    assert len(described) > 35
+    for title, name, field in described:
+        assert field.get("description", "").endswith("."), f"{title}.{name}"
+
+
+def test_file_packing_belongs_to_the_folder_of_its_scene(tmp_path):
+    (tmp_path / "disks.csv").write_text("x,z,radius\n1,1,1\n")
+    (tmp_path / "scene.yaml").write_text("packing: {kind: file, path: disks.csv, width: 4}\nloads: []\n")
+    scene = Scene.from_yaml(tmp_path / "scene.yaml")
+    assert scene.folder == str(tmp_path)
+    assert "disks.csv" in scene.to_yaml() and str(tmp_path) not in scene.to_yaml()
+    for other in (
+        scene.updated({"contact.friction": 0.0}),
+        Scene.from_text(scene.to_yaml(), folder=scene.folder),
+        pickle.loads(pickle.dumps(scene)),
+        Scene(packing=scene.packing),
+    ):
+        assert other.packing == scene.packing
+        assert other.packing.build().n == 1
+    with pytest.raises(SceneError, match="no such file"):
+        Scene.from_text(scene.to_yaml()).packing.build()
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
+def test_examples(path):
+    scene = Scene.from_yaml(path)
+    packing = scene.packing.build()
+    assert packing.n > 1 and packing.kind == scene.packing.kind
+    assert Scene.from_text(scene.to_yaml(), folder=scene.folder) == scene
+    for load in scene.loads:
+        assert 0 <= resolve_disk(load.disk, packing, packing.position) < packing.n
+
+
+def test_examples_show_every_kind_of_packing():
+    scenes = {path.stem: Scene.from_yaml(path) for path in EXAMPLES.glob("*.yaml")}
+    assert {scene.packing.kind for scene in scenes.values()} == {"slab", "pile", "file"}
+    assert scenes["slab"] == Scene()

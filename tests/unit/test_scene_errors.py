@@ -1,0 +1,177 @@
+"""Every malformed scene file is one line: the key, the value and what is allowed."""
+
+import pytest
+
+from granular_response.scene import Contact, Load, Scene, SceneError, SlabPacking
+
+CONTACT_KEYS = "normal_stiffness, stiffness_ratio, friction, damping_ratio"
+SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol"
+RATIO = "must be a number from 0 to 1e6"
+DISK = "must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"
+
+MALFORMED = {
+    # Not YAML, or not a mapping.
+    "": "the scene is empty, must be a mapping ({} is the paper's scene)",
+    "# only a comment\n": "the scene is empty, must be a mapping ({} is the paper's scene)",
+    "contact: {friction: 0.2": "line 1, column 24: not valid YAML: expected ',' or '}', but got '<stream end>'",
+    "contact:\n\tfriction: 0.2": "line 2, column 1: not valid YAML: found character '\\t' that cannot start any token",
+    "contact: {friction: 1}\ncontact: {friction: 2}": "line 2, column 1: not valid YAML: key 'contact' is given twice",
+    "contact: {friction: 1, friction: 1}": "line 1, column 24: not valid YAML: key 'friction' is given twice",
+    "contact: !!python/object:os.system {}": (
+        "line 1, column 10: not valid YAML: tag 'tag:yaml.org,2002:python/object:os.system' is not allowed"
+    ),
+    "{}\n---\n{}": "line 2, column 1: not valid YAML: but found another document",
+    "[a, b]": f"['a', 'b']: must be a mapping with keys among {SCENE_KEYS}",
+    "slab": f"'slab': must be a mapping with keys among {SCENE_KEYS}",
+    # Unknown keys.
+    "contacts: {}": f"contacts = {{}}: unknown key, did you mean contact? (allowed: {SCENE_KEYS})",
+    "1: 2": f"1 = 2: unknown key (allowed: {SCENE_KEYS})",
+    "contact: {fricton: 0.2}": (
+        f"contact.fricton = 0.2: unknown key, did you mean friction? (allowed: {CONTACT_KEYS})"
+    ),
+    "loads: [{disk: 0, force: [0, -1], torqe: 1}]": (
+        "loads[0].torqe = 1: unknown key, did you mean torque? (allowed: disk, force, torque)"
+    ),
+    "preparation: {gravty: slow}": (
+        "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time)"
+    ),
+    "packing: {kind: file, path: a.csv, width: 1.0, layers: 3}": (
+        "packing.layers = 3: unknown key (allowed: kind, path, width)"
+    ),
+    # Wrong types and values out of range.
+    "contact: 3": f"contact = 3: must be a mapping with keys among {CONTACT_KEYS}",
+    "contact: {normal_stiffness: -3000}": (
+        "contact.normal_stiffness = -3000: must be a number greater than 0, at most 1e12"
+    ),
+    "contact: {normal_stiffness: 0x10}": (
+        "contact.normal_stiffness = '0x10': must be a number greater than 0, at most 1e12"
+    ),
+    "contact: {normal_stiffness: 6e11}": (
+        "contact.normal_stiffness = 600000000000.0: "
+        "must be at most 5e11 where wall.normal_stiffness, twice as much, is left open"
+    ),
+    "contact: {friction: -0.1}": f"contact.friction = -0.1: {RATIO}",
+    "contact: {friction: '0.2'}": f"contact.friction = '0.2': {RATIO}",
+    "contact: {friction: true}": f"contact.friction = true: {RATIO}",
+    "contact: {friction: .inf}": f"contact.friction = inf: {RATIO}",
+    "contact: {damping_ratio: .nan}": f"contact.damping_ratio = nan: {RATIO}",
+    "wall: {friction: null}": f"wall.friction = null: {RATIO}",
+    "wall: {normal_stiffness: 0}": ("wall.normal_stiffness = 0: must be a number greater than 0, at most 1e12"),
+    "contact: {friction: -1, damping_ratio: -1}": f"contact.friction = -1: {RATIO} (and 1 more mistake)",
+    # Packings.
+    "packing: slab": "packing = 'slab': must be a mapping with the key kind (slab or pile or file)",
+    "packing: {layers: 3}": "packing = {'layers': 3}: key kind is missing, must be slab or pile or file",
+    "packing: {kind: slub}": "packing.kind = 'slub': must be slab or pile or file, did you mean slab?",
+    "packing: {kind: [slab]}": "packing.kind = ['slab']: must be slab or pile or file",
+    "packing: {kind: slab, layers: 0}": "packing.layers = 0: must be a whole number from 1 to 100000",
+    "packing: {kind: slab, layers: 15.0}": "packing.layers = 15.0: must be a whole number from 1 to 100000",
+    "packing: {kind: slab, disks_per_row: 1}": ("packing.disks_per_row = 1: must be a whole number from 2 to 100000"),
+    "packing: {kind: slab, layers: 100000, disks_per_row: 100000}": (
+        "packing.layers = '9999950000 disks': must have at most 100000000 disks"
+    ),
+    "packing: {kind: pile, polydispersity: 1.0}": (
+        "packing.polydispersity = 1.0: must be a number, 0 or greater and less than 1"
+    ),
+    "packing: {kind: slab, lattice_constant: touching}": (
+        "packing.lattice_constant = 'touching': must be a number greater than 0, at most 1000, or touching-largest"
+    ),
+    "packing: {kind: slab, seed: -1}": ("packing.seed = -1: must be a whole number, 0 or greater and less than 2^63"),
+    "packing: {kind: file, path: a.csv}": "packing.width: missing, must be given",
+    "packing: {kind: file, path: '', width: 1.0}": "packing.path = '': must be the path of a CSV file",
+    # Loads.
+    "loads: {disk: 0, force: [0, -1]}": (
+        "loads = {'disk': 0, 'force': [0, -1]}: must be a list of loads, [] for gravity alone"
+    ),
+    "loads: [{disk: 0}]": "loads[0].force: missing, must be given",
+    "loads: [{disk: 0, force: -15}]": "loads[0].force = -15: must be two finite numbers [x, z]",
+    "loads: [{disk: 0, force: [0, -1, 0]}]": "loads[0].force = [0, -1, 0]: must be two finite numbers [x, z]",
+    "loads: [{disk: 0, force: [0, .nan]}]": "loads[0].force = [0, nan]: must be two finite numbers [x, z]",
+    "loads: [{disk: 0, force: [0, 0], torque: big}]": "loads[0].torque = 'big': must be a finite number",
+    "loads: [{disk: top, force: [0, 0]}]": f"loads[0].disk = 'top': {DISK}",
+    "loads: [{disk: -1, force: [0, 0]}]": f"loads[0].disk = -1: {DISK}",
+    "loads: [{disk: 0, force: [0, 0]}, {disk: 908, force: [0, 0]}]": (
+        "loads[1].disk = 908: must be from 0 to 907, the packing has 908 disks"
+    ),
+    "loads: [{disk: {row: 15}, force: [0, 0]}]": (
+        "loads[0].disk.row = 15: must be top, bottom or from 0 to 14, the packing has 15 rows"
+    ),
+    "loads: [{disk: {row: 1, offset: 31}, force: [0, 0]}]": (
+        "loads[0].disk.offset = 31: must be from -29 to 30, row 1 has 60 disks"
+    ),
+    # Protocol and preparation.
+    "protocol: {method: newton}": ("protocol.method = 'newton': must be auto or dynamics or path or minimise"),
+    "protocol: {integrator: verlett}": (
+        "protocol.integrator = 'verlett': must be beeman or verlet or gear, did you mean verlet?"
+    ),
+    "protocol: {time_step: 0}": "protocol.time_step = 0: must be a number greater than 0, or auto",
+    "protocol: {static_finish: no}": "protocol.static_finish = 'no': must be true or false",
+    "protocol: {maximum_steps: 1e6}": ("protocol.maximum_steps = 1000000.0: must be a whole number, 1 or greater"),
+    "preparation: {gravity: fast}": "preparation.gravity = 'fast': must be at-once or slow",
+}
+
+
+@pytest.mark.parametrize("text", MALFORMED, ids=range(len(MALFORMED)))
+def test_malformed_file(text, tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(text)
+    with pytest.raises(SceneError) as caught:
+        Scene.from_yaml(path)
+    assert str(caught.value) == f"{path}: {MALFORMED[text]}"
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(SceneError, match=r"nowhere\.yaml: no such file$"):
+        Scene.from_yaml(tmp_path / "nowhere.yaml")
+    with pytest.raises(SceneError, match="cannot be read"):
+        Scene.from_yaml(tmp_path)
+    path = tmp_path / "binary.yaml"
+    path.write_bytes(b"contact: \xff\xfe")
+    with pytest.raises(SceneError, match=r"is not a text file in UTF-8$"):
+        Scene.from_yaml(path)
+    path.write_bytes(b"contact:\n  friction: \x07")
+    with pytest.raises(SceneError, match=r"line 2: not valid YAML: special characters are not allowed$"):
+        Scene.from_yaml(path)
+
+
+def test_hostile_text():
+    with pytest.raises(SceneError, match="nested too deeply"):
+        Scene.from_text("[" * 3_000)
+    with pytest.raises(SceneError, match="is too long"):
+        Scene.from_text(f"contact: {{friction: {'9' * 10_000}}}")
+    with pytest.raises(SceneError, match=r"^line 1, column 8: not valid YAML: found unconstructable recursive node"):
+        Scene.from_text("loads: &a [*a]")
+    bomb = "a: &a [x, x]\n" + "".join(
+        f"{new}: &{new} [{', '.join([f'*{old}'] * 9)}]\n" for old, new in zip("abcdefgh", "bcdefghi", strict=True)
+    )
+    with pytest.raises(SceneError) as caught:
+        Scene.from_text(bomb)
+    assert len(str(caught.value)) < 500
+
+
+def test_constructors_raise_the_same_error():
+    with pytest.raises(SceneError) as caught:
+        Contact(friction=-1.0)
+    assert str(caught.value) == f"friction = -1.0: {RATIO}"
+    with pytest.raises(SceneError, match=r"^layers = 0: "):
+        SlabPacking(layers=0)
+    with pytest.raises(SceneError, match=r"^contact\.friction = -1: "):
+        Scene(contact={"friction": -1})
+    with pytest.raises(SceneError, match=r"^loads\[0\]\.disk = 2000: must be from 0 to 907"):
+        Scene(loads=[Load(disk=2000, force=(0.0, -1.0))])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"contact.fricton": 1.0}, r"^contact\.fricton = 1\.0: unknown key, did you mean friction\?"),
+        ({"contacts.friction": 1.0}, r"^contacts\.friction: unknown key 'contacts', did you mean contact\?"),
+        ({"loads.1.torque": 1.0}, r"^loads\.1\.torque: loads has 1 items, no item '1'$"),
+        ({"contact.friction.x": 1.0}, r"^contact\.friction\.x: contact\.friction is a single value"),
+        ({"": 1.0}, "must be the path of a key"),
+        ({"packing.layers": 2}, r"^loads\[0\]\.disk = 900: must be from 0 to 120"),
+    ],
+)
+def test_updates_are_checked(changes, message):
+    scene = Scene(loads=[Load(disk=900, force=(0.0, -1.0))])
+    with pytest.raises(SceneError, match=message):
+        scene.updated(changes)

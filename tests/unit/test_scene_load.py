@@ -1,0 +1,119 @@
+"""Which disk a load acts on."""
+
+import numpy as np
+import pytest
+
+from granular_response.scene import (
+    Load,
+    Packing,
+    PilePacking,
+    RowSelector,
+    Scene,
+    SceneError,
+    SlabPacking,
+    resolve_disk,
+)
+
+
+def scattered(position, radius, width):
+    position, radius = np.array(position, float), np.array(radius, float)
+    return Packing(position, radius, np.full(len(radius), -1, np.int32), width, "file")
+
+
+def test_top_centre_of_lattices():
+    slab = SlabPacking().build()
+    assert resolve_disk("top-centre", slab, slab.position) == 877
+    assert tuple(slab.position[877]) == pytest.approx((61.0, 1.0 + 14.0 * np.sqrt(3.0)))
+    pile = PilePacking().build()
+    assert resolve_disk("top-centre", pile, pile.position) == 175
+    # A short row at the top has two disks equally near to the middle: the left one.
+    even = SlabPacking(layers=4, disks_per_row=7).build()
+    chosen = resolve_disk("top-centre", even, even.position)
+    assert even.row[chosen] == 3
+    assert even.position[chosen, 0] == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize("layers", [3, 4])
+def test_top_centre_withstands_small_shifts(layers):
+    """Disks whose upper neighbours have moved apart are not on top, and rounding errors do not choose."""
+    packing = SlabPacking(layers=layers, disks_per_row=7).build()
+    top = packing.row.max()
+    middle = resolve_disk("top-centre", packing, packing.position)
+    for seed in range(20):
+        noise = np.random.default_rng(seed).normal(size=packing.position.shape)
+        assert packing.row[resolve_disk("top-centre", packing, packing.position + 0.02 * noise)] == top
+        assert resolve_disk("top-centre", packing, packing.position + 1e-9 * noise) == middle
+
+
+def test_top_centre_is_not_covered():
+    # A loose disk rests in the notch above disks 1 and 2, and is nearest to the middle.
+    floor = [(1.0, 1.0), (3.0, 1.0), (5.0, 1.0), (7.0, 1.0)]
+    loose = [*floor, (4.0, 1.0 + np.sqrt(3.0))]
+    assert resolve_disk("top-centre", scattered(loose, np.ones(5), 8.0), np.array(loose)) == 4
+    # Without it disks 1 and 2 are equally near, also if the other is a little nearer or their order is reversed.
+    four = scattered(floor, np.ones(4), 8.0)
+    assert resolve_disk("top-centre", four, np.array(floor)) == 1
+    assert resolve_disk("top-centre", four, np.array(floor) - [1e-9, 0.0]) == 1
+    assert resolve_disk("top-centre", four, np.array(floor[::-1])) == 1
+    assert resolve_disk("top-centre", four, np.array(floor) - [1e-3, 0.0]) == 2
+    # A disk high above the middle of the box covers only what it is above.
+    high = [*floor, (3.2, 9.0)]
+    assert resolve_disk("top-centre", scattered(high, np.ones(5), 8.0), np.array(high)) == 4
+
+
+def test_top_centre_looks_further_where_the_middle_is_empty():
+    far = [(1.0, 1.0), (101.0, 1.0), (1.1, 2.9)]
+    assert resolve_disk("top-centre", scattered(far, np.ones(3), 102.0), np.array(far)) == 2
+
+
+def test_top_centre_uses_the_rest_positions():
+    packing = SlabPacking(layers=3, disks_per_row=7).build()
+    moved = packing.position.copy()
+    moved[0] = (7.0, 9.0)  # thrown on top of the rest
+    assert resolve_disk("top-centre", packing, moved) == 0
+
+
+def test_index_and_row():
+    packing = SlabPacking(layers=4, disks_per_row=7).build()  # rows 0-6, 7-12, 13-19, 20-25
+    position = packing.position
+    assert resolve_disk(0, packing, position) == 0
+    assert resolve_disk(25, packing, position) == 25
+    assert resolve_disk(RowSelector(row="bottom"), packing, position) == 3
+    assert resolve_disk(RowSelector(row="bottom", offset=3), packing, position) == 6
+    assert resolve_disk(RowSelector(row=2, offset=-3), packing, position) == 13
+    assert resolve_disk(RowSelector(row="top"), packing, position) == 22
+    assert resolve_disk(RowSelector(row="top", offset=-2), packing, position) == 20
+    assert resolve_disk(RowSelector(row="top", offset=3), packing, position) == 25
+
+
+@pytest.mark.parametrize(
+    ("selector", "message"),
+    [
+        (26, "disk = 26: must be from 0 to 25, the packing has 26 disks"),
+        (-1, "disk = -1: must be from 0 to 25, the packing has 26 disks"),
+        (RowSelector(row=4), "disk.row = 4: must be top, bottom or from 0 to 3, the packing has 4 rows"),
+        (RowSelector(row="top", offset=-3), "disk.offset = -3: must be from -2 to 3, row 3 has 6 disks"),
+        ("top", "disk = 'top': must be top-centre, the index of a disk, or a RowSelector"),
+    ],
+)
+def test_missing_disks(selector, message):
+    packing = SlabPacking(layers=4, disks_per_row=7).build()
+    with pytest.raises(SceneError) as caught:
+        resolve_disk(selector, packing, packing.position)
+    assert str(caught.value) == message
+
+
+def test_packings_from_files_have_no_rows():
+    packing = scattered([(1.0, 1.0)], [1.0], 2.0)
+    with pytest.raises(SceneError, match=r"^loads\[0\]\.disk\.row = 'top': a packing from a file has no rows"):
+        resolve_disk(RowSelector(row="top"), packing, packing.position, key="loads[0].disk")
+
+
+def test_selectors_in_a_scene_file():
+    scene = Scene.from_text(
+        "loads: [{disk: {row: top, offset: -3}, force: [0, -1]}, {disk: 877, force: [1, 0], torque: -2}]"
+    )
+    assert scene.loads == (
+        Load(disk=RowSelector(row="top", offset=-3), force=(0.0, -1.0)),
+        Load(disk=877, force=(1.0, 0.0), torque=-2.0),
+    )

@@ -1,0 +1,77 @@
+"""Reduced units against the laboratory's, by hand for the paper's disks."""
+
+import numpy as np
+import pytest
+
+from granular_response.scene import LaboratoryUnits, SceneError
+
+#: pi (3.75 mm)^2 6.6 mm 1150 kg/m3 = 0.3353 g; weight 3.286 mN; sqrt(3.75 mm / 9.8 m/s2) = 19.56 ms.
+BY_HAND = {
+    "length": 3.75e-3,
+    "mass": 3.353159e-4,
+    "time": 1.956152e-2,
+    "velocity": 0.1917029,
+    "acceleration": 9.8,
+    "force": 3.286096e-3,
+    "torque": 1.232286e-5,
+    "energy": 1.232286e-5,
+    "stiffness": 0.8762923,
+    "damping": 1.714161e-2,
+    "inertia": 4.715380e-9,
+    "stress": 0.8762923,
+    "pressure": 132.7716,
+}
+QUANTITIES = list(BY_HAND)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_units_of_the_paper(quantity):
+    assert LaboratoryUnits().unit(quantity) == pytest.approx(BY_HAND[quantity], rel=5e-7)
+
+
+def test_numbers_of_the_paper():
+    units = LaboratoryUnits()
+    assert units.to_laboratory("stiffness", 3000.0) == pytest.approx(2628.87, rel=1e-5)  # N/m
+    assert units.to_laboratory("time", 5e-4) == pytest.approx(9.7808e-6, rel=1e-5)  # s
+    assert units.to_reduced("force", 0.0493) == pytest.approx(15.0, rel=2e-3)
+    assert units.to_reduced("acceleration", 9.8) == pytest.approx(1.0, rel=1e-14)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_there_and_back(quantity):
+    units = LaboratoryUnits(radius=0.02, thickness=0.1, density=2500.0, gravity=1.62)
+    values = np.array([[0.0, -3.5], [1e-12, 4e7]])
+    assert np.allclose(units.to_reduced(quantity, units.to_laboratory(quantity, values)), values, rtol=1e-14)
+    assert units.to_laboratory(quantity, units.to_reduced(quantity, 0.7)) == pytest.approx(0.7, rel=1e-14)
+
+
+def test_laws_hold_in_both_units():
+    """A law of physics does not know its units: a spring's frequency, a falling disk, a weight on a line."""
+    units = LaboratoryUnits(radius=0.02, thickness=0.1, density=2500.0, gravity=1.62)
+    stiffness, mass = units.to_laboratory("stiffness", 3000.0), units.to_laboratory("mass", 1.0)
+    assert units.to_reduced("time", np.sqrt(mass / stiffness)) == pytest.approx(np.sqrt(1.0 / 3000.0))
+    assert units.to_reduced("velocity", np.sqrt(2.0 * 1.62 * 0.02)) == pytest.approx(np.sqrt(2.0))
+    assert units.to_reduced("stress", mass * 1.62 / 0.02) == pytest.approx(1.0)
+    assert units.to_reduced("pressure", mass * 1.62 / (0.02 * 0.1)) == pytest.approx(1.0)
+    assert units.to_reduced("inertia", 0.5 * mass * 0.02**2) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"radius": 0.0}, "radius = 0.0: must be a finite number greater than 0"),
+        ({"density": -1.0}, "density = -1.0: must be a finite number greater than 0"),
+        ({"gravity": float("inf")}, "gravity = inf: must be a finite number greater than 0"),
+        ({"thickness": "6.6 mm"}, "thickness = '6.6 mm': must be a finite number greater than 0"),
+        ({"thickness": True}, "thickness = true: must be a finite number greater than 0"),
+    ],
+)
+def test_impossible_disks(values, message):
+    with pytest.raises(SceneError) as caught:
+        LaboratoryUnits(**values)
+    assert str(caught.value) == message
+
+
+def test_unknown_quantity():
+    with pytest.raises(SceneError, match=r"^quantity = 'stifness': must be .* did you mean stiffness\?$"):
+        LaboratoryUnits().unit("stifness")
