@@ -21,6 +21,8 @@ MALFORMED = {
         "line 1, column 10: not valid YAML: tag 'tag:yaml.org,2002:python/object:os.system' is not allowed"
     ),
     "{}\n---\n{}": "line 2, column 1: not valid YAML: but found another document",
+    "? [a]\n: b": "line 1, column 3: not valid YAML: a key must be text",
+    "contact: {friction: !!float fast}": "line 1, column 21: not valid YAML: 'fast' does not fit its tag",
     "[a, b]": f"['a', 'b']: must be a mapping with keys among {SCENE_KEYS}",
     "slab": f"'slab': must be a mapping with keys among {SCENE_KEYS}",
     # Unknown keys.
