@@ -23,6 +23,8 @@ from .system import Configuration, StaticSystem, Trial
 DIRECT_ITERATIONS = 8
 #: Rounds of fixed limits, and the round from which the true law is tried again.
 ROUNDS, FIRST_TRY = 24, 2
+#: Rounds after which limits must have stopped changing by more than this (mean disk weights), or the increment fails.
+PATIENCE, SLOW = 6, 0.05
 #: Levenberg shift of the minimisation, in units of the normal stiffness.
 SHIFT = 1e-7
 #: Residual at which a minimisation with fixed limits ends; they change anyway.
@@ -61,7 +63,10 @@ def solve_increment(
         work.rounds += 1
         trial = _minimise_with_limits(system, known, external, q, limits, work)
         q = trial.configuration.q
-        limits = (pair_mu * trial.pair_normal, wall_mu * trial.wall_normal)
+        before, limits = limits, (pair_mu * trial.pair_normal, wall_mu * trial.wall_normal)
+        change = max(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(before, limits, strict=True))
+        if done >= PATIENCE and change > SLOW:
+            return None
         if done > FIRST_TRY:
             true, report = newton(system, known, external, q, maximum_iterations=DIRECT_ITERATIONS - 2)
             work.factorisations += report.iterations
@@ -78,7 +83,7 @@ def _minimise_with_limits(
     start: FloatArray,
     limits: tuple[FloatArray, FloatArray],
     work: Work,
-    maximum_iterations: int = 40,
+    maximum_iterations: int = 25,
 ) -> Trial:
     """Minimise the energy of an increment with fixed Coulomb limits; returns the last trial."""
     q = start

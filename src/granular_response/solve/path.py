@@ -26,8 +26,8 @@ from .state import State
 from .system import Configuration, StaticSystem, Trial
 
 #: First, longest and shortest load increments, in mean disk weights.
-FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1.0, 2.0, 0.01
-#: Load that dynamics crosses at once, in mean disk weights.
+FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1.0, 2.0, 0.1
+#: Load that dynamics crosses at first, in mean disk weights; doubled while statics does not go on after it.
 CROSSING = 0.1
 #: Load between two looks at the stability.
 STABILITY_STEP = 1.0
@@ -103,6 +103,7 @@ class _Path:
         self.longest = longest_step / self.unit
         self.step = min(FIRST_STEP / self.unit, self.longest)
         self.factor = rest.load_factor
+        self.crossing = CROSSING / self.unit
         self._begin(rest)
 
     def _begin(self, state: State) -> None:
@@ -139,12 +140,14 @@ class _Path:
         rounds = self.record.work.rounds
         found = solve_increment(self.system, self.known, external_force(self.problem, new), guess, self.record.work)
         if found is None:
-            if increment > shortest:
+            if increment > 1.01 * shortest:
                 self.step = max(0.5 * increment, shortest)
                 self.rate = None
             else:
-                self._cross(min(self.factor + CROSSING / self.unit, target), "no equilibrium")
+                self._cross(min(self.factor + self.crossing, target), "no equilibrium")
+                self.crossing *= 2.0
             return
+        self.crossing = max(0.5 * self.crossing, CROSSING / self.unit)
         self.rate = (found.configuration.q - self.known.q) / increment
         self.known, self.trial, self.factor = found.configuration, found, new
         easy = self.record.work.rounds == rounds

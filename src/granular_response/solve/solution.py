@@ -18,6 +18,9 @@ from .state import State
 from .system import StaticSystem
 from .timestep import resolve_time_step
 
+#: How often the static finish is tried, and the time of dynamics between two tries.
+ATTEMPTS, MORE_TIME = 8, 20.0
+
 #: Called as ``progress(done, total, what)``.
 Progress = Callable[[float, float, str], None]
 
@@ -99,7 +102,7 @@ def loaded_states(
     if choice.method == "dynamics":
         states = []
         for factor in factors:
-            ramp = (0.0, factor, protocol.ramp_time)
+            ramp = (rest.load_factor, factor, protocol.ramp_time)
             states.append(_relaxed(problem, rest, "load", progress, gravity=(1.0, 1.0, 0.0), load=ramp))
         return choice, states
     if choice.method == "minimise":
@@ -149,7 +152,7 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
         certificate = certify(problem, settled)
         return replace(settled, information={**settled.information, "certificate": certificate})
     failure: Exception | None = None
-    for _ in range(4):
+    for attempt in range(ATTEMPTS):
         try:
             if not problem.rotations:
                 finished = minimise(problem, problem.relisted(settled), load_factor=load[1])
@@ -158,15 +161,15 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
             if finished.information["certificate"].stable:
                 return finished
             failure = EquilibriumError("the equilibrium found is unstable")
-            dynamics = Dynamics(problem, _nudged(problem, finished), protocol.integrator, dynamics.time_step)
-            dynamics.load = (load[1], load[1], 0.0)
+            if attempt > 1:
+                dynamics = Dynamics(problem, _nudged(problem, finished), protocol.integrator, dynamics.time_step)
         except EquilibriumError as error:
             failure = error
         if not settled.information["settled"]:
             break
-        stop = replace(stop, kinetic_energy=stop.kinetic_energy * 1e-2)
-        settled = relax(dynamics, stop, load=(load[1], load[1], 0.0))
-        settled.information["method"] = "dynamics"
+        dynamics.set_ramps(load=(load[1], load[1], 0.0))
+        dynamics.advance(round(MORE_TIME / dynamics.time_step))
+        settled = replace(dynamics.state(), information={**settled.information, "more_relaxations": attempt + 1})
     raise NotSettled(
         f"the packing did not come to rest under {stage} within protocol.maximum_steps = {protocol.maximum_steps} "
         f"(kinetic energy {settled.information['kinetic_energy']:.1e} per disk): {failure}"
