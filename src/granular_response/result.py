@@ -189,7 +189,10 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         return Contacts(one[f"{prefix}_disk"].values.astype(np.int32), one[partner].values.astype(np.int32), *values)
 
     return State(
-        **{name: one[name].values.astype(float) for name in _STATE_VARIABLES},
+        position=one["position"].values.astype(float),
+        angle=one["angle"].values.astype(float),
+        velocity=one["velocity"].values.astype(float),
+        angular_velocity=one["angular_velocity"].values.astype(float),
         pairs=contacts("contact", "contact_partner"),
         walls=contacts("wall", "wall_index"),
         load_factor=float(one["load_factor"]),

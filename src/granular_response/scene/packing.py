@@ -83,55 +83,6 @@ class Packing:
         result = np.concatenate(pairs)
         return np.ascontiguousarray(result[np.lexsort((result[:, 1], result[:, 0]))], dtype=np.int32)
 
-    def may_rearrange(
-        self, normal_stiffness: float, *, wall_stiffness: float | None = None, damping_ratio: float = 0.5
-    ) -> bool:
-        """Whether disks that are not neighbours in the lattice could touch while gravity is brought on.
-
-        False says that ``neighbour_pairs`` are all contacts between disks during the preparation; a load can
-        still bring others. True promises nothing. The answer is True if this sum of three lengths reaches a
-        limit:
-
-        * lift: how high the energy ``k/2 overlap^2`` of the largest initial overlap of two disks, or of a disk
-          and a wall, could throw a disk of mean weight;
-        * slack: the most room that is left in one row, since its disks could leave all of it in one place;
-        * softness: compressed by its weight, a tall or wide lattice buckles as a whole. In simulations it did
-          so from about ``0.5 = layers / k sqrt(disks_per_row + 2 layers)`` in slabs and ``3 = layers^3 / k`` in
-          piles. Softness is 3 times the one, 0.15 times the other, so that it reaches the limit at half of that.
-
-        The limit in a slab is ``sqrt(3) - 1``, half of the gap to second neighbours: one of the two has to move
-        so far. In a pile, whose sides are free, it is ``2 - sqrt(3)``, the height over which a disk rolls out of
-        its place. The dashpots take up what a disk would pass on to others, so with a damping ratio below 0.1
-        the answer is True. So it is for files.
-
-        Measured without friction on random slabs and piles: in all 435 with the answer False, second neighbours
-        kept at least 0.88 of their gap; of 66 with the answer True they touched in 26.
-
-        Parameters
-        ----------
-        normal_stiffness, wall_stiffness
-            Stiffness of contacts between disks and with walls (by default twice the former).
-        damping_ratio
-            Damping over critical damping of one contact.
-        """
-        pairs = self.neighbour_pairs()
-        if pairs is None or self.lattice_constant is None or damping_ratio < 0.1:
-            return True
-        spacing, diameter = self.lattice_constant, 2.0 * self.radius
-        wall_stiffness = 2.0 * normal_stiffness if wall_stiffness is None else wall_stiffness
-        overlap = float((self.radius[pairs].sum(axis=1) - spacing).max(initial=0.0))
-        wall_overlap = max(0.0, 0.5 * float(diameter.max() - spacing))
-        lift = 0.5 * max(normal_stiffness * overlap**2, wall_stiffness * wall_overlap**2)
-        room = self.row_count * spacing - np.bincount(self.row, weights=diameter)
-        layers, length = len(self.row_count), int(self.row_count[0])
-        if self.kind == "slab":
-            limit = math.sqrt(3.0) - 1.0
-            softness = 3.0 * layers / normal_stiffness * math.sqrt(length + 2 * layers)
-        else:
-            limit = 2.0 - math.sqrt(3.0)
-            softness = 0.15 * layers**3 / normal_stiffness
-        return bool(lift + max(0.0, float(room.max())) + softness >= limit)
-
 
 def _pairs(exists: NDArray[np.bool_], other: NDArray[np.int64]) -> NDArray[np.int64]:
     first = np.flatnonzero(exists)

@@ -5,18 +5,56 @@ rest state, ``dynamics`` (explicit relaxation), ``minimise`` (no friction), ``eq
 law), ``path`` (quasi-static loading), ``choice`` (which of them, and why).
 """
 
-from .choice import Choice
-from .dynamics import Dynamics, DynamicsError, Stop, relax
-from .equilibrium import Certificate, EquilibriumError, certify, finish
-from .minimise import minimise
-from .path import PathError, PathRecord, follow
-from .problem import Problem
-from .solution import NotSettled, Solution, loaded_states, rest_state, solve_scene
-from .state import State
-from .timestep import UnstableTimeStep
+from __future__ import annotations
 
-#: Everything that can go wrong with a well-formed scene.
-SOLVE_ERRORS = (DynamicsError, EquilibriumError, NotSettled, PathError, UnstableTimeStep)
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .choice import Choice
+    from .dynamics import Dynamics, DynamicsError, Stop, relax
+    from .equilibrium import Certificate, EquilibriumError, certify, finish
+    from .energy import minimise
+    from .path import PathError, PathRecord, follow
+    from .problem import Problem
+    from .solution import NotSettled, Solution, loaded_states, rest_state, solve_scene
+    from .state import State
+    from .timestep import UnstableTimeStep
+
+# Names are looked up on first use: whoever reads states alone does not load the solvers.
+_HOME = {
+    "Choice": "choice",
+    "Dynamics": "dynamics",
+    "DynamicsError": "dynamics",
+    "Stop": "dynamics",
+    "relax": "dynamics",
+    "Certificate": "equilibrium",
+    "EquilibriumError": "equilibrium",
+    "certify": "equilibrium",
+    "finish": "equilibrium",
+    "minimise": "energy",
+    "PathError": "path",
+    "PathRecord": "path",
+    "follow": "path",
+    "Problem": "problem",
+    "NotSettled": "solution",
+    "Solution": "solution",
+    "loaded_states": "solution",
+    "rest_state": "solution",
+    "solve_scene": "solution",
+    "State": "state",
+    "UnstableTimeStep": "timestep",
+}
+_ERRORS = ("DynamicsError", "EquilibriumError", "NotSettled", "PathError", "UnstableTimeStep")
+
+
+def __getattr__(name: str) -> Any:
+    if name == "SOLVE_ERRORS":  # everything that can go wrong with a well-formed scene
+        return tuple(__getattr__(error) for error in _ERRORS)
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+
 
 __all__ = [
     "SOLVE_ERRORS",

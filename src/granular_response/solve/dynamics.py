@@ -174,7 +174,7 @@ class Dynamics:
             pairs=Contacts(c.first, c.second, zero_pairs, zero_pairs, zero_pairs, spring, none),
             walls=Contacts(
                 c.wall_disk.astype(np.int32),
-                c.wall,
+                c.wall.astype(np.int32),
                 zero_walls,
                 zero_walls,
                 zero_walls,

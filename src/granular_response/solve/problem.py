@@ -144,7 +144,7 @@ class Problem:
     def load_vector(self) -> FloatArray:
         """(dof,) generalised load at load factor 1."""
         total = np.zeros((3, self.n))
-        np.add.at(total, (slice(None), self.load_disk), self.load.T)
+        np.add.at(total.T, self.load_disk, self.load)
         return total[: self.freedoms].ravel()
 
     def weight_vector(self) -> FloatArray:

@@ -11,7 +11,7 @@ from ..scene import Scene
 from .choice import Choice, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .equilibrium import EquilibriumError, certify, finish
-from .minimise import minimise
+from .energy import minimise
 from .path import follow
 from .problem import Problem
 from .state import State
