@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .choice import Choice
     from .dynamics import Dynamics, DynamicsError, Stop, relax
-    from .equilibrium import Certificate, EquilibriumError, certify, finish
     from .energy import minimise
+    from .equilibrium import Certificate, EquilibriumError, certify, finish
     from .path import PathError, PathRecord, follow
     from .problem import Problem
     from .solution import NotSettled, Solution, loaded_states, rest_state, solve_scene

@@ -10,8 +10,8 @@ import numpy as np
 from ..scene import Scene
 from .choice import Choice, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
-from .equilibrium import EquilibriumError, certify, finish
 from .energy import minimise
+from .equilibrium import EquilibriumError, certify, finish
 from .path import follow
 from .problem import Problem
 from .state import State
