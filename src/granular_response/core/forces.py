@@ -142,7 +142,8 @@ def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, buffer, law,
         of ``f`` collects the sum of tangential forces, not yet multiplied by ``-radius``.
     rim : (n,) radius times angular velocity, or None without friction.
     runs : (r, 4) int64 candidate runs, those of count one last; ``dx0``, ``dz0``, ``reach`` : (m,) reference
-        separation and sum of radii of each slot; ``spring`` : (m,) tangential springs, updated in place, or None without friction.
+        separation and sum of radii of each slot; ``spring`` : (m,) tangential springs, updated in place, or None
+        without friction.
     buffer : (3, m) or (2, m) scratch.
     law : tuple, see ``core.law``; ``rule`` : CUT or LITERAL; ``dt`` : time step of the spring update.
     """
