@@ -200,6 +200,25 @@ def show(
         console.print(part, soft_wrap=isinstance(part, Text))
 
 
+@app.command(
+    epilog=_examples(
+        "granular-response export slab.nc -o slab.gsd",
+        "granular-response export slab.nc -o rest.vtu --state 0",
+    )
+)
+def export(
+    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="File to make: .gsd or .xyz (OVITO), .vtu (ParaView).")
+    ],
+    state: Annotated[int, typer.Option(help="State in a .vtu file: 0 at rest, -1 the last one.")] = -1,
+) -> None:
+    """Write a result as a file for OVITO or ParaView."""
+    from . import export as exporting
+
+    typer.echo(str(exporting.export(result, output, state=state)))
+
+
 @app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))
 def cite(
     bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
@@ -217,6 +236,7 @@ def print_version() -> None:
 def _expected_errors() -> tuple[type[BaseException], ...]:
     """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
     names = {
+        "export": ["ExportError"],
         "pipeline": ["GroupError"],
         "scene": ["SceneError"],
         "solve": ["SOLVE_ERRORS"],

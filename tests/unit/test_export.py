@@ -1,0 +1,194 @@
+"""Exports, read back by other means than they were written with."""
+
+import re
+import struct
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.export import ExportError, contact_force_sums, export
+from granular_response.result import to_dataset
+from granular_response.scene import Scene
+from granular_response.solve import solve_scene
+
+FORCE = (0.5, -1.0)
+SCENE = {
+    "packing": {"kind": "slab", "layers": 3, "disks_per_row": 7},
+    "contact": {"friction": 0.4},
+    "loads": [{"disk": "top-centre", "force": list(FORCE)}],
+}
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("export") / "result.nc"
+    store.write(path, to_dataset(solve_scene(Scene.from_dict(SCENE))))
+    return path
+
+
+@pytest.fixture(scope="module")
+def data(result):
+    return store.read(result)[""]
+
+
+def read_gsd(path: Path) -> dict[int, dict[str, np.ndarray]]:
+    """Frames of a GSD file by the layout that its specification gives, without the gsd library."""
+    raw = path.read_bytes()
+    magic, index_at, index_size, names_at, names_size = struct.unpack_from("<QQQQQ", raw)
+    assert magic == 0x65DF65DF65DF65DF
+    names = raw[names_at : names_at + 64 * names_size].decode().split("\0")
+    names = [name for name in names if name]
+    types = dict(enumerate(["u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f4", "f8", "S1"], start=1))
+    frames: dict[int, dict[str, np.ndarray]] = {}
+    for k in range(index_size):
+        frame, rows, place, columns, name, kind, _ = struct.unpack_from("<QQqIHBB", raw, index_at + 32 * k)
+        if place:
+            values = np.frombuffer(raw, "<" + types[kind], rows * columns, place)
+            frames.setdefault(frame, {})[names[name]] = values.reshape(rows, columns)
+    return frames
+
+
+def test_gsd(result, data, tmp_path):
+    frames = read_gsd(export(result, tmp_path / "result.gsd"))
+    assert sorted(frames) == [0, 1]
+    shift = None
+    for index, state in enumerate(data["position"].values):
+        frame = {**frames[0], **frames[index]}  # what does not change is stored once
+        np.testing.assert_allclose(frame["particles/diameter"][:, 0], 2.0 * data["radius"], rtol=1e-6)
+        offset = frame["particles/position"][:, :2] - state
+        shift = offset[0] if shift is None else shift
+        np.testing.assert_allclose(offset, np.broadcast_to(shift, offset.shape), atol=1e-5)
+        touching = data["contact_status"].values[index] != 0
+        np.testing.assert_array_equal(
+            frame["bonds/group"],
+            np.column_stack([data["contact_disk"], data["contact_partner"]])[touching],
+        )
+        np.testing.assert_array_equal(
+            frame["log/bonds/normal_force"].ravel(), data["contact_normal_force"].values[index][touching]
+        )
+    # what the load adds to the contact forces balances the load, on the loaded disk alone
+    change = frames[1]["log/particles/force_change"]
+    loaded = int(data["loaded_disk"][0])
+    np.testing.assert_allclose(change[loaded], [-FORCE[0], -FORCE[1], 0.0], atol=1e-9)
+    np.testing.assert_allclose(np.delete(change, loaded, axis=0), 0.0, atol=1e-9)
+
+
+def test_xyz(result, data, tmp_path):
+    lines = export(result, tmp_path / "result.xyz").read_text().splitlines()
+    n = data.sizes["disk"]
+    assert len(lines) == data.sizes["state"] * (n + 2)
+    for index in range(data.sizes["state"]):
+        count, header, *rows = lines[index * (n + 2) : (index + 1) * (n + 2)]
+        assert int(count) == n
+        lattice = np.array(re.search(r'Lattice="([^"]+)"', header)[1].split(), float).reshape(3, 3)
+        assert lattice[0, 0] == data.attrs["width"]
+        fields = re.search(r"Properties=(\S+)", header)[1].split(":")
+        table, column = {}, 0
+        cells = [row.split() for row in rows]
+        for name, kind, width in zip(fields[::3], fields[1::3], map(int, fields[2::3]), strict=True):
+            values = [cell[column : column + width] for cell in cells]
+            table[name] = values if kind == "S" else np.array(values, float)
+            column += width
+        assert all(len(cell) == column for cell in cells)
+        np.testing.assert_array_equal(table["pos"][:, :2], data["position"].values[index])
+        np.testing.assert_array_equal(table["radius"][:, 0], data["radius"])
+        np.testing.assert_array_equal(table["angle"][:, 0], data["angle"].values[index])
+        force = table["force_change"].sum(axis=0)
+        np.testing.assert_allclose(force, np.array([-FORCE[0], -FORCE[1], 0.0]) * index, atol=1e-9)
+        closed = (data["contact_status"].values[index] != 0).sum() * 2
+        closed += (data["wall_status"].values[index] != 0).sum()
+        assert table["coordination"].sum() == closed
+
+
+def read_vtu(path: Path) -> dict[str, np.ndarray]:
+    """Arrays of a VTK unstructured grid with appended raw data: 8 bytes of length, then the values."""
+    head, raw = path.read_bytes().split(b'<AppendedData encoding="raw">', 1)
+    raw = raw[raw.index(b"_") + 1 :]
+    root = ElementTree.fromstring(head + b"</VTKFile>")
+    assert (root.get("type"), root.get("header_type")) == ("UnstructuredGrid", "UInt64")
+    kinds = {"Float64": "<f8", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1"}
+    found = {}
+    for array in root.iter("DataArray"):
+        place, kind = int(array.get("offset")), np.dtype(kinds[array.get("type")])
+        (size,) = struct.unpack_from("<Q", raw, place)
+        values = np.frombuffer(raw, kind, size // kind.itemsize, place + 8)
+        components = int(array.get("NumberOfComponents"))
+        found[array.get("Name")] = values.reshape(-1, components) if components > 1 else values
+    piece = root.find(".//Piece")
+    assert (len(found["points"]), len(found["types"])) == (
+        int(piece.get("NumberOfPoints")),
+        int(piece.get("NumberOfCells")),
+    )
+    return found
+
+
+@pytest.mark.parametrize("index", [0, -1])
+def test_vtu(result, data, tmp_path, index):
+    mesh = read_vtu(export(result, tmp_path / "result.vtu", state=index))
+    state = data.isel(state=index)
+    n = data.sizes["disk"]
+    vertices, lines = mesh["types"] == 1, mesh["types"] == 3  # VTK's numbers of the two kinds of cells
+    assert (vertices | lines).all()
+    starts = np.concatenate([[0], mesh["offsets"][:-1]])
+    np.testing.assert_array_equal(mesh["offsets"] - starts, np.where(lines, 2, 1))
+    np.testing.assert_array_equal(mesh["connectivity"][starts[vertices]], np.arange(n))
+    np.testing.assert_array_equal(mesh["points"][:n, :2], state["position"])
+    np.testing.assert_array_equal(mesh["radius"][:n], state["radius"])
+    normal, tangential = mesh["normal_force"][lines], mesh["tangential_force"][lines]
+    stored = np.concatenate([state["contact_normal_force"], state["wall_normal_force"]])
+    np.testing.assert_array_equal(normal, stored[stored > 0])
+    assert not mesh["normal_force"][vertices].any()
+    # forces along the lines carry every disk: weight, and load on one of them
+    first, second = mesh["connectivity"][starts[lines]], mesh["connectivity"][starts[lines] + 1]
+    branch = mesh["points"][first] - mesh["points"][second]
+    along = branch / np.linalg.norm(branch, axis=1, keepdims=True)
+    across = np.column_stack([-along[:, 1], along[:, 0], 0.0 * normal])
+    force = normal[:, None] * along + tangential[:, None] * across
+    total = np.zeros((len(mesh["points"]), 3))
+    np.add.at(total, first, force)
+    np.add.at(total, second, -force)
+    expected = np.zeros((n, 3))
+    expected[:, 1] = state["mass"]
+    expected[int(data["loaded_disk"][0]), :2] -= np.array(FORCE) * float(state["load_factor"])
+    np.testing.assert_allclose(total[:n], expected, atol=1e-9)
+    sums, _ = contact_force_sums(state)
+    np.testing.assert_allclose(mesh["contact_force"][:n, :2], sums, atol=1e-12)
+
+
+def test_errors_are_one_line(result, tmp_path):
+    with pytest.raises(ExportError, match=r"format '\.pdf' is unknown, must be \.gsd or \.vtu or \.xyz$"):
+        export(result, tmp_path / "result.pdf")
+    with pytest.raises(ExportError, match=r"state = 2: must be from -2 to 1"):
+        export(result, tmp_path / "result.vtu", state=2)
+    with pytest.raises(store.StoreError, match="no such file"):
+        export(tmp_path / "absent.nc", tmp_path / "result.gsd")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ExportError, match="cannot be written"):
+        export(result, tmp_path / "file" / "result.gsd")
+    study = tmp_path / "study.nc"
+    store.write(study, {"a": store.read(result)[""][["radius"]]})
+    with pytest.raises(ExportError, match="holds no states"):
+        export(study, tmp_path / "result.gsd")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "study.nc"]
+
+
+def test_a_missing_library_is_named(result, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "gsd", None)
+    monkeypatch.setitem(sys.modules, "gsd.hoomd", None)
+    with pytest.raises(ExportError, match=r"needs the package gsd.*install granular-response\[export\]"):
+        export(result, tmp_path / "result.gsd")
+
+
+def test_on_the_command_line(result, tmp_path):
+    command = [sys.executable, "-m", "granular_response", "export", str(result), "-o"]
+    done = subprocess.run([*command, "sub/result.xyz"], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout.strip()) == (0, "sub/result.xyz"), done.stderr
+    wrong = subprocess.run([*command, "result.abc"], cwd=tmp_path, capture_output=True, text=True)
+    assert wrong.returncode == 2
+    assert wrong.stderr.count("\n") == 1
+    assert "format '.abc' is unknown" in wrong.stderr
