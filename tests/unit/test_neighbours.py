@@ -33,7 +33,8 @@ def test_close_pairs(seed, skin):
 
 def test_close_pairs_of_a_lattice_are_its_neighbours():
     packing = SlabPacking(kind="slab", layers=5, disks_per_row=9).build()
-    assert np.array_equal(np.stack(close_pairs(packing.position, packing.radius, 0.6), axis=1), packing.neighbour_pairs())
+    found = np.stack(close_pairs(packing.position, packing.radius, 0.6), axis=1)
+    assert np.array_equal(found, packing.neighbour_pairs())
 
 
 def test_one_disk_has_no_pairs():

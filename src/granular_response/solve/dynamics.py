@@ -119,6 +119,7 @@ class Dynamics:
     def advance(self, steps: int) -> None:
         """Advance by ``steps`` time steps, listing candidates again whenever disks have moved too far."""
         left = steps
+        listed = False
         while left:
             schedule = (self.time, *map(float, self.gravity), *map(float, self.load))
             done = self.integrator.advance(
@@ -129,7 +130,10 @@ class Dynamics:
             self.time += done * self.time_step
             left -= done
             if left:
+                if done == 0 and listed:  # faster than any list can follow
+                    raise DynamicsError(self._blow_up())
                 self._relist()
+                listed = True
 
     def _relist(self) -> None:
         """List candidates again around the present positions, keeping every spring."""
@@ -169,7 +173,7 @@ class Dynamics:
         bare = State(
             position=self.position,
             angle=self.angle.copy(),
-            velocity=np.ascontiguousarray(self.v[: 2 * n].reshape(2, n).T),
+            velocity=self.v[: 2 * n].reshape(2, n).T.copy(),
             angular_velocity=self.v[2 * n :].copy() if problem.rotations else np.zeros(n),
             pairs=Contacts(c.first, c.second, zero_pairs, zero_pairs, zero_pairs, spring, none),
             walls=Contacts(

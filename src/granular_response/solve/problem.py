@@ -252,7 +252,7 @@ def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
     by = np.argsort(key)
     wanted = contacts.first[held].astype(np.int64) + n * contacts.second[held].astype(np.int64)
     place = np.searchsorted(key[by], wanted)
-    lost = (place == len(key)) | (key[by][np.minimum(place, len(key) - 1)] != wanted) if len(held) else held < 0
+    lost = np.append(key[by], -1)[place] != wanted
     if lost.any():
         k = held[np.flatnonzero(lost)[0]]
         raise ValueError(f"contact {contacts.first[k]}-{contacts.second[k]} carries a spring but is not listed")

@@ -1,0 +1,153 @@
+"""Dynamics: histories survive a new list, looking changes nothing, bad runs end with a message."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scenes import free_disks, scene
+
+from granular_response.solve import Dynamics, DynamicsError, Problem, Stop, relax
+
+INTEGRATORS = ["beeman", "verlet", "gear"]
+
+
+def falling(integrator="beeman", *, steps=3000, **changes) -> Dynamics:
+    """A frictional slab on its way into its contacts: springs are stretched, some contacts slide."""
+    problem = Problem.from_scene(scene(wall__friction=0.3, **changes))
+    dynamics = Dynamics(problem, problem.bare_state(), integrator, 2e-4)
+    dynamics.advance(steps)
+    return dynamics
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_listing_again_keeps_the_motion(integrator):
+    """Lists made anew every few steps, by search, give the trajectory of one list (histories carried along)."""
+    plain, often = falling(integrator), falling(integrator)
+    assert np.abs(often.spring).max() > 1e-6 and np.abs(often.wall_spring).max() > 1e-6
+    for _ in range(20):
+        often.candidates = replace(often.candidates, limit=0.0)
+        often.advance(8)
+    plain.advance(160)
+    assert (often.rebuilds, plain.rebuilds) == (20, 0)
+    assert often.position == pytest.approx(plain.position, abs=1e-12)
+    assert often.angle == pytest.approx(plain.angle, abs=1e-12)
+    assert often.state().pairs.spring == pytest.approx(plain.state().pairs.spring, abs=1e-12)
+    assert often.state().walls.spring == pytest.approx(plain.state().walls.spring, abs=1e-12)
+
+
+def test_searched_list_and_lattice_list_give_the_same_motion():
+    problem = Problem.from_scene(scene())
+    lattice = Dynamics(problem, problem.bare_state(), "beeman", 2e-4)
+    blind = replace(problem, packing=replace(problem.packing, kind="file", lattice_constant=None))
+    searched = Dynamics(blind, blind.bare_state(), "beeman", 2e-4)
+    assert len(searched.candidates.first) >= len(problem.lattice_pairs)
+    for dynamics in (lattice, searched):
+        dynamics.advance(2000)
+    assert searched.position == pytest.approx(lattice.position, abs=1e-12)
+
+
+def test_a_disk_thrown_far_is_followed():
+    """It flies over a neighbour's neighbours and lands elsewhere; nothing passes through anything."""
+    places = [[5.0 + 2.0 * k, 1.0] for k in range(8)]
+    problem, state = free_disks([*places, [6.0, 4.0]], velocity=[*([(0.0, 0.0)] * 8), (4.0, 3.0)], width=24.0)
+    dynamics = Dynamics(problem, state, "beeman", 4e-4)
+    dynamics.advance(40_000)
+    assert dynamics.rebuilds > 3
+    x = dynamics.position
+    distance = np.linalg.norm(x[:, None] - x[None], axis=2)[np.triu_indices(9, 1)]
+    assert distance.min() > 1.9
+    assert x[:, 1].min() > 0.9
+    assert x[8, 0] > 10.0
+
+
+def test_looking_changes_nothing():
+    """Forces, energies and states measured on the way leave the trajectory the same to the last bit."""
+    unseen, seen = falling(), falling()
+    for _ in range(10):
+        unseen.advance(10)
+        seen.advance(10)
+        seen.state()
+        seen.kinetic_energy(bearing_only=True)
+        seen.contact_count()
+        seen.mean_acceleration()
+    for name in ("q", "v", "history", "spring", "wall_spring"):
+        assert np.array_equal(getattr(unseen, name), getattr(seen, name)), name
+
+
+@pytest.mark.parametrize("disks", [1, 2])
+def test_a_state_never_changes_afterwards(disks):
+    problem, start = free_disks([[10.0 + 5.0 * k, 5.0] for k in range(disks)], spin=[1.0] * disks)
+    dynamics = Dynamics(problem, start)
+    dynamics.advance(10)
+    state = dynamics.state()
+    before = {name: getattr(state, name).copy() for name in ("position", "velocity", "angle", "angular_velocity")}
+    dynamics.advance(10)
+    for name, value in before.items():
+        assert np.array_equal(getattr(state, name), value), name
+
+
+def test_state_carries_the_motion_to_another_run():
+    """Velocity Verlet started from a state in the middle: the same but for the velocity predicted for dashpots."""
+    first = falling("verlet")
+    second = Dynamics(first.problem, first.state(), "verlet", first.time_step)
+    assert np.array_equal(second.position, first.position)
+    assert np.array_equal(second.angle, first.angle)
+    assert np.array_equal(second.v, first.v)
+    assert np.array_equal(second.spring, first.spring)
+    first.advance(200)
+    second.advance(200)
+    assert second.position == pytest.approx(first.position, abs=1e-7)
+
+
+def test_blow_up_is_an_error():
+    problem, state = free_disks([[10.0, 1.0], [11.0, 1.9]], velocity=[(0, 0), (0, 0)], contact__damping_ratio=1.0)
+    dynamics = Dynamics(problem, state, "beeman", 0.1)
+    with pytest.raises(DynamicsError, match="time_step 0.1; take a smaller"):
+        relax(dynamics, Stop(1e-13, maximum_steps=20_000))
+
+
+def test_a_disk_too_fast_for_any_list_is_an_error():
+    problem, state = free_disks([[500.0, 500.0]], velocity=[(1e4, 0.0)])
+    with pytest.raises(DynamicsError, match="blew up"):
+        Dynamics(problem, state).advance(100)
+
+
+def test_a_run_that_is_cut_short_says_so():
+    problem = Problem.from_scene(scene())
+    state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-13, maximum_steps=500))
+    assert state.information["settled"] is False
+    assert state.information["relaxation_steps"] == 500
+    assert state.information["kinetic_energy"] > 1e-13
+
+
+def test_envelope_is_stricter_than_the_instant():
+    problem = Problem.from_scene(scene(contact__friction=0.0))
+    steps = {}
+    for rule in ("instantaneous", "envelope"):
+        state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-10, rule))
+        assert state.information["settled"]
+        steps[rule] = state.information["relaxation_steps"]
+    assert steps["envelope"] >= steps["instantaneous"] + 20.0 / 5e-4 * 0.9
+
+
+def test_loose_disk_does_not_keep_a_packing_from_rest():
+    """A disk that rolls on the floor for ever carries nothing and is left out of the deciding energy."""
+    problem, state = free_disks(
+        [[10.0, 1.0 - 1 / 6000], [50.0, 1.0 - 1 / 6000]], velocity=[(0, 0), (1e-6, 0)], contact__friction=0.2
+    )
+    settled = relax(Dynamics(problem, state), Stop(1e-13, maximum_steps=20_000))
+    assert settled.information["settled"]
+    assert settled.information["loose_disks"] == 2
+    assert settled.information["kinetic_energy"] > 1e-13
+
+
+def test_ramps_of_gravity_and_load():
+    """On one free disk the velocity is the integral of the ramp, whose parabola the algorithms follow."""
+    problem, state = free_disks([[500.0, 500.0]], loads=[{"disk": 0, "force": [2.0, 0.0], "torque": 0.5}])
+    problem = problem.with_loads(state.position)
+    dynamics = Dynamics(problem, state, "beeman", 1e-3)
+    dynamics.set_ramps(gravity=(0.0, 1.0, 1.0), load=(1.0, 3.0, 1.0))
+    dynamics.advance(2000)
+    velocity = dynamics.state().velocity[0]
+    assert velocity == pytest.approx([2.0 * (2.0 + 3.0), -(0.5 + 1.0)], abs=2e-3)
+    assert dynamics.load[1] == dynamics.state().load_factor == 3.0

@@ -1,0 +1,91 @@
+"""Problem arrays: candidates, springs carried from list to list, loads."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scenes import free_disks, scene, shaken
+
+from granular_response.solve import Problem
+from granular_response.solve.problem import carry_springs, static_contacts, wall_gap
+
+
+def test_relisting_carries_every_spring():
+    problem = Problem.from_scene(scene(wall__friction=0.3))
+    state = shaken(problem)
+    rng = np.random.default_rng(0)
+    mixed = rng.permutation(len(state.pairs.first))
+    shuffled = replace(
+        state, pairs=type(state.pairs)(*(getattr(state.pairs, f)[mixed] for f in state.pairs.__dataclass_fields__))
+    )
+    back = problem.relisted(shuffled)
+    held = {(i, j): s for i, j, s in zip(state.pairs.first, state.pairs.second, state.pairs.spring, strict=True) if s}
+    found = {(i, j): s for i, j, s in zip(back.pairs.first, back.pairs.second, back.pairs.spring, strict=True) if s}
+    assert len(held) > 20 and found == held
+    assert np.array_equal(back.walls.spring, state.walls.spring)
+
+
+def test_a_lost_spring_is_an_error():
+    problem = Problem.from_scene(scene())
+    state = shaken(problem)
+    with pytest.raises(ValueError, match="carries a spring but is not listed"):
+        carry_springs(problem.n, state.pairs, state.pairs.first[5:], state.pairs.second[5:])
+    with pytest.raises(ValueError, match="carries a spring but is not listed"):
+        carry_springs(problem.n, state.pairs, np.zeros(0, int), np.zeros(0, int))
+
+
+def test_rotations_and_springs_exist_only_with_friction():
+    for pair, wall, freedoms in ((0.0, 0.0, 2), (0.2, 0.0, 3), (0.0, 0.2, 3)):
+        problem = Problem.from_scene(scene(contact__friction=pair, wall__friction=wall))
+        assert problem.freedoms == freedoms
+        assert problem.inverse_mass.shape == (freedoms * problem.n,)
+    # without tangential stiffness there is nothing for friction to act on
+    assert not Problem.from_scene(scene(contact__stiffness_ratio=0.0)).rotations
+
+
+def test_moments_of_inertia_are_those_of_disks():
+    problem, _ = free_disks([[10, 10], [20, 10]], [0.8, 1.2])
+    m = problem.packing.mass
+    assert m.mean() == pytest.approx(1.0)
+    assert m[1] / m[0] == pytest.approx(1.5**2)
+    assert 1.0 / problem.inverse_mass[4:] == pytest.approx(0.5 * m * np.array([0.8, 1.2]) ** 2)
+
+
+@pytest.mark.parametrize("move", [0.0, 0.05, 0.6])
+def test_candidates_hold_every_contact_within_their_limit(move):
+    """Whoever moves by less than the limit touches only listed partners."""
+    problem = Problem.from_scene(scene())
+    rng = np.random.default_rng(2)
+    position = problem.packing.position + rng.uniform(-move, move, (problem.n, 2))
+    c = problem.list_candidates(position)
+    assert c.limit > 0.2
+    step = rng.normal(size=(50, problem.n, 2))
+    step *= 0.999 * c.limit / np.linalg.norm(step, axis=2, keepdims=True)
+    listed = {*zip(c.first.tolist(), c.second.tolist(), strict=True)}
+    walls = {*zip(c.wall_disk.tolist(), c.wall.tolist(), strict=True)}
+    for x in position + step:
+        distance = np.linalg.norm(x[:, None] - x[None], axis=2)
+        touching = {*zip(*(k.tolist() for k in np.nonzero(np.triu(distance < 2.0, 1))), strict=True)}
+        assert touching <= listed
+        for wall in range(3):
+            gap = wall_gap(x, np.ones(problem.n), np.full(problem.n, wall), problem.packing.width)
+            assert {(k, wall) for k in np.flatnonzero(gap < 0).tolist()} <= walls
+
+
+def test_static_contacts_by_hand():
+    law = (1000.0, 0.0, 800.0, 0.0, 0.5, -np.inf)
+    spring = np.array([1e-3, -1e-3, 1e-3])
+    c = static_contacts([0, 1, 2], [3, 4, 5], np.array([0.01, 0.001, -0.001]), spring, law)
+    assert c.normal_force == pytest.approx([10.0, 1.0, 0.0])
+    assert c.tangential_force == pytest.approx([-0.8, 0.8, 0.0])
+    assert c.status.tolist() == [1, 2, 0]
+    assert c.spring.tolist() == [1e-3, -1e-3, 0.0]
+
+
+def test_loads_on_one_disk_add_up():
+    loads = [{"disk": 3, "force": [1.0, -2.0], "torque": 0.5}, {"disk": 3, "force": [0.5, 0.0]}]
+    problem = Problem.from_scene(scene(loads=loads))
+    problem = problem.with_loads(problem.packing.position)
+    vector = problem.load_vector().reshape(3, -1)
+    assert vector[:, 3] == pytest.approx([1.5, -2.0, 0.5])
+    assert np.count_nonzero(vector) == 3
