@@ -1,0 +1,117 @@
+"""Every scene of ``examples/`` is solved, the notebook runs, and the tables there are what their scripts make."""
+
+import csv
+import os
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pytest
+from nbclient import NotebookClient
+
+from granular_response.result import to_dataset
+from granular_response.scene import Scene
+from granular_response.solve import solve_scene
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+#: The slabs of the examples are cut to this size here.
+SMALL = {"layers": 5, "disks_per_row": 15}
+
+
+def small(path: Path) -> Scene:
+    scene = Scene.from_yaml(path)
+    match scene.packing.kind:
+        case "slab":
+            return scene.updated({f"packing.{key}": value for key, value in SMALL.items()})
+        case "pile":
+            return scene.updated({"packing.layers": 5})
+    return scene
+
+
+def solved(name: str, **changes):
+    return to_dataset(solve_scene(small(EXAMPLES / name).updated(changes)))
+
+
+def test_there_are_examples():
+    assert len(list(EXAMPLES.glob("*.yaml"))) >= 6
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
+def test_an_example_comes_to_a_certified_equilibrium(path):
+    result = to_dataset(solve_scene(small(path)))
+    assert result.attrs["stable"] == 1
+    assert result.attrs["settled"] == 1
+    assert float(result["certificate_force_residual"].max()) < 1e-8
+    assert float(result["certificate_torque_residual"].max()) < 1e-8
+    assert float(result["certificate_coulomb_excess"].max()) < 1e-8
+    # the floor bears the weight, and what the loads push down; only frictionless side walls bear nothing of it
+    friction = Scene.from_text(result.attrs["scene"], folder=EXAMPLES).wall.friction
+    if friction == 0.0:
+        assert float(result["floor_force_rest"].sum()) == pytest.approx(float(result["mass"].sum()), abs=1e-8)
+        if result.sizes["state"] > 1:
+            down = -float(result["applied_load"].sel(component="force_z").sum())
+            added = float(result["floor_response"].sum() * result["total_force"])
+            assert added == pytest.approx(down, abs=1e-8)
+
+
+def test_the_torque_matters():
+    with_torque = solved("oblique_force.yaml")
+    without = solved("oblique_force.yaml", **{"loads.0.torque": 0.0})
+    disk = int(with_torque["loaded_disk"][0])
+    turn = [float(r["angle"].isel(state=-1, disk=disk)) for r in (with_torque, without)]
+    assert turn[0] > turn[1]  # counter-clockwise
+
+
+def test_two_loads_are_mirror_images():
+    response = solved("two_loads.yaml")["floor_response"].values
+    np.testing.assert_allclose(response, response[::-1], atol=1e-7)
+
+
+def test_stiff_disks_open_more_contacts_than_soft_ones():
+    """At the full size of the examples: in a shallow slab the region of open contacts reaches the floor in both."""
+    opened, overlap = {}, {}
+    for name in ("soft", "stiff"):
+        result = to_dataset(solve_scene(Scene.from_yaml(EXAMPLES / f"{name}_disks.yaml")))
+        status = result["contact_status"].values
+        opened[name] = int(((status[0] != 0) & (status[-1] == 0)).sum())
+        overlap[name] = float(result["contact_overlap"].max())
+    assert opened["stiff"] > opened["soft"] > 0
+    assert overlap["soft"] > 100 * overlap["stiff"]
+
+
+def test_the_vacancy_stays_open():
+    result = solved("own_packing.yaml")
+    assert result.sizes["disk"] == 52
+    hole = np.array([11.0, 1.0 + 2.0 * np.sqrt(3.0)])  # the missing site, in radii
+    distance = np.linalg.norm(result["position"].isel(state=-1).values - hole, axis=1)
+    assert distance.min() > 1.8
+
+
+def test_the_bidisperse_table_is_what_its_script_makes():
+    made = runpy.run_path(str(EXAMPLES / "bidisperse_slab.py"))["disks"]()
+    with (EXAMPLES / "bidisperse_slab.csv").open(newline="") as file:
+        rows = [tuple(map(float, row)) for row in list(csv.reader(file))[1:]]
+    assert rows == made
+
+
+def test_an_example_runs_on_the_command_line_from_another_folder(tmp_path):
+    command = [sys.executable, "-m", "granular_response", "run", str(EXAMPLES / "own_packing.yaml"), "-o", "out.nc"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "52 disks" in done.stdout
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.ipynb")), ids=lambda path: path.stem)
+def test_a_notebook_runs(path, tmp_path, monkeypatch):
+    source = str(Path(__file__).parents[2] / "src")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([source, os.environ.get("PYTHONPATH", "")]))
+    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+    notebook = nbformat.read(path, as_version=4)
+    nbformat.validate(notebook)
+    assert all(not cell.get("outputs") for cell in notebook.cells), "stored without outputs"
+    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(EXAMPLES)}}).execute()
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert any("image/png" in output.get("data", {}) for output in outputs)
