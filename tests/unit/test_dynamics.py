@@ -102,7 +102,7 @@ def test_state_carries_the_motion_to_another_run():
 def test_blow_up_is_an_error():
     problem, state = free_disks([[10.0, 1.0], [11.0, 1.9]], velocity=[(0, 0), (0, 0)], contact__damping_ratio=1.0)
     dynamics = Dynamics(problem, state, "beeman", 0.1)
-    with pytest.raises(DynamicsError, match="time_step 0.1; take a smaller"):
+    with pytest.raises(DynamicsError, match=r"time_step 0\.1; take a smaller"):
         relax(dynamics, Stop(1e-13, maximum_steps=20_000))
 
 

@@ -8,16 +8,18 @@ from granular_response.solve.timestep import oscillator_limit, resolve_time_step
 
 
 def test_unstable_time_step_is_one_clear_line():
-    with pytest.raises(UnstableTimeStep, match=r"^protocol\.time_step: 0\.01 is unstable .*must be at most .*auto$") as e:
+    message = r"^protocol\.time_step: 0\.01 is unstable .*must be at most .*auto$"
+    with pytest.raises(UnstableTimeStep, match=message) as error:
         solve_scene(scene(protocol__time_step=0.01))
-    assert "\n" not in str(e.value)
+    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
 def test_limit_separates_steps_that_settle_from_steps_that_do_not(integrator):
     problem = Problem.from_scene(scene(protocol__integrator=integrator))
     limit = stability_limit(problem)
-    assert resolve_time_step(Problem.from_scene(scene(protocol__integrator=integrator, protocol__time_step="auto"))) < limit
+    safe = Problem.from_scene(scene(protocol__integrator=integrator, protocol__time_step="auto"))
+    assert resolve_time_step(safe) < limit
 
     def settles(step: float) -> bool:
         dynamics = Dynamics(problem, problem.bare_state(), integrator, step)

@@ -1,0 +1,82 @@
+"""Quasi-static load paths against slow dynamics, and through loads that are hard to pass."""
+
+import numpy as np
+import pytest
+from small_scenes import scene
+from solved import slab
+
+from granular_response.observe.floor import floor_force
+from granular_response.solve import (
+    Dynamics,
+    PathError,
+    Problem,
+    Stop,
+    finish,
+    follow,
+    loaded_states,
+    relax,
+    rest_state,
+)  # fmt: skip
+
+FLOOR = np.arange(13)
+
+
+@pytest.fixture(scope="module")
+def settled():
+    """A small frictional slab at rest, ready to be loaded with unit force."""
+    problem = Problem.from_scene(scene(6, 13, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
+    rest = rest_state(problem)
+    return problem.with_loads(rest.position), rest
+
+
+def test_dynamics_approaches_the_path_as_its_ramp_grows(settled):
+    problem, rest = settled
+    force = 8.0
+    expected = floor_force(follow(problem, rest, [force])[0], FLOOR)
+    difference = []
+    for ramp in (5.0, 20.0, 80.0):
+        state = finish(problem, relax(Dynamics(problem, rest, time_step=4e-4), Stop(1e-14), load=(0.0, force, ramp)))
+        difference.append(np.abs(floor_force(state, FLOOR) - expected).max() / force)
+    assert difference[0] < 4e-3
+    assert difference[1] < 0.5 * difference[0]
+    assert difference[2] < 0.7 * difference[1]
+
+
+def test_stops_on_the_way_do_not_matter_much(settled):
+    problem, rest = settled
+    once = follow(problem, rest, [6.0])[0]
+    often = follow(problem, rest, [0.5, 1.0, 2.0, 3.5, 5.0, 6.0])
+    assert [s.load_factor for s in often] == [0.5, 1.0, 2.0, 3.5, 5.0, 6.0]
+    assert floor_force(often[-1], FLOOR) == pytest.approx(floor_force(once, FLOOR), abs=5e-3)
+
+
+def test_a_path_goes_on_from_one_of_its_states(settled):
+    problem, rest = settled
+    half = follow(problem, rest, [3.0])[0]
+    whole = follow(problem, rest, [3.0, 6.0])[1]
+    assert floor_force(follow(problem, half, [6.0])[0], FLOOR) == pytest.approx(floor_force(whole, FLOOR), abs=5e-3)
+
+
+def test_decreasing_loads_are_refused(settled):
+    problem, rest = settled
+    with pytest.raises(PathError, match="must increase"):
+        follow(problem, rest, [2.0, 1.0])
+
+
+def test_every_state_is_certified(settled):
+    problem, rest = settled
+    choice, states = loaded_states(problem, rest, [1.0, 4.0, 9.0])
+    assert choice.method == "path"
+    for state in states:
+        certificate = state.information["certificate"]
+        assert certificate.force_residual < 1e-9 and certificate.torque_residual < 1e-9
+        assert certificate.coulomb_excess < 1e-9
+        assert certificate.stable
+
+
+def test_passes_the_load_where_contacts_begin_to_slide_together():
+    """Near 29.3 at friction 0.2 plain Newton iterations chatter; the branch goes on and needs no dynamics."""
+    state = slab(0.2, 31.0, "path").loaded[-1]
+    assert state.information["crossings"] == []
+    assert state.information["certificate"].force_residual < 1e-9
+    assert (state.pairs.status == 2).any()
