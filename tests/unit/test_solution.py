@@ -1,0 +1,52 @@
+"""From a scene to its solution: which method, what comes out."""
+
+import pytest
+from small_scenes import scene
+
+from granular_response.solve import solve_scene
+
+LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
+
+
+@pytest.mark.parametrize(
+    ("changes", "rest", "load"),
+    [
+        ({"contact__friction": 0.0}, "minimise", "minimise"),
+        ({"contact__friction": 0.2}, "dynamics", "path"),
+        ({"contact__friction": 0.0, "packing__polydispersity": 0.01}, "dynamics", "minimise"),
+        ({"contact__friction": 0.2, "protocol__method": "dynamics"}, "dynamics", "dynamics"),
+        ({"contact__friction": 0.0, "protocol__method": "path"}, "minimise", "path"),
+    ],
+)
+def test_method_and_certificates(changes, rest, load):
+    reports = []
+
+    def progress(done, total, what):
+        reports.append((done / total, what))
+
+    solution = solve_scene(scene(loads=LOAD, **changes), load_factors=(0.5, 1.0), progress=progress)
+    assert solution.rest_choice.method == rest and solution.load_choice.method == load
+    assert solution.rest_choice.reason and solution.load_choice.reason
+    assert [s.load_factor for s in solution.loaded] == [0.5, 1.0]
+    assert solution.total_force == 2.0
+    for state in (solution.rest, *solution.loaded):
+        assert state.information["certificate"].force_residual < 1e-9
+        assert state.information["certificate"].stable
+    assert reports and all(0.0 <= part <= 1.0 for part, _ in reports)
+
+
+def test_gravity_alone_has_no_loaded_states():
+    solution = solve_scene(scene(contact__friction=0.0, loads=[]))
+    assert solution.loaded == () and solution.load_choice is None
+
+
+def test_minimise_with_friction_is_refused():
+    with pytest.raises(ValueError, match="without friction"):
+        solve_scene(scene(loads=LOAD, protocol__method="minimise"))
+
+
+def test_rest_state_remembers_how_gravity_came():
+    at_once = solve_scene(scene()).rest
+    slow = solve_scene(scene(preparation__gravity="slow")).rest
+    difference = abs(at_once.pairs.normal_force.sum() - slow.pairs.normal_force.sum())
+    assert difference > 1e-4
