@@ -121,20 +121,15 @@ class LoadPath:
 
 
 class Measures:
-    """What is measured on the loaded states of one slab.
+    """What is measured on the loaded states of one slab."""
 
-    ``bottom_row`` are the disks whose floor forces are taken, from left to right; by default the lowest row
-    of the packing.
-    """
-
-    def __init__(self, path: LoadPath, bottom_row: NDArray[np.intp] | None = None):
+    def __init__(self, path: LoadPath):
         packing = path.problem.packing
         self.rest, self.width = path.rest, packing.width
         self.friction = path.scene.contact.friction
         self.loaded_disk = int(path.problem.load_disk[0])
         self.lattice_constant = float(packing.lattice_constant or 2.0)
-        row = np.flatnonzero(packing.row == 0) if bottom_row is None else bottom_row
-        self.disks = floor_disks([path.rest], row)
+        self.disks = floor_disks([path.rest], np.flatnonzero(packing.row == 0))
         middle = float(path.rest.position[self.loaded_disk, 0])
         self.x: FloatArray = path.rest.position[self.disks, 0] - middle
         margin = min(10.0, 0.2 * packing.width)

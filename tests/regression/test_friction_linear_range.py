@@ -1,0 +1,125 @@
+"""Figs. 6 to 9, 12 and 16 on a slab of 7 layers of 25 disks: what the study finds there, and that it is drawn."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import friction_linear_range as figures
+from granular_response.figures import style
+from granular_response.solve.state import SLIDING
+from granular_response.studies import friction_linear_range as study
+
+PARAMETERS = {
+    "method": "auto",
+    "scene": {"packing.layers": 7, "packing.disks_per_row": 25, "wall.friction": 0.0},
+    "frictions": [0.0, 0.2, 1.0],
+    "forces": [0.1, 0.5, 1.0, 2.0, 6.0, 8.0],
+    "extra_forces": [{"friction": 0.2, "forces": [9.0]}],
+    "ends": [{"friction": 1.0, "force": 6.0}],
+    "states_of": [0.2, 1.0],
+    "tolerance": {"first_opening": 0.05, "linear_range": 0.1, "shape": 0.25, "asymmetry": 0.2},
+    "friction_axis": {"frictions": [0.0, 0.1, 0.2], "force": 4.0, "tolerance": 0.05},
+    "dynamics": {"friction": 0.2, "forces": [4.0], "ramp_time": 20.0, "time_step": 5e-4},
+}
+
+
+@pytest.fixture(scope="module")
+def datasets():
+    return study.simulate(PARAMETERS, workers=1)
+
+
+def bracket(datasets, name, friction):
+    table = datasets["events"]
+    here = (table["name"].values == name) & (table["friction"].values == friction)
+    (row,) = np.flatnonzero(here)
+    return float(table["low"][row]), float(table["high"][row])
+
+
+def test_every_state_is_an_equilibrium_that_carries_the_load(datasets):
+    response = datasets["response"].stack(state=("friction", "force")).dropna("state", subset=["peak_count"])
+    assert response.sizes["state"] == 7 + 8 + 6
+    assert float(response["certificate_force_residual"].max()) < 1e-9
+    assert float(response["certificate_coulomb_excess"].max()) < 1e-9
+    np.testing.assert_allclose(response["floor_response"].sum("floor_disk"), 1.0, atol=1e-9)
+    assert float(response["asymmetry"].max()) < 1e-6
+
+
+def test_responses_are_as_before(datasets):
+    centre = datasets["response"]["response_at_centre"]
+    expected = {(0.0, 0.1): 0.153399, (0.0, 2.0): 0.087816, (0.2, 6.0): 0.153735, (0.2, 8.0): 0.129583}
+    for (friction, force), value in expected.items():
+        assert float(centre.sel(friction=friction, force=force)) == pytest.approx(value, abs=2e-5)
+
+
+def test_friction_puts_off_opening_and_the_second_peak(datasets):
+    low, high = bracket(datasets, "first_opening", 0.2)
+    assert low > 4.0 * bracket(datasets, "first_opening", 0.0)[1]
+    assert 0.0 < high - low <= 0.05
+    assert bracket(datasets, "crossover", 0.2) == pytest.approx((7.25, 7.5), abs=0.26)
+    double = datasets["response"]["double_peaked"]
+    assert double.sel(friction=0.0, force=2.0) == 1.0
+    assert double.sel(friction=0.2, force=6.0) == 0.0
+
+
+def test_brackets_hold_the_event_that_the_axis_of_forces_shows(datasets):
+    response = datasets["response"].sel(friction=0.2).dropna("force", subset=["peak_count"])
+    low, high = bracket(datasets, "reaches_floor", 0.2)
+    reached = response["reaches_floor"].values == 1.0
+    assert response["force"].values[~reached].max() <= low < high <= response["force"].values[reached].min()
+
+
+def test_events_that_do_not_happen_have_no_upper_end(datasets):
+    low, high = bracket(datasets, "loss_of_symmetry_path", 1.0)
+    assert (low, np.isnan(high)) == (6.0, True)
+
+
+def test_crossover_in_friction_is_bisected(datasets):
+    table = datasets["events"]
+    row = int(np.flatnonzero(table["name"].values == "friction_crossover")[0])
+    low, high = float(table["low"][row]), float(table["high"][row])
+    assert 0.0 <= low < high <= 0.1
+    assert high - low <= 0.05
+    assert np.isnan(float(table["friction"][row]))
+
+
+def test_axis_of_friction_shares_states_with_the_paths(datasets):
+    axis, response = datasets["friction_axis"], datasets["response"]
+    for friction in (0.0, 0.2):
+        np.testing.assert_array_equal(
+            axis["floor_response"].sel(friction=friction),
+            response["floor_response"].sel(friction=friction, force=4.0),
+        )
+
+
+def test_path_and_dynamics_agree(datasets):
+    path = datasets["response"]["floor_response"].sel(friction=0.2, force=4.0)
+    dynamic = datasets["large_forces"]["floor_response"].sel(force=4.0)
+    assert float(abs(path - dynamic).max()) < 1e-3
+
+
+def test_stored_states_show_the_contact_changes(datasets):
+    states, response = datasets["states_mu_0.2"], datasets["response"].sel(friction=0.2)
+    assert states["force"].values.tolist() == [0.0, 0.1, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 9.0]
+    sliding = (states["contact_status"] == SLIDING).sum("contact")
+    for state, force in enumerate(states["force"].values[1:], 1):
+        assert int(sliding[state]) == int(response["sliding_contacts"].sel(force=force))
+    opened = ((states["contact_status"][0] > 0) & (states["contact_status"] == 0)).sum("contact")
+    near = response["opened_contacts"].sel(force=[2.0, 8.0]).values
+    assert near[0] == 0 < near[1] <= int(opened[7])
+
+
+def test_datasets_are_stored_and_drawn(datasets, tmp_path):
+    store.write(tmp_path / "group.nc", datasets)
+    drawn = figures.draw(store.read(tmp_path / "group.nc"))
+    assert set(drawn) == {
+        "fig06_linear_range",
+        "fig07_friction_response",
+        "fig08_contacts_mu02",
+        "fig09_contacts_mu1",
+        "fig12_friction_crossover",
+        "fig16_large_forces",
+    }
+    curves = drawn["fig06_linear_range"].axes[0].get_lines()
+    assert [len(line.get_xdata()) for line in curves] == [7, 8, 6]
+    for figure in drawn.values():
+        assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")

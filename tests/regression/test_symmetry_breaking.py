@@ -1,0 +1,85 @@
+"""The loss of symmetry on a slab of 7 layers of 25 disks."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import style
+from granular_response.figures import symmetry_breaking as figures
+from granular_response.studies import symmetry_breaking as study
+
+PARAMETERS = {
+    "method": "auto",
+    "scene": {
+        "packing.layers": 7,
+        "packing.disks_per_row": 25,
+        "wall.friction": 0.0,
+        "contact.friction": 1.0,
+    },
+    "asymmetry": 0.1,
+    "tolerance": 20.0,
+    "protocols": [
+        {"ramp_time": 20.0, "time_step": 5e-4, "between": [20.0, 60.0]},
+        {"ramp_time": 5.0, "time_step": 5e-4, "between": [10.0, 20.0]},
+    ],
+    "copies": {"force": 60.0, "displacement": 1e-6, "seeds": [1]},
+    "held": {"forces": [5.0, 10.0], "displacement": 1e-6},
+}
+
+
+@pytest.fixture(scope="module")
+def datasets():
+    return study.simulate(PARAMETERS, workers=1)
+
+
+def test_symmetry_is_lost_between_symmetric_and_asymmetric_runs(datasets):
+    table, runs = datasets["brackets"], datasets["runs"]
+    low, high = float(table["low"][0]), float(table["high"][0])
+    assert 20.0 <= low < high <= 60.0
+    assert high - low <= 20.0
+    first = runs.isel(run=runs["ramp_time"].values == 20.0)
+    by_force = dict(zip(first["force"].values, first["asymmetry"].values, strict=True))
+    assert by_force[low] <= 0.1 < by_force[high]
+    assert by_force[20.0] < 1e-6
+
+
+def test_without_a_loss_the_bracket_is_open(datasets):
+    table = datasets["brackets"]
+    assert (float(table["low"][1]), np.isnan(float(table["high"][1]))) == (20.0, True)
+    assert (float(table["ramp_time"][1]), float(table["time_step"][1])) == (5.0, 5e-4)
+
+
+def test_the_sign_follows_a_displacement_and_its_mirror_image(datasets):
+    copies = datasets["copies"]
+    names = copies["name"].values.tolist()
+    one, other = (names.index(f"displaced at random, seed 1{end}") for end in ("", ", mirror image"))
+    assert float(copies["asymmetry"][one]) > 0.1
+    assert int(copies["asymmetry_sign"][one]) == -int(copies["asymmetry_sign"][other]) != 0
+    response = copies["floor_response"].values
+    np.testing.assert_allclose(response[one], response[other][::-1], atol=1e-3)
+
+
+def test_differences_between_copies_are_those_of_their_responses(datasets):
+    copies = datasets["copies"]
+    response = copies["floor_response"].values
+    assert float(copies["difference"][0]) == 0.0
+    for k in range(copies.sizes["copy"]):
+        expected = np.abs(response[k][::-1] - response[0]).max() / response[0].max()
+        assert float(copies["mirror_difference"][k]) == pytest.approx(expected, abs=1e-12)
+
+
+def test_equilibria_at_small_force_stay_where_they_are(datasets):
+    held = datasets["held"]
+    assert float(held["branch_asymmetry"].max()) < 1e-6
+    assert 0.0 < float(held["moved"].max()) < 1e-4
+    # the response remembers a displacement of sliding contacts, in proportion to it
+    assert float(held["asymmetry"].max()) < 0.02
+
+
+def test_datasets_are_stored_and_drawn(datasets, tmp_path):
+    store.write(tmp_path / "group.nc", datasets)
+    stored = store.read(tmp_path / "group.nc")
+    assert stored["states"].sizes["state"] == 3
+    drawn = figures.draw(stored)
+    assert list(drawn) == ["fig16s_symmetry_breaking"]
+    assert style.render(drawn["fig16s_symmetry_breaking"], "png", dpi=40).startswith(b"\x89PNG")

@@ -1,0 +1,195 @@
+"""States along a force, measures and events that the studies of Sec. V share."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scenes import scene
+
+from granular_response.solve.state import OPEN, SLIDING, STICKING
+from granular_response.studies import slab_response, symmetry_breaking
+from granular_response.studies.slab_response import (
+    SCALARS,
+    Event,
+    LoadPath,
+    Measured,
+    Measures,
+    asymmetry_sign,
+    events_dataset,
+    first_change,
+    half_maximum_width,
+    locate,
+    measured_dataset,
+    mobilised_contacts,
+    states_picture,
+)
+
+UNIT_LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+
+
+@pytest.fixture(scope="module")
+def path():
+    return LoadPath.of(scene(5, 17, contact__friction=0.0, loads=UNIT_LOAD))
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """What is asked of the solver: (load factor of the start, load factors)."""
+    asked = []
+    solver = slab_response.loaded_states
+
+    def record(problem, start, factors):
+        asked.append((start.load_factor, list(factors)))
+        return solver(problem, start, factors)
+
+    monkeypatch.setattr(slab_response, "loaded_states", record)
+    return asked
+
+
+def test_states_are_found_from_the_one_below_and_once(path, calls):
+    path = LoadPath(path.scene, path.problem, path.rest)
+    path.through([0.2, 0.4, 1.0])
+    path.at(0.7)
+    path.at(0.4)
+    path.through([0.3, 0.4, 1.0, 1.2])
+    assert calls == [(0.0, [0.2, 0.4, 1.0]), (0.4, [0.7]), (0.2, [0.3]), (1.0, [1.2])]
+    assert path.at(0.7).load_factor == 0.7
+    assert path.method == "minimise"
+
+
+def test_a_state_on_the_way_is_the_one_found_alone(path):
+    together = LoadPath(path.scene, path.problem, path.rest).through([0.5, 2.0])[1]
+    alone = LoadPath(path.scene, path.problem, path.rest).at(2.0)
+    np.testing.assert_allclose(together.position, alone.position, atol=1e-11)
+
+
+def test_the_literal_protocol_starts_at_rest_every_time(calls):
+    literal = scene(2, 5, loads=UNIT_LOAD, protocol__method="dynamics")
+    path = LoadPath.of(literal)
+    path.at(0.1)
+    path.at(0.3)
+    assert [start for start, _ in calls] == [0.0, 0.0]
+    assert path.method == "dynamics"
+
+
+def test_measures_know_the_symmetric_slab(path):
+    measures = Measures(path)
+    assert measures.x[len(measures.x) // 2] == pytest.approx(0.0, abs=1e-9)
+    state = path.at(0.05)
+    scalars = measures.scalars(state)
+    assert list(scalars) == list(SCALARS)
+    assert scalars["asymmetry"] < 1e-9
+    assert scalars["opened_contacts"] == scalars["sliding_contacts"] == scalars["network_asymmetry"] == 0
+    assert scalars["response_at_centre"] == pytest.approx(scalars["peak_height"])
+    assert measures.response(state).sum() == pytest.approx(1.0, abs=1e-9)
+
+
+def test_contacts_far_from_the_load_are_not_near(path):
+    measures = Measures(path)
+    pairs = path.rest.pairs
+    middle = 0.5 * (path.rest.position[pairs.first, 0] + path.rest.position[pairs.second, 0])
+    width = path.problem.packing.width
+    np.testing.assert_array_equal(measures.near, (middle >= width / 3) & (middle <= 2 * width / 3))
+
+
+def test_mobilised_contacts_are_near_the_coulomb_limit(path):
+    state = path.rest
+    touching = np.flatnonzero(state.pairs.touching)[:4]
+    status = np.full(state.pairs.status.shape, OPEN, dtype=np.int8)
+    status[touching] = STICKING
+    normal, tangential = np.zeros(status.shape), np.zeros(status.shape)
+    normal[touching] = 2.0
+    tangential[touching] = 2.0 * 0.3 * np.array([-1.0, 0.985, 0.94, 0.0])
+    pairs = replace(state.pairs, status=status, normal_force=normal, tangential_force=tangential)
+    made = replace(state, pairs=pairs)
+    assert [mobilised_contacts(made, 0.3, margin) for margin in (1e-6, 0.02, 0.1)] == [1, 2, 3]
+    assert mobilised_contacts(made, 0.0, 0.1) == 0
+    opened = replace(made, pairs=replace(pairs, status=np.zeros_like(status)))
+    assert mobilised_contacts(opened, 0.3, 0.1) == 0
+
+
+def test_half_maximum_width():
+    x = np.arange(-4.0, 5.0)
+    assert half_maximum_width(x, 4.0 - np.abs(x)) == pytest.approx(4.0)
+    assert half_maximum_width(x, np.where(x > -0.5, 4.0 - x, 0.0)) == pytest.approx(2.5)
+    two = np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0])
+    assert half_maximum_width(x, two) == pytest.approx(5.0)
+    assert np.isnan(half_maximum_width(x, x))
+
+
+def test_asymmetry_sign():
+    x = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
+    assert asymmetry_sign(x, np.array([0.0, 1.0, 9.0, 2.0, 0.0])) == 1
+    assert asymmetry_sign(x, np.array([3.0, 1.0, 9.0, 2.0, 0.0])) == -1
+    assert asymmetry_sign(x, np.array([1.0, 1.0, 9.0, 1.0, 1.0])) == 0
+
+
+def test_first_change():
+    assert first_change([1.0, 2.0, 3.0], [False, True, False]) == (1.0, 2.0)
+    assert first_change([1.0, 2.0], [True, True]) == (0.0, 1.0)
+    low, high = first_change([1.0, 2.0], [False, False])
+    assert (low, np.isnan(high)) == (2.0, True)
+
+
+@pytest.mark.parametrize(("threshold", "low", "high"), [(0.33, 0.3, 0.4), (0.055, 0.0, 0.1)])
+def test_events_are_located_on_the_path(path, threshold, low, high):
+    path = LoadPath(path.scene, path.problem, path.rest)
+    forces = [0.1, 0.2, 0.5]
+    path.through(forces)
+    event = locate("event", path, forces, lambda s: s.load_factor > threshold, 0.02, "made up")
+    assert low <= event.low < threshold <= event.high <= high
+    assert event.high - event.low <= 0.02
+    assert event.evaluations == len(path.known) - 3 > 0
+    assert event.friction == 0.0
+
+
+def test_events_become_a_table():
+    table = events_dataset([Event("a", 0.2, 1.0, float("nan"), 0.1, 0, "never"), Event("b", 0.5, 1, 2, 1, 3, "x")])
+    assert table["name"].values.tolist() == ["a", "b"]
+    assert table["definition"].values.tolist() == ["never", "x"]
+    assert np.isnan(table["high"].values[0])
+    assert table["evaluations"].values.tolist() == [0.0, 3.0]
+    for name in table.variables:
+        assert table[name].attrs["long_name"]
+        assert table[name].attrs["units"] == "1"
+
+
+def test_measurements_are_spread_over_a_grid(path):
+    measures = Measures(path)
+    states = path.through([0.1, 0.2, 0.3])
+    both, one = Measured.of(measures, states[:2]), Measured.of(measures, states[2:])
+    grid = measured_dataset(("a", "b"), [((0, [0, 2]), both), ((1, [1]), one)], (2, 3))
+    centre = grid["response_at_centre"].values
+    np.testing.assert_array_equal(np.isnan(centre), [[False, True, False], [True, False, True]])
+    assert centre[0, 2] == measures.centre(states[1])
+    np.testing.assert_array_equal(grid["floor_response"].values[1, 1], measures.response(states[2]))
+    np.testing.assert_array_equal(both.only(1).response[0], both.response[1])
+    assert grid["certificate_force_residual"].values[0, 0] < 1e-9
+
+
+def test_pictures_keep_what_they_need(path):
+    states = [path.rest, path.at(0.3)]
+    picture = states_picture(states, path.problem)
+    assert picture["force"].values.tolist() == [0.0, 0.3]
+    np.testing.assert_array_equal(picture["position"].values[1], states[1].position)
+    assert int(picture["loaded_disk"]) == path.problem.load_disk[0]
+    assert set(np.unique(picture["contact_status"])) <= {OPEN, STICKING, SLIDING}
+
+
+def test_copies_of_a_packing_are_the_same_packing():
+    packing = scene(4, 7).packing.build()
+    image = symmetry_breaking.mirrored(packing)
+    np.testing.assert_array_equal(np.sort(image.position, axis=0), np.sort(packing.position, axis=0))
+    np.testing.assert_array_equal(image.position[0], packing.position[6])
+
+    mixed = symmetry_breaking.shuffled(packing, 3)
+    order = np.lexsort(packing.position.T)
+    np.testing.assert_array_equal(mixed.position[np.lexsort(mixed.position.T)], packing.position[order])
+    assert not np.array_equal(mixed.position, packing.position)
+    np.testing.assert_allclose(mixed.position[mixed.row == 0][:, 1], 1.0)
+
+    shift = np.zeros((packing.n, 2))
+    shift[0] = [1e-3, 2e-3]
+    moved = symmetry_breaking.displaced(packing, shift, mirror_image=True)
+    np.testing.assert_allclose(moved.position[6] - packing.position[6], [-1e-3, 2e-3], atol=1e-15)
+    np.testing.assert_array_equal(moved.position[:6], packing.position[:6])
