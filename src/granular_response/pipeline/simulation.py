@@ -30,6 +30,8 @@ def parameters(group: str, path: Path = PARAMETERS) -> dict[str, Any]:
         sections = text.read(path.read_text(encoding="utf-8"))
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
+    except UnicodeDecodeError:
+        raise GroupError(f"{path}: is not a text file in UTF-8") from None
     except OSError as error:
         raise GroupError(f"{path}: cannot be read: {error.strerror}") from None
     merged: dict[str, Any] = {}

@@ -1,0 +1,269 @@
+"""Kills, damaged files, odd parameter files, restarts, and the wheel."""
+
+import contextlib
+import io
+import multiprocessing
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from granular_response import cli, store
+from granular_response.pipeline import GroupError, simulation
+from granular_response.result import state_from, states_dataset, to_dataset
+from granular_response.scene import Scene, SceneError
+from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax, rest_state, solve_scene
+
+ROOT = Path(__file__).parents[2]
+KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
+SCENE = {
+    "packing": {"kind": "slab", "layers": 5, "disks_per_row": 11},
+    "contact": {"friction": 0.3},
+    "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
+}
+
+
+# Kills. A process that is killed at once cannot tidy up: only the order of its writes keeps files whole.
+
+
+def command(folder: str, arguments: list[str]) -> None:
+    os.chdir(folder)
+    sys.argv = ["granular-response", *arguments]
+    with contextlib.redirect_stdout(io.StringIO()):
+        cli.main()
+
+
+@pytest.fixture(scope="module")
+def processes():
+    context = multiprocessing.get_context("forkserver")  # starts in milliseconds, with everything imported
+    context.set_forkserver_preload(["granular_response.cli", "granular_response.solve", "granular_response.result"])
+    return context
+
+
+def killed_at_random(processes, folder: Path, arguments: list[str], output: Path, kills: int) -> list[int]:
+    """Kill the command ``kills`` times; returns at which of them a file was there. Each file found is whole."""
+    generator = random.Random(1)
+    times = []
+    for _ in range(2):  # the first run also reads compiled code
+        started = time.perf_counter()
+        process = processes.Process(target=command, args=(str(folder), arguments))
+        process.start()
+        process.join()
+        assert process.exitcode == 0
+        times.append(time.perf_counter() - started)
+    output.unlink()
+    found, hit = [], 0
+    for kill in range(kills):
+        process = processes.Process(target=command, args=(str(folder), arguments))
+        process.start()
+        time.sleep(generator.uniform(0.0, 1.1 * times[-1]))
+        if process.is_alive():
+            os.kill(process.pid, signal.SIGKILL)
+            hit += 1
+        process.join()
+        if output.exists():
+            assert store.read(output)
+            found.append(kill)
+            if generator.random() < 0.5:
+                output.unlink()
+    assert hit >= kills // 3
+    process = processes.Process(target=command, args=(str(folder), arguments))
+    process.start()
+    process.join()
+    assert process.exitcode == 0
+    assert store.read(output)
+    assert not list(output.parent.glob(".*")), "what killed runs left is gone after the next whole one"
+    return found
+
+
+def test_killed_runs_leave_whole_results_or_none(tmp_path, processes):
+    (tmp_path / "scene.yaml").write_text(yaml.safe_dump(SCENE))
+    killed_at_random(processes, tmp_path, ["run", "scene.yaml", "-o", "result.nc"], tmp_path / "result.nc", KILLS)
+
+
+def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
+    parameters = yaml.safe_load((ROOT / "params.yaml").read_text())
+    parameters["theory"].update(points=11, half_width=1.0, depths=[10.0])
+    (tmp_path / "params.yaml").write_text(yaml.safe_dump(parameters))
+    arguments = ["simulate", "theory", "--workers", "1"]
+    killed_at_random(processes, tmp_path, arguments, tmp_path / "data" / "theory.nc", max(KILLS // 4, 3))
+
+
+# Damaged and foreign files
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return solve_scene(Scene.from_dict(SCENE))
+
+
+def one_line(arguments: list[str], folder: Path) -> str:
+    run = subprocess.run(
+        [sys.executable, "-m", "granular_response", *arguments], cwd=folder, capture_output=True, text=True
+    )
+    assert run.returncode == 2
+    assert run.stdout == ""
+    assert run.stderr.startswith("granular-response: ")
+    assert run.stderr.count("\n") == 1
+    return run.stderr
+
+
+def test_truncated_and_foreign_files_are_one_line(tmp_path, solution):
+    store.write(tmp_path / "whole.nc", to_dataset(solution))
+    whole = (tmp_path / "whole.nc").read_bytes()
+    (tmp_path / "truncated.nc").write_bytes(whole[: len(whole) // 2])
+    assert "truncated.nc: is truncated or damaged" in one_line(["show", "truncated.nc"], tmp_path)
+    assert "truncated.nc: is truncated or damaged" in one_line(["export", "truncated.nc", "-o", "a.vtu"], tmp_path)
+    to_dataset(solution).to_netcdf(tmp_path / "foreign.nc")
+    assert "foreign.nc: was not written by granular_response" in one_line(["show", "foreign.nc"], tmp_path)
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(cut=st.floats(0.0, 0.999), place=st.floats(0.0, 0.999), flip=st.integers(1, 255))
+def test_a_damaged_file_is_never_read_silently_wrong(tmp_path, solution, cut, place, flip):
+    path = tmp_path / "damaged.nc"
+    expected = to_dataset(solution)
+    store.write(path, expected)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(cut * len(whole))])
+    with pytest.raises(store.StoreError) as error:
+        store.read(path)
+    assert "\n" not in str(error.value)
+    damaged = bytearray(whole)
+    damaged[int(place * len(whole))] ^= flip
+    path.write_bytes(damaged)
+    try:
+        data = store.read(path)[""]
+    except store.StoreError as error_found:
+        assert "\n" not in str(error_found)
+    except KeyError:
+        pass  # the name of a group was hit
+    else:  # the flipped byte was in a text or in a place that nobody reads, not in the numbers
+        for name in set(data.variables) & set(expected.variables):
+            if expected[name].dtype.kind == "f" and expected[name].ndim:
+                np.testing.assert_array_equal(data[name], expected[name])
+
+
+# Parameter files
+
+SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20)
+TREES = st.recursive(
+    SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3)
+)
+SECTIONS = st.dictionaries(st.sampled_from(["common", "theory", "other"]), TREES)
+
+
+def loaded(path: Path) -> None:
+    try:
+        found = simulation.parameters("theory", path)
+    except (GroupError, SceneError) as error:
+        assert "\n" not in str(error)
+        assert str(error).startswith(str(path))
+    else:
+        assert isinstance(found, dict)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(content=st.binary(max_size=200))
+def test_any_bytes_as_parameters(tmp_path, content):
+    (tmp_path / "params.yaml").write_bytes(content)
+    loaded(tmp_path / "params.yaml")
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(content=SECTIONS | TREES)
+def test_any_tree_as_parameters(tmp_path, content):
+    (tmp_path / "params.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    loaded(tmp_path / "params.yaml")
+
+
+# Restarts
+
+
+
+def labelled(tmp_path: Path, solution):
+    store.write(tmp_path / "result.nc", to_dataset(solution))
+    return store.read(tmp_path / "result.nc")[""]
+
+
+def assert_same(one, other) -> None:
+    for name in ("position", "angle", "velocity", "angular_velocity"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    for kind in ("pairs", "walls"):
+        for name in ("first", "second", "overlap", "normal_force", "tangential_force", "spring", "status"):
+            np.testing.assert_array_equal(getattr(getattr(one, kind), name), getattr(getattr(other, kind), name))
+
+
+def test_loading_from_a_stored_rest_state_is_the_same_to_the_last_bit(tmp_path, solution):
+    back = state_from(labelled(tmp_path, solution), 0)
+    assert_same(back, solution.rest)
+    _, (again,) = loaded_states(solution.problem, back, [1.0])
+    assert_same(again, solution.loaded[0])
+
+
+def test_a_path_goes_on_from_a_stored_state_to_the_last_bit(tmp_path, solution):
+    back = state_from(labelled(tmp_path, solution), -1)
+    assert back.load_factor == 1.0
+    _, (restarted,) = loaded_states(solution.problem, back, [2.0])
+    _, (straight,) = loaded_states(solution.problem, solution.loaded[0], [2.0])
+    assert_same(restarted, straight)
+
+
+def test_dynamics_from_a_stored_moving_state(tmp_path):
+    """A stored state and one in memory go on alike to the last bit.
+
+    A run that was never interrupted differs from both by the memory of its integrator (the acceleration one step
+    earlier), which no state holds: an error of one step, not of the equilibrium.
+    """
+    problem = Problem.from_scene(Scene.from_dict(SCENE))
+    running = Dynamics(problem, problem.bare_state())
+    running.set_ramps()
+    running.advance(2000)
+    state = running.state()
+    store.write(tmp_path / "moving.nc", {"moving": states_dataset([state]).drop_vars("axis")})
+    back = state_from(store.read(tmp_path / "moving.nc")["moving"])
+    ends = []
+    for start in (state, back):
+        dynamics = Dynamics(problem, start)
+        dynamics.set_ramps()
+        dynamics.advance(2000)
+        ends.append(dynamics.state())
+    assert_same(*ends)
+    running.advance(2000)
+    difference = np.abs(running.state().position - ends[0].position).max()
+    moved = np.abs(state.position - ends[0].position).max()
+    assert 0.0 < difference < 1e-2 * moved
+
+
+def test_a_settled_packing_stays_where_it_is(solution):
+    rest = rest_state(solution.problem)
+    again = relax(Dynamics(solution.problem, rest), Stop(1e-20, maximum_steps=2000))
+    np.testing.assert_allclose(again.position, rest.position, rtol=0, atol=1e-12)
+    assert again.information["kinetic_energy"] < 1e-20
+
+
+# The wheel
+
+
+def test_the_wheel_holds_every_module(tmp_path):
+    pytest.importorskip("hatchling")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)],
+        cwd=ROOT, check=True, capture_output=True,
+    )  # fmt: skip
+    (wheel,) = tmp_path.glob("*.whl")
+    names = set(zipfile.ZipFile(wheel).namelist())
+    source = ROOT / "src"
+    modules = {str(path.relative_to(source)) for path in source.rglob("*.py") if "__pycache__" not in path.parts}
+    assert modules <= names
+    assert not [name for name in names if "test" in name.lower() or name.endswith((".nc", ".pyc"))]
