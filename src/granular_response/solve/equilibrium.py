@@ -124,7 +124,6 @@ def certify(problem: Problem, state: State, *, modes: int = -1) -> Certificate:
     The residual is summed anew from the state's contact forces, not taken from the solver.
     """
     n, radius = problem.n, problem.packing.radius
-    force = state.load_factor * np.array([0.0])
     force = np.zeros((n, 2))
     torque = np.zeros(n)
     force[:, 1] -= problem.weight

@@ -16,7 +16,8 @@ LOOK_EVERY = 8
 class Integrator:
     """One time integrator.
 
-    ``rows`` is the number of history rows, ``order`` the global order of its positions on a smooth problem,
+    ``rows`` is the number of history rows, ``order`` the global order of its positions on a smooth problem once
+    its history is known (Gear's start without higher derivatives costs it two orders),
     ``start(q, v, history, dt)`` fills the history from its row 0. ``amplification(w2, c)`` is the matrix of one step
     of length 1 for the damped oscillator ``x'' = -w2 x - c x'``: the step is stable while no eigenvalue exceeds 1.
     """
