@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 import runpy
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from nbclient import NotebookClient
 
+from granular_response import store
 from granular_response.result import to_dataset
 from granular_response.scene import Scene
 from granular_response.solve import solve_scene
@@ -115,3 +117,20 @@ def test_a_notebook_runs(path, tmp_path, monkeypatch):
     NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(EXAMPLES)}}).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert any("image/png" in output.get("data", {}) for output in outputs)
+
+
+def test_the_code_of_the_tutorial_runs(tmp_path, monkeypatch):
+    text = (EXAMPLES.parent / "docs" / "tutorial.md").read_text()
+    first, second = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(EXAMPLES)
+    store.write(tmp_path / "slab.nc", to_dataset(solve_scene(small(EXAMPLES / "slab.yaml"))))
+    exec(compile(first, "tutorial 1", "exec"), {})
+    names: dict = {}
+    exec(compile(second, "tutorial 2", "exec"), names)
+    assert (tmp_path / "response.png").stat().st_size > 1000
+    assert (tmp_path / "forces.png").stat().st_size > 1000
+    low, _, high = names["result"]["floor_response"].values
+    middle = len(low) // 2
+    assert low.argmax() == middle  # one peak becomes two, as the text says
+    assert high[middle] < 0.9 * high.max()
