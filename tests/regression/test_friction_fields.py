@@ -1,0 +1,88 @@
+"""Figs. 13 to 15 on a slab of 7 layers, from parameters through a file to figures."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import friction_fields as figures
+from granular_response.figures import style
+from granular_response.studies import friction_fields as study
+
+PARAMETERS = {
+    "method": "auto",
+    "scene": {"packing.layers": 7, "packing.disks_per_row": 21},
+    "frictions": [0.0, 0.2, 1.0],
+    "force": 4.0,
+    "stress_width": 2.0,
+    "stress_spacing": 0.5,
+    "stress_half_width": 40.0,
+    "profiles": {"frictions": [0.0, 1.0], "force": 12.0, "rows": [1.5, 3.5]},
+}
+SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "friction_fields.nc"
+    store.write(path, study.simulate(PARAMETERS, workers=1))
+    return store.read(path)
+
+
+def test_scalars(datasets, num_regression) -> None:
+    stress = datasets["stress"]
+    num_regression.check(
+        {name: stress[name].values for name in SCALARS}, default_tolerance={"rtol": 1e-5, "atol": 1e-8}
+    )
+
+
+def test_friction_makes_the_slab_isotropic(datasets) -> None:
+    stress = datasets["stress"]
+    assert float(stress["misalignment"][0]) < 0.2 < 10.0 < float(stress["misalignment"][1])
+    assert float(stress["axis_angle"][0]) == pytest.approx(30.0, abs=1.0)
+    assert float(stress["axis_angle"][2]) < 5.0
+    assert np.all(np.diff(stress["distance_to_lattice"]) < 0.0)
+    assert np.all(np.diff(stress["antisymmetric_near"]) > 0.0)
+
+
+def test_stress_carries_the_load(datasets) -> None:
+    """Over a line between load and floor sigma_zz of the added forces sums to the force, in every medium."""
+    stress = datasets["stress"]
+    row = stress.sel(z=6.0)
+    step = float(stress["x"][1] - stress["x"][0])
+    np.testing.assert_allclose(row["stress_zz_lattice"].sum("x") * step, 1.0, atol=1e-3)
+    np.testing.assert_allclose(row["stress_zz"][0].sum("x") * step, 1.0, atol=0.01)  # some lies beyond the walls
+    # frictional side walls take a little of it, or add to it
+    np.testing.assert_allclose(row["stress_zz"][1:].sum("x") * step, 1.0, atol=0.03)
+
+
+def test_forces_are_those_of_the_load(datasets) -> None:
+    forces = datasets["forces"]
+    disk = int(forces["loaded_disk"])
+    for index in range(3):
+        added = forces["contact_added_force"].values[index]
+        total = added[forces["contact_disk"].values == disk].sum(axis=0)
+        total -= added[forces["contact_partner"].values == disk].sum(axis=0)
+        np.testing.assert_allclose(total, [0.0, float(forces["force"])], atol=1e-8)
+
+
+def test_profiles(datasets) -> None:
+    profiles = datasets["profiles"]
+    # without friction the strongest force keeps to the lattice direction through the load
+    np.testing.assert_allclose(profiles["strongest_x"][0], profiles["row"], atol=0.01)
+    assert np.all(profiles["axis_magnitude"][1] > 2.0 * profiles["axis_magnitude"][0])
+
+
+def test_figures(datasets) -> None:
+    drawn = figures.draw(datasets)
+    assert list(drawn) == ["fig13_force_chains", "fig14_vertical_stress", "fig15_force_profiles"]
+    lines = drawn["fig15_force_profiles"].axes[1].lines
+    np.testing.assert_array_equal(lines[0].get_ydata(), datasets["profiles"]["magnitude"].values[1, 0])
+    for figure in drawn.values():
+        assert style.render(figure)
+
+
+def test_bad_parameters_are_named() -> None:
+    with pytest.raises(ValueError, match=r"profiles\.frictions = \[0\.5\]"):
+        study.simulate({**PARAMETERS, "profiles": {**PARAMETERS["profiles"], "frictions": [0.5]}}, workers=1)
+    with pytest.raises(ValueError, match="stress_width = 0: must be above 0"):
+        study.simulate({**PARAMETERS, "stress_width": 0}, workers=1)

@@ -1,0 +1,85 @@
+"""Fig. 17, from parameters through a file to figures. The pile of the paper is small enough for a test."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import pile_dip as figures
+from granular_response.figures import style
+from granular_response.studies import pile_dip as study
+
+PARAMETERS = {
+    "method": "auto",
+    "scene": {
+        "packing.layers": 11,
+        "contact.friction": 0.94,
+        "contact.stiffness_ratio": 0.5,
+        "wall.friction": 0.35,
+    },
+    "stress_width": 2.0,
+    "stress_spacing": 1.0,
+    "dip_height": 4.0,
+}
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "pile_dip.nc"
+    store.write(path, study.simulate(PARAMETERS, workers=1))
+    return store.read(path)
+
+
+def test_numbers(datasets, num_regression) -> None:
+    piles, stress = datasets["piles"], datasets["stress"]
+    values = {
+        name: piles[name].values for name in ("floor_dip", "central_open_contacts", "central_height", "central_width")
+    }
+    num_regression.check({**values, "dip": stress["dip"].values}, default_tolerance={"rtol": 1e-6, "atol": 1e-8})
+
+
+def test_the_frictionless_pile_has_two_minima(datasets) -> None:
+    """Floor forces of a minimum known from an independent code: 8.34 in the middle, 9.15 and 9.08 beside it."""
+    piles = datasets["piles"]
+    floor = piles["floor_force"].values
+    middle = floor.shape[1] // 2
+    found = [floor[0, middle], floor[0, :middle].max(), floor[0, middle + 1 :].max()]
+    np.testing.assert_allclose(found, [8.34, 9.15, 9.08], atol=0.005)
+    assert float(piles["image_difference"]) < 1e-8
+    assert piles["certificate_negative_modes"].values.tolist() == [0, 0, 0]
+    assert float(piles["floor_asymmetry"][2]) < 1e-9
+
+
+def test_the_dip_goes_with_friction(datasets) -> None:
+    piles, stress = datasets["piles"], datasets["stress"]
+    assert np.all(stress["dip"][:2] > 0.05)
+    assert float(stress["dip"][2]) < 0.0
+    assert float(stress["dip_of_mean"]) > 0.05
+    assert np.all(piles["central_horizontal"] == piles["central_open_contacts"])
+
+
+def test_every_pile_bears_its_weight(datasets) -> None:
+    """The floor alone where the side walls are smooth."""
+    piles, stress = datasets["piles"], datasets["stress"]
+    disks = piles.sizes["disk"]
+    np.testing.assert_allclose(piles["floor_force"][:2].sum("floor_disk"), disks, rtol=1e-10)
+    upward = piles["wall_force"].sel(axis="z").sum("wall_contact")
+    np.testing.assert_allclose(upward, disks, rtol=1e-10)
+    step = float(stress["x"][1] - stress["x"][0])
+    line = stress["profile_zz"].sum("x") * step
+    assert np.all((line > 0.6 * disks) & (line < disks))
+
+
+def test_figures(datasets) -> None:
+    drawn = figures.draw(datasets)
+    assert list(drawn) == ["fig17_pile", "fig17_pile_profiles"]
+    letters = [axes.get_title(loc="left")[:3] for axes in drawn["fig17_pile"].axes[:6]]
+    assert sorted(letters) == ["(a)", "(b)", "(c)", "(d)", "(e)", "(f)"]
+    line = drawn["fig17_pile_profiles"].axes[0].lines[2]
+    np.testing.assert_array_equal(line.get_ydata(), datasets["stress"]["profile_zz"].sel(case="frictional"))
+    for figure in drawn.values():
+        assert style.render(figure)
+
+
+def test_bad_parameter_is_named() -> None:
+    with pytest.raises(ValueError, match=r"dip_height = -1\.0: must be above 0"):
+        study.simulate({**PARAMETERS, "dip_height": -1.0}, workers=1)

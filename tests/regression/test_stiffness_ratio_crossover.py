@@ -1,0 +1,84 @@
+"""Figs. 10 and 11 on a slab of 7 layers, from parameters through a file to figures."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import stiffness_ratio_crossover as figures
+from granular_response.figures import style
+from granular_response.studies import stiffness_ratio_crossover as study
+from granular_response.theory import crossover
+
+PARAMETERS = {
+    "method": "dynamics",
+    "scene": {
+        "packing.layers": 7,
+        "packing.disks_per_row": 31,
+        "contact.friction": 10.0,
+        "protocol.integrator": "verlet",
+    },
+    "force": 4.0,
+    "ratios": [0.0, 0.1, 0.2, 0.3, 0.4, 0.8],
+    "tolerance": 0.03,
+}
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "stiffness_ratio_crossover.nc"
+    store.write(path, study.simulate(PARAMETERS, workers=1))
+    return store.read(path)
+
+
+def test_response(datasets, num_regression) -> None:
+    response = datasets["response"]
+    num_regression.check(
+        {name: response[name].values for name in ("response_at_centre", "central_dip", "opened_contacts")},
+        default_tolerance={"rtol": 1e-6, "atol": 1e-9},
+    )
+
+
+def test_two_peaks_turn_into_one(datasets) -> None:
+    response, events = datasets["response"], datasets["events"]
+    assert response["double_peaked"].values.tolist() == [1, 1, 1, 0, 0, 0]
+    assert response["methods"].values.tolist() == ["minimise", *["dynamics"] * 5]
+    assert float(response["certificate_force_residual"].max()) < 1e-10
+    np.testing.assert_allclose(response["floor_response"].sum("floor_disk"), 1.0, atol=1e-9)
+    for low, high, evaluations in zip(events["low"], events["high"], events["evaluations"], strict=True):
+        assert 0.2 <= float(low) < float(high) <= 0.3
+        assert float(high - low) <= PARAMETERS["tolerance"]
+        assert int(evaluations) == 2
+
+
+def test_elastic_bodies_turn_where_theory_says(datasets) -> None:
+    """Sampled at the floor disks the dip of the slab changes its sign near the curvature's own zero."""
+    elastic = datasets["elastic"]
+    ratio = elastic["stiffness_ratio"].values
+    for rotations in ("suppressed", "free"):
+        for body in ("half plane", "smooth floor"):
+            dip = elastic["central_dip"].sel(rotations=rotations, body=body).values
+            turned = ratio[np.flatnonzero(dip < 0.0)[0]]
+            assert turned == pytest.approx(crossover.stiffness_ratio(body, rotations), abs=0.04)
+    assert np.isnan(elastic["profile"].sel(stiffness_ratio=0.0)).all()
+    assert float(elastic["moduli_error"].max()) < 1e-13
+    shares = elastic["profile"].sel(body="smooth floor").isel(stiffness_ratio=slice(1, None)).sum("floor_disk")
+    np.testing.assert_allclose(shares, 1.0, atol=1e-4)  # disks at rest are not quite 2 apart
+
+
+def test_figures(datasets) -> None:
+    drawn = figures.draw(datasets)
+    assert list(drawn) == ["fig10_stiffness_ratio", "fig11_spring_model"]
+    simulated, _, dips = drawn["fig10_stiffness_ratio"].axes[:3]
+    curves = {line.get_label(): line.get_ydata() for line in simulated.lines}
+    np.testing.assert_array_equal(curves["0.2"], datasets["response"]["floor_response"].sel(stiffness_ratio=0.2))
+    marked = next(line for line in dips.lines if line.get_label() == "simulation")
+    np.testing.assert_array_equal(marked.get_ydata(), datasets["response"]["central_dip"])
+    assert style.render(drawn["fig10_stiffness_ratio"])
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("ratios", [0.3, 0.2]), ("ratios", [-0.1, 0.2]), ("ratios", [0.1]), ("force", 0.0)]
+)
+def test_bad_parameter_is_named(key, value) -> None:
+    with pytest.raises(ValueError, match=f"{key} = .*: must be"):
+        study.simulate({**PARAMETERS, key: value}, workers=1)

@@ -1,0 +1,84 @@
+"""Fig. 18 on a slab of 5 layers, from parameters through a file to figures."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import style
+from granular_response.figures import torque as figures
+from granular_response.studies import torque as study
+
+PARAMETERS = {
+    "method": "dynamics",
+    "scene": {
+        "packing.layers": 5,
+        "packing.disks_per_row": 13,
+        "packing.polydispersity": 0.001,
+        "contact.friction": 0.5,
+        "contact.stiffness_ratio": 0.5,
+        "wall.friction": 0.5,
+    },
+    "force": 10.0,
+    "angle": 30.0,
+    "torques": [0.0, 1.5, 3.0],
+    "stress_width": 2.0,
+    "stress_spacing": 0.5,
+    "distances": [0.0, 4.0, 8.0],
+}
+CHANGES = ("force_change", "stress_change", "antisymmetric_change")
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "torque.nc"
+    store.write(path, study.simulate(PARAMETERS, workers=1))
+    return store.read(path)
+
+
+def test_reach(datasets, num_regression) -> None:
+    reach = datasets["reach"]
+    num_regression.check(
+        {name: reach[name].values.ravel() for name in CHANGES}, default_tolerance={"rtol": 1e-5, "atol": 1e-8}
+    )
+
+
+def test_changes_grow_with_the_torque_and_fall_with_the_distance(datasets) -> None:
+    reach = datasets["reach"]
+    for name in CHANGES:
+        change = reach[name].values
+        assert np.all(change[0] == 0.0)
+        assert np.all(np.diff(change, axis=0) > 0.0)
+        assert np.all(change[1:, 0] > change[1:, 1])
+    assert np.all(reach["antisymmetric_change"][1:, 1] < 0.2 * reach["antisymmetric_change"][1:, 0])
+
+
+def test_loads_are_balanced(datasets) -> None:
+    """The contacts of the loaded disk take up the applied force and the clockwise torque."""
+    data = datasets["torques"]
+    disk = int(data["loaded_disk"])
+    first, second = data["contact_disk"].values, data["contact_partner"].values
+    np.testing.assert_allclose(data["applied_force"], 10.0 * np.array([np.cos(np.pi / 6), -0.5]))
+    for index in range(3):
+        added = data["contact_added_force"].values[index]
+        force = added[first == disk].sum(axis=0) - added[second == disk].sum(axis=0)
+        np.testing.assert_allclose(force, -data["applied_force"], atol=1e-8)
+    assert np.all(np.diff(data["rotation"]) < 0.0)
+
+
+def test_figures(datasets) -> None:
+    drawn = figures.draw(datasets)
+    assert list(drawn) == ["fig18_torque", "fig18_torque_reach"]
+    lines = drawn["fig18_torque_reach"].axes[0].lines
+    np.testing.assert_array_equal(lines[1].get_ydata(), datasets["reach"]["force_change"].values[2])
+    arcs = [len(axes.patches) for axes in drawn["fig18_torque"].axes]
+    assert arcs == [0, 1, 1]
+    for figure in drawn.values():
+        assert style.render(figure)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("torques", [1.0, 2.0]), ("torques", []), ("distances", [3.0, 1.0]), ("force", -1.0)]
+)
+def test_bad_parameter_is_named(key, value) -> None:
+    with pytest.raises(ValueError, match=f"{key} = .*: must be"):
+        study.simulate({**PARAMETERS, key: value}, workers=1)

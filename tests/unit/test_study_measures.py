@@ -1,0 +1,89 @@
+"""What the studies of fields, piles and torques measure themselves, on hand-made input."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from observe_states import slab, with_pairs
+
+from granular_response.observe import stress as coarse
+from granular_response.scene import PilePacking, Scene, SlabPacking
+from granular_response.solve import Problem
+from granular_response.studies.friction_fields import axis_measures, harmonic_lattice
+from granular_response.studies.pile_dip import mirrored
+from granular_response.studies.stiffness_ratio_crossover import elastic_bodies
+from granular_response.studies.torque import ring_ratio
+from granular_response.theory.lattice import poisson_ratio
+from granular_response.theory.moduli import Moduli
+from granular_response.theory.slab import Slab
+
+
+def test_harmonic_lattice_is_in_balance() -> None:
+    packing = SlabPacking(layers=5, disks_per_row=11).build()
+    disk = packing.n - 6
+    found = harmonic_lattice(packing, disk, 1.0, 2.0)
+    pairs = packing.neighbour_pairs()
+    net = np.zeros((packing.n, 2))
+    m = len(pairs)
+    np.add.at(net, pairs[:, 0], found.force[:m])
+    np.add.at(net, pairs[:, 1], -found.force[:m])
+    wall_disk = np.argmin(np.linalg.norm(packing.position[:, None] - found.point[None, m:], axis=2), axis=0)
+    np.add.at(net, wall_disk, found.force[m:])
+    net[disk, 1] -= 1.0
+    np.testing.assert_allclose(net, 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(found.branch[:m], axis=1), 2.0)
+    np.testing.assert_allclose(np.linalg.norm(found.branch[m:], axis=1), 1.0)
+
+
+def test_harmonic_lattice_is_isotropic_where_it_is_fine() -> None:
+    """Against the isotropic slab of the same Poisson ratio, a few disks away from the load."""
+    packing = SlabPacking(layers=15, disks_per_row=61).build()
+    forces = harmonic_lattice(packing, packing.n - 31, 1.0, 2.0)
+    x = np.linspace(-30.0, 30.0, 61)
+    height = 10.0
+    found = coarse.coarse_grained_stress(forces, np.stack([x + 61.0, np.full(61, height)], axis=1), 2.0)
+    body = Slab(15 * np.sqrt(3.0), Moduli.isotropic(poisson_ratio(1.0, 0.0)), "smooth", 122.0)
+    expected = -body.stress(x, height, smoothing=np.sqrt(2.0))[1]
+    np.testing.assert_allclose(found[:, 1, 1], expected, atol=0.04 * expected.max())
+
+
+def test_axis_measures_see_the_direction_and_the_share() -> None:
+    rest = slab(6, 9)
+    disk = int(np.argmin(np.linalg.norm(rest.position - [9.0, rest.position[:, 1].max()], axis=1)))
+    offset = 0.5 * (rest.position[rest.pairs.first] + rest.position[rest.pairs.second]) - rest.position[disk]
+    depth = -offset[:, 1] / np.sqrt(3.0)
+    gap = (np.abs(depth - 2.5) < 0.2) | (np.abs(depth - 3.5) < 0.2) | (np.abs(depth - 4.5) < 0.2)
+    axis = gap & (np.abs(offset[:, 0]) < 1.0)
+    force = np.where(axis, 3.0, np.where(gap, 1.0, 0.0))
+    loaded = with_pairs(rest, np.arange(len(force)), normal_force=rest.pairs.normal_force + force)
+    angle, share = axis_measures(rest, loaded, disk)
+    assert angle == pytest.approx(30.0)
+    counts = [(np.abs(depth - g) < 0.2).sum() for g in (2.5, 3.5, 4.5)]
+    assert share == pytest.approx(np.mean([6.0 / (6.0 + n - 2) for n in counts]))
+
+
+def test_ring_ratio_sums_in_rings() -> None:
+    change = np.array([[0.0, 0.0, 0.0, 9.0], [1.0, 2.0, 3.0, 9.0]])
+    reference = np.array([2.0, 2.0, 1.0, 9.0])
+    distance = np.array([0.0, 0.9, 1.0, 7.0])
+    found = ring_ratio(change, reference, distance, np.array([0.0, 1.0, 2.0, 3.0]))
+    np.testing.assert_allclose(found, [[0.0, 0.0, np.nan], [0.75, 3.0, np.nan]])
+
+
+def test_mirrored_twice_is_the_state() -> None:
+    packing = PilePacking(layers=3).build()
+    state = Problem.from_scene(Scene.from_dict({"packing": {"kind": "pile", "layers": 3}, "loads": []})).bare_state()
+    moved = replace(state, position=state.position + np.linspace(0.0, 1e-3, 2 * packing.n).reshape(-1, 2))
+    image = mirrored(moved, packing)
+    assert np.abs(image.position - moved.position).max() > 1e-4
+    np.testing.assert_allclose(mirrored(image, packing).position, moved.position, atol=1e-14)
+
+
+def test_elastic_bodies_share_the_force_out() -> None:
+    x = np.arange(-20.0, 21.0, 2.0)
+    found = elastic_bodies(np.array([0.1, 0.9]), x, 4, 42.0)
+    shares = found["profile"].sum("floor_disk")
+    np.testing.assert_allclose(shares.sel(body="smooth floor"), 1.0, atol=1e-6)
+    assert np.all((shares.sel(body="half plane") > 0.8) & (shares.sel(body="half plane") < 1.0))
+    dip = found["central_dip"].sel(body="half plane", rotations="free").values
+    assert dip[0] > 0.0 > dip[1]
