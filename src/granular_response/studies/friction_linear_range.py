@@ -138,7 +138,7 @@ class PathTask:
                 self.forces,
                 lambda state: measures.asymmetry(state) > tolerance["asymmetry"],
                 shape,
-                f"quasi-static path: the asymmetry of the floor response exceeds {tolerance['asymmetry']:g}",
+                f"along the load path, the asymmetry of the floor response exceeds {tolerance['asymmetry']:g}",
             ),
         ]
 
