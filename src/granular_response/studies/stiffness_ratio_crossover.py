@@ -5,9 +5,10 @@ turn one peak into two. ``response`` holds the simulated profiles; ``elastic`` t
 moduli of the spring model without its horizontal springs, which the load has opened, and ``events`` the
 ratios at which the simulated profile changes its form.
 
-The two events do not coincide: between them the middle of the profile is flat to a few thousandths of its height, and
-small peaks come and go with the contacts that are open at rest. Every ratio has a rest state of its own. At a ratio of zero there are no tangential forces: that packing is
-frictionless, and its states are found as minima of the energy whatever ``method`` says.
+The two events do not coincide: between them the middle of the profile is flat to a few thousandths of its height,
+and small peaks come and go with the contacts that are open at rest. Every ratio has a rest state of its own.
+At a ratio of zero there are no tangential forces: that packing is frictionless, and its states are found as minima
+of the energy whatever ``method`` says.
 """
 
 from __future__ import annotations
