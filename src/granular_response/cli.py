@@ -219,6 +219,43 @@ def export(
     typer.echo(str(exporting.export(result, output, state=state)))
 
 
+@app.command(
+    epilog=_examples(
+        "granular-response claims",
+        "granular-response claims --readme README.md",
+    )
+)
+def claims(
+    data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Table of claims (JSON).")] = Path(
+        "figures/claims.json"
+    ),
+    readme: Annotated[
+        Path | None, typer.Option(help="Renew the counts that this file quotes.", show_default=False)
+    ] = None,
+) -> None:
+    """Compare the paper's claims with the stored datasets."""
+    from . import claims as judging
+
+    found = judging.write(output, data)
+    if readme is not None:
+        judging.renew(readme, found)
+    typer.echo(f"{output}: {judging.sentence(found)}")
+
+
+@app.command(epilog=_examples("granular-response report", "granular-response report -o page.html"))
+def report(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path(
+        "figures/report.html"
+    ),
+    root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
+) -> None:
+    """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
+    from . import report as reporting
+
+    typer.echo(str(reporting.write(output, root)))
+
+
 @app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))
 def cite(
     bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
@@ -236,8 +273,10 @@ def print_version() -> None:
 def _expected_errors() -> tuple[type[BaseException], ...]:
     """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
     names = {
+        "claims": ["ClaimsError"],
         "export": ["ExportError"],
         "pipeline": ["GroupError"],
+        "report": ["ReportError"],
         "scene": ["SceneError"],
         "solve": ["SOLVE_ERRORS"],
         "store": ["StoreError"],

@@ -44,9 +44,13 @@ VERBS: dict[Verdict, str] = {
 BEGIN, END = "<!-- claims: begin -->", "<!-- claims: end -->"
 
 __all__ = [
-    "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "Data", "Entry", "Finding", "NotMeasured", "Verdict",
-    "collect", "counts", "document", "evaluate", "judge", "quote", "sentence", "write",
+    "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "ClaimsError", "Data", "Entry", "Finding", "NotMeasured", "Verdict",
+    "collect", "counts", "document", "evaluate", "judge", "quote", "renew", "sentence", "write",
 ]  # fmt: skip
+
+
+class ClaimsError(Exception):
+    """A file that cannot be read or renewed. The message is one line."""
 
 
 def collect(folder: str | os.PathLike[str] = "data") -> Data:
@@ -93,12 +97,15 @@ def _row(entry: Entry) -> dict[str, Any]:
         "figures": list(claim.figures),
         "group": claim.group,
         "ours": finding.summary if finding else "",
+        "value": None,
+        "interval": None,
+        "rule": [],
     }
     if finding:
         row["value"] = _number(finding.value)
         row["interval"] = [_number(v) for v in finding.interval] if finding.interval else None
         row["rule"] = [
-            {"text": c.text, "measured": c.measured, "holds": c.holds, "essential": c.essential}
+            {"text": c.text, "measured": c.measured, "holds": bool(c.holds), "essential": c.essential}
             for c in finding.conditions
         ]
     return row
@@ -127,6 +134,16 @@ def sentence(found: dict[str, Any]) -> str:
     named = ((number[verdict.replace(" ", "_")], verdict) for verdict in VERDICTS)
     parts = [f"{n} {VERBS[verdict]}" for n, verdict in named if n]
     return f"Of {number['total']} claims of the paper, {', '.join(parts)}."
+
+
+def renew(readme: str | os.PathLike[str], found: dict[str, Any]) -> None:
+    """Renew the counts that a file quotes. Raises ClaimsError if it cannot be read or has no place for them."""
+    path = Path(readme)
+    try:
+        text = quote(path.read_text(encoding="utf-8"), found)
+    except (OSError, ValueError) as error:
+        raise ClaimsError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+    atomic.write_bytes(path, text.encode())
 
 
 def quote(text: str, found: dict[str, Any]) -> str:

@@ -17,7 +17,7 @@ import xarray as xr
 Verdict = Literal["reproduced", "differs", "not reproduced", "not measured"]
 VERDICTS: tuple[Verdict, ...] = ("reproduced", "differs", "not reproduced", "not measured")
 
-#: Two frictions are the same if they differ by less than this.
+#: Labels are the same if they differ by less than this part of them.
 _SAME = 1e-9
 
 
@@ -51,7 +51,7 @@ class Data:
         events = self.get(group, dataset, "name", "low", "high")
         at = events["name"].values == name
         if friction is not None and "friction" in events.variables:
-            at = at & (np.abs(events["friction"].values - friction) < _SAME)
+            at = at & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
         if not at.any():
             with_friction = "" if friction is None else f" at friction {friction:g}"
             raise NotMeasured(f"data/{group}.nc: {dataset} holds no {name}{with_friction}")
@@ -60,10 +60,10 @@ class Data:
 
 
 def at(dataset: xr.Dataset, **labels: float) -> xr.Dataset:
-    """The entries at the labels nearest to those given; NotMeasured if a label is not stored."""
+    """The entries at the given labels, up to rounding; NotMeasured if a label is not stored."""
     for name, label in labels.items():
         stored = np.asarray(dataset[name].values, dtype=float)
-        near = np.flatnonzero(np.abs(stored - label) < _SAME * max(1.0, abs(label)))
+        near = np.flatnonzero(np.abs(stored - label) <= _SAME * abs(label))
         if not near.size:
             raise NotMeasured(f"nothing is stored at {name} = {label:g}")
         dataset = dataset.isel({name: int(near[0])})

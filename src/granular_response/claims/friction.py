@@ -103,7 +103,7 @@ def loss_of_symmetry(data: Data) -> Finding:
     sharp = first > 0 and asymmetry[first - 1] < 0.01 and asymmetry[first] > 0.1
     found = f"{asymmetry[first - 1]:.1e} to {asymmetry[first]:.2f}" if first > 0 else "no jump"
     return Finding(
-        f"between {bracket.text(' mg')}, asymmetry from {found}; with other ramps and time steps: {protocols}",
+        f"at {bracket.text(' mg')}, asymmetry from {found}; with other ramps and time steps: {protocols}",
         bracket.middle,
         [
             *about_event("loss of symmetry", bracket, 91.0, 0.05),

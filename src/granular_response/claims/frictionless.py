@@ -17,7 +17,7 @@ def first_opening(friction: float, paper: float):
     def measure(data: Data) -> Finding:
         bracket = data.event(FRICTION, "first_opening", friction)
         return Finding(
-            f"opens between {bracket.text(' mg')}",
+            f"opens at {bracket.text(' mg')}",
             bracket.middle,
             sampled_event("first opening", bracket, paper),
             (bracket.low, bracket.high),

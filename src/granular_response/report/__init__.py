@@ -1,0 +1,109 @@
+"""The page a reader opens: verdicts, figures, readings, benchmarks, and how to run each part again.
+
+One HTML file that needs no network: pictures, style and script are inside. It is made from files that the pipeline
+stored, and has the same bytes for the same files.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from granular_response import __version__, atomic, store
+
+from . import benchmarks, explorer, pictures, readings
+
+#: Where the page is kept.
+OUTPUT = Path("figures") / "report.html"
+
+#: Figure group whose states the slider shows, and the one whose table the readings come from.
+EXPLORED, SENSITIVITY = "friction_linear_range", "sensitivity"
+
+__all__ = ["OUTPUT", "ReportError", "page", "write"]
+
+
+class ReportError(Exception):
+    """Something the page is made from is missing or damaged. The message is one line."""
+
+
+def write(output: str | os.PathLike[str] = OUTPUT, root: str | os.PathLike[str] = ".") -> Path:
+    """Make the page from ``figures/``, ``data/`` and ``benchmarks/`` below ``root``; returns its path.
+
+    Raises
+    ------
+    ReportError
+        If ``figures/claims.json`` is missing or not JSON.
+    granular_response.store.StoreError
+        If a dataset cannot be read.
+    OSError
+        If the page cannot be written.
+    """
+    target = Path(output)
+    made = page(Path(root)).encode()
+    target.parent.mkdir(parents=True, exist_ok=True)
+    atomic.write_bytes(target, made)
+    return target
+
+
+def page(root: Path) -> str:
+    """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing."""
+    claims = _claims(root / "figures" / "claims.json")
+    shown = pictures.collect(root / "figures")
+    data = root / "data"
+    explored, sensitivity = (data / f"{group}.nc" for group in (EXPLORED, SENSITIVITY))
+    states = explorer.payload(store.read(explored)) if explored.exists() else None
+    rows = readings.table(store.read(sensitivity)) if sensitivity.exists() else []
+    groups = sorted({picture.group for picture in shown.all()} | {row["group"] for row in claims["table"]})
+    environment = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    template = environment.from_string(_resource("page.html.j2"))
+    return (
+        template.render(
+            version=__version__,
+            claims=claims,
+            verdicts=[(v, v.replace(" ", "_"), claims["counts"][v.replace(" ", "_")]) for v in _VERDICTS],
+            numbered=shown.numbered,
+            further=shown.further,
+            states=Markup(_json_in_html(states)) if states else None,
+            explored=states is not None
+            and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
+            readings=rows,
+            benchmarks=benchmarks.tables(root / "benchmarks"),
+            groups=groups,
+            style=Markup(_resource("style.css")),
+            script=Markup(_resource("explorer.js")),
+        )
+        + "\n"
+    )
+
+
+_VERDICTS = ("reproduced", "differs", "not reproduced", "not measured")
+
+
+def _claims(path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+        known = isinstance(found, dict) and {"counts", "table"} <= set(found)
+    except FileNotFoundError:
+        raise ReportError(f"{path}: no such file, make it with granular-response claims") from None
+    except (OSError, ValueError) as error:
+        raise ReportError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
+    if not known:
+        raise ReportError(f"{path}: is not a table of claims")
+    return found
+
+
+def _resource(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _json_in_html(value: Any) -> str:
+    """JSON that cannot end the script element it stands in."""
+    return json.dumps(value, separators=(",", ":")).replace("<", "\\u003c")

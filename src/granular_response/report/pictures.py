@@ -1,0 +1,116 @@
+"""The drawn figures, in the order of the paper, as pictures inside a page."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from PIL import Image
+
+#: Width of an embedded picture in pixels, and its number of colours: sharp on a phone, modest in size.
+WIDTH, COLOURS = 1200, 128
+
+NUMBER_OF_FIGURES = 24
+
+#: What each figure of the paper shows here.
+CAPTIONS: dict[int, str] = {
+    1: "Two theories of the pressure on the floor below a force. Elliptic: an elastic slab on a rough or a smooth "
+    "floor, and a half plane at the same depth. Hyperbolic: two rays that spread diffusively, for two depths.",
+    2: "Contact forces in a disordered packing, polydispersity 0.25: under gravity, and what a force on top adds. "
+    "Marks on the disks show how far they have turned.",
+    3: "Ordered slab without friction: floor response per applied force. One peak splits into two as the force grows.",
+    4: "Contacts that the force opens in the same slab. They are horizontal, and their region grows downwards.",
+    5: "Depth and largest width of that region against the force, for slabs of several depths, and what the stiffness "
+    "of the disks changes.",
+    6: "Response at x = 0 per applied force. It is constant in the linear range, which friction extends.",
+    7: "Floor response at friction 0.2 and 1 for growing forces.",
+    8: "Contacts opened and sliding at friction 0.2.",
+    9: "Contacts opened and sliding at friction 1.",
+    10: "Floor response at friction 10 for several ratios of tangential to normal stiffness: two peaks at small ratios.",
+    11: "The spring model: a triangular lattice with normal and tangential springs, horizontal and oblique ones apart.",
+    12: "Floor response at one force for several coefficients of friction.",
+    13: "What a force adds at the contacts of a slab, for three coefficients of friction; width by magnitude.",
+    14: "The vertical stress of these forces, coarse-grained with a Gaussian, beside that of a harmonic lattice.",
+    15: "Magnitude of the added contact forces against position at several depths under a large force.",
+    16: "Large forces: a third peak at friction 0.2, and the loss of symmetry at friction 1.",
+    17: "A pile under gravity without and with friction: contact forces, vertical stress, and contact network.",
+    18: "Force chains under an oblique force on one disk, for several torques on the same disk and packing.",
+    19: "Slightly disordered slabs without and with friction: single realizations thin, their mean thick.",
+    20: "Response at x = 0 per applied force in one slightly disordered slab, for several coefficients of friction.",
+    21: "Mean floor response of disordered slabs, with its standard error, for several polydispersities, coefficients "
+    "of friction and forces.",
+    22: "Crossover force from one peak to two against friction, for each polydispersity, with intervals.",
+    23: "Two small loads: the response to both against the sum of the responses to each, disk by disk.",
+    24: "The same with larger loads.",
+}
+
+_NUMBER = re.compile(r"fig(\d+)")
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture and the module that draws it."""
+
+    stem: str
+    group: str
+    source: str  #: data URI
+    width: int
+    height: int
+
+    @property
+    def module(self) -> str:
+        return f"src/granular_response/figures/{self.group}.py"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of the paper with its pictures, none if it is not drawn yet."""
+
+    number: int
+    caption: str
+    pictures: tuple[Picture, ...]
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """The figures of the paper, and what else is drawn."""
+
+    numbered: tuple[Figure, ...]
+    further: tuple[Picture, ...]
+
+    def all(self) -> Iterator[Picture]:
+        for figure in self.numbered:
+            yield from figure.pictures
+        yield from self.further
+
+
+def collect(folder: Path) -> Pictures:
+    """All pictures ``folder/GROUP/STEM.png``; a stem that begins with ``figNN`` belongs to that figure."""
+    numbered: dict[int, list[Picture]] = {number: [] for number in range(1, NUMBER_OF_FIGURES + 1)}
+    further = []
+    for path in sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name)):
+        picture = embed(path)
+        match = _NUMBER.match(path.stem)
+        if match and int(match[1]) in numbered:
+            numbered[int(match[1])].append(picture)
+        else:
+            further.append(picture)
+    figures = tuple(Figure(n, CAPTIONS[n], tuple(found)) for n, found in numbered.items())
+    return Pictures(figures, tuple(further))
+
+
+def embed(path: Path) -> Picture:
+    """A drawn picture as a data URI, not wider than WIDTH and with few colours."""
+    with Image.open(path) as image:
+        plain = image.convert("RGB")
+    if plain.width > WIDTH:
+        plain = plain.resize((WIDTH, round(plain.height * WIDTH / plain.width)), Image.Resampling.LANCZOS)
+    small = plain.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    buffer = io.BytesIO()
+    small.save(buffer, format="PNG", optimize=True)
+    source = "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
+    return Picture(path.stem, path.parent.name, source, small.width, small.height)
