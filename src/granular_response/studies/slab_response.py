@@ -367,9 +367,15 @@ def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, Measured]
             grid[index] = values(measured)
         return grid
 
-    data = {name: variable(dims, spread(lambda m, name=name: m.scalars[name]), text) for name, text in SCALARS.items()}
+    def scalar(name: str) -> Callable[[Measured], NDArray]:
+        return lambda measured: np.asarray(measured.scalars[name])
+
+    def certificate(name: str) -> Callable[[Measured], NDArray]:
+        return lambda measured: measured.certificates[name].values
+
+    data = {name: variable(dims, spread(scalar(name)), text) for name, text in SCALARS.items()}
     for name, described in first.certificates.data_vars.items():
-        values = spread(lambda m, name=name: m.certificates[name].values)
+        values = spread(certificate(str(name)))
         data[str(name)] = variable(dims, values, described.attrs["long_name"])
     data["floor_response"] = variable(
         (*dims, "floor_disk"),
