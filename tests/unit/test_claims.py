@@ -462,8 +462,8 @@ def test_stored_table_and_metrics_agree(tmp_path):
 
 def test_counts_in_a_text_are_renewed(tmp_path):
     found = claims.document(claims.evaluate(Data({"pile_dip": pile_study()})))
-    text = f"before\n\n{claims.BEGIN}\nOf 7 claims of the paper, 7 are reproduced.\n{claims.END}\n\nafter\n"
-    expected = f"Of {len(IDS)} claims of the paper, 3 are reproduced, {len(IDS) - 3} are not measured."
+    text = f"before\n\n{claims.BEGIN}\nOf 7 claims of the paper: 7 reproduced.\n{claims.END}\n\nafter\n"
+    expected = f"Of {len(IDS)} claims of the paper: 3 reproduced, {len(IDS) - 3} not measured."
     path = tmp_path / "README.md"
     path.write_text(text)
     claims.renew(path, found)

@@ -34,18 +34,18 @@ OUTPUT = Path("figures") / "claims.json"
 
 #: Verdicts as they read after a number.
 VERBS: dict[Verdict, str] = {
-    "reproduced": "are reproduced",
-    "differs": "differ in part",
-    "not reproduced": "are not reproduced",
-    "not measured": "are not measured",
+    "reproduced": "reproduced",
+    "differs": "different in part",
+    "not reproduced": "not reproduced",
+    "not measured": "not measured",
 }
 
 #: Between these lines the README quotes the counts.
 BEGIN, END = "<!-- claims: begin -->", "<!-- claims: end -->"
 
 __all__ = [
-    "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "ClaimsError", "Data", "Entry", "Finding", "NotMeasured", "Verdict",
-    "collect", "counts", "document", "evaluate", "judge", "quote", "renew", "sentence", "write",
+    "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "ClaimsError", "Data", "Entry", "Finding", "NotMeasured",
+    "Verdict", "collect", "counts", "document", "evaluate", "judge", "quote", "renew", "sentence", "write",
 ]  # fmt: skip
 
 
@@ -133,7 +133,7 @@ def sentence(found: dict[str, Any]) -> str:
     number = found["counts"]
     named = ((number[verdict.replace(" ", "_")], verdict) for verdict in VERDICTS)
     parts = [f"{n} {VERBS[verdict]}" for n, verdict in named if n]
-    return f"Of {number['total']} claims of the paper, {', '.join(parts)}."
+    return f"Of {number['total']} claims of the paper: {', '.join(parts)}."
 
 
 def renew(readme: str | os.PathLike[str], found: dict[str, Any]) -> None:

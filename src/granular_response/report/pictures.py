@@ -30,7 +30,7 @@ CAPTIONS: dict[int, str] = {
     7: "Floor response at friction 0.2 and 1 for growing forces.",
     8: "Contacts opened and sliding at friction 0.2.",
     9: "Contacts opened and sliding at friction 1.",
-    10: "Floor response at friction 10 for several ratios of tangential to normal stiffness: two peaks at small ratios.",
+    10: "Floor response at friction 10 for several ratios of tangential to normal stiffness: two peaks at small ones.",
     11: "The spring model: a triangular lattice with normal and tangential springs, horizontal and oblique ones apart.",
     12: "Floor response at one force for several coefficients of friction.",
     13: "What a force adds at the contacts of a slab, for three coefficients of friction; width by magnitude.",

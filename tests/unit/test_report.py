@@ -1,0 +1,279 @@
+"""The page: what it says agrees with the stored table, it needs no network, and a real browser shows all of it."""
+
+import base64
+import html
+import json
+import re
+import shutil
+import subprocess
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from PIL import Image
+from xarray import Dataset
+
+from granular_response import claims, report, store
+from granular_response.claims.claim import Data
+from granular_response.report import benchmarks, explorer, pictures
+from granular_response.result import variable
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))), None)
+FORCES = (0.0, 1.0, 4.0, 90.0)
+
+
+def states(friction):
+    """Two rows of disks, seven below six. The force adds to the upright contacts and opens one of the others."""
+    row, upper = np.arange(-6.0, 7.0, 2.0), np.arange(-5.0, 6.0, 2.0)
+    place = np.concatenate(
+        [np.stack([row, np.ones(7)], axis=1), np.stack([upper, np.full(6, 1.0 + 3**0.5)], axis=1)]
+    ) + np.array([61.0, 0.0])
+    pairs = [(i, j) for i in range(13) for j in range(i) if np.linalg.norm(place[i] - place[j]) < 2.01]
+    first, second = np.array(pairs).T
+    opened = (np.abs(place[first, 1] - place[second, 1]) < 0.1) & (np.arange(len(first)) % 5 == 0)
+    normal = np.stack([np.full(len(first), 0.5 + force) for force in FORCES])
+    status = np.stack([np.where(opened & (force > 2.0), 0, 1) for force in FORCES])
+    return Dataset(
+        {
+            "position": variable(("state", "disk", "axis"), np.stack([place] * len(FORCES)), "position"),
+            "contact_disk": variable(("contact",), first, "disk"),
+            "contact_partner": variable(("contact",), second, "other disk"),
+            "contact_status": variable(("state", "contact"), status, "status"),
+            "contact_normal_force": variable(("state", "contact"), np.where(status == 0, 0.0, normal), "force"),
+            "contact_tangential_force": variable(("state", "contact"), friction * normal, "force"),
+            "force": variable(("state",), np.array(FORCES), "applied force"),
+            "loaded_disk": variable((), 10, "loaded disk"),
+        }
+    )
+
+
+def friction_study():
+    x = np.arange(-6.0, 7.0, 2.0)
+    dims = ("friction", "force")
+    response = Dataset(
+        {
+            "floor_response": variable((*dims, "floor_disk"), np.full((3, 3, 7), 1.0 / 7.0), "response"),
+            "peak_count": variable(dims, np.full((3, 3), 2.0), "peaks"),
+        },
+        {
+            "friction": variable(("friction",), np.array([0.0, 0.2, 1.0]), "friction"),
+            "force": variable(("force",), np.array(FORCES[1:]), "force"),
+            "x": variable(("floor_disk",), x, "place"),
+        },
+    )
+    return {"response": response, **{f"states_mu_{mu:g}": states(mu) for mu in (0.0, 0.2, 1.0)}}
+
+
+def sensitivity_study():
+    return Dataset(
+        {
+            "largest_difference": variable(("variant",), np.array([0.0, 8e-6]), "difference"),
+            "text": variable(("variant",), ["as it is", "time step <halved>"], "what is changed"),
+        },
+        {"variant": variable(("variant",), ["reference", "time_step_halved"], "name")},
+    )
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    """A folder as the pipeline leaves it, with some of the figures."""
+    folder = tmp_path_factory.mktemp("project")
+    for name, size in {
+        "theory/fig01_predictions": (1400, 500),
+        "friction_linear_range/fig06_linear_range": (680, 520),
+        "pile_dip/fig17_pile": (1400, 900),
+        "pile_dip/fig17_pile_profiles": (700, 300),
+        "numerics/numerics": (1400, 500),
+    }.items():
+        path = folder / "figures" / f"{name}.png"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        shade = np.linspace(0, 255, size[0] * size[1] * 3).reshape(size[1], size[0], 3).astype(np.uint8)
+        Image.fromarray(shade).save(path)
+    store.write(folder / "data" / "friction_linear_range.nc", friction_study())
+    store.write(folder / "data" / "sensitivity.nc", {"mu_0.2": sensitivity_study()})
+    (folder / "benchmarks").mkdir()
+    records = {"lammps": "some version", "runs": [{"disks": 908, "microseconds_per_step": 12.5}]}
+    (folder / "benchmarks" / "kernel.json").write_text(json.dumps(records))
+    entries = claims.evaluate(Data({"friction_linear_range": friction_study()}))
+    (folder / "figures" / "claims.json").write_text(json.dumps(claims.document(entries)))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(root):
+    return report.page(root)
+
+
+class Elements(HTMLParser):
+    """Start tags of a page with their attributes."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append((tag, dict(attributes)))
+
+    def named(self, tag):
+        return [attributes for name, attributes in self.found if name == tag]
+
+
+def test_one_row_for_every_claim_with_its_verdict(root, page):
+    stored = json.loads((root / "figures" / "claims.json").read_text())
+    elements = Elements(page)
+    rows = [row["id"] for row in elements.named("tr") if row.get("class") == "claim"]
+    assert rows == [f"claim-{row['id']}" for row in stored["table"]]
+    chips = [span["class"] for span in elements.named("span") if span.get("class", "").startswith("chip")]
+    assert chips == [f"chip {row['verdict'].replace(' ', '_')}" for row in stored["table"]]
+    tiles = re.findall(r'<div class="tile (\w+)"><b>(\d+)</b>', page)
+    assert {verdict: int(number) for verdict, number in tiles} == {
+        verdict: number for verdict, number in stored["counts"].items() if verdict != "total"
+    }
+
+
+def test_the_page_needs_no_network_and_no_other_file(page):
+    elements = Elements(page)
+    assert all(image["src"].startswith("data:image/png;base64,") for image in elements.named("img"))
+    assert [link["href"] for link in elements.named("link")] == ["data:,"]
+    assert not [script for script in elements.named("script") if "src" in script]
+    assert not re.search(r"(?:https?:)?//[\w.]+\.\w+/", re.sub(r"base64,[\w+/=]+", "", page))
+    assert "url(" not in page and "@import" not in page
+
+
+def test_every_figure_of_the_paper_has_a_place_in_order(page):
+    order = [int(number) for number in re.findall(r'<figure id="figure-(\d+)"', page)]
+    assert order == list(range(1, 25)) == list(pictures.CAPTIONS)
+    assert page.count("Not drawn yet.") == 24 - 3
+    assert page.count("<img ") == 5
+    assert "src/granular_response/figures/theory.py" in page
+    assert page.index('id="figure-17"') < page.index("Further figures") < page.index("figures/numerics.py")
+    targets = set(re.findall(r'href="#([\w-]+)"', page))
+    assert targets <= {e["id"] for _, e in Elements(page).found if "id" in e}
+
+
+def test_texts_from_data_cannot_become_markup(page):
+    assert "time step &lt;halved&gt;" in page and "<halved>" not in page
+
+
+def test_the_same_files_give_the_same_bytes(root, tmp_path):
+    first = report.write(tmp_path / "a" / "page.html", root)
+    second = report.write(tmp_path / "b.html", root)
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_embedded_pictures_are_modest(root, page):
+    picture = pictures.embed(root / "figures" / "theory" / "fig01_predictions.png")
+    assert (picture.width, picture.height) == (1200, 429)
+    data = base64.b64decode(picture.source.partition(",")[2])
+    assert data.startswith(b"\x89PNG") and len(data) < 200_000
+
+
+def test_slider_data_are_those_of_the_states():
+    data = explorer.payload(friction_study())
+    assert data["forces"] == [1.0, 4.0]  # at rest nothing is added, and 90 is beyond the slider
+    assert [panel["friction"] for panel in data["panels"]] == [0.0, 0.2, 1.0]
+    smooth, rough = data["panels"][0], data["panels"][2]
+    frames = [np.frombuffer(base64.b64decode(frame), np.uint8) for frame in smooth["frames"]]
+    contacts = len(smooth["lines"]) // 4
+    assert [len(frame) for frame in frames] == [contacts, contacts]
+    opened = [int((frame == explorer.OPENED).sum()) for frame in frames]
+    assert opened[0] == 0 and opened[1] == int((states(0.0)["contact_status"].values[2] == 0).sum()) > 0
+    # every closed contact gets as much as the applied force; tangential forces add as a vector
+    strongest = np.sqrt(2.0) * 1.0
+    assert data["strongest"] == pytest.approx(strongest, rel=1e-6)
+    level = round(explorer.FULL * np.sqrt(1.0 / strongest))
+    assert set(frames[0]) == {level}
+    assert set(np.frombuffer(base64.b64decode(rough["frames"][0]), np.uint8)) == {explorer.FULL}
+    assert smooth["responses"] == [[0.14286] * 7] * 2
+
+
+def test_no_slider_without_states(root, tmp_path):
+    bare = tmp_path / "bare"
+    (bare / "figures").mkdir(parents=True)
+    shutil.copy(root / "figures" / "claims.json", bare / "figures")
+    text = report.page(bare)
+    assert 'id="explorer"' not in text and "<script" not in text
+    assert text.count("Not drawn yet.") == 24 and text.count("Not measured yet") == 2
+
+
+@pytest.mark.parametrize(("content", "problem"), [(None, "no such file"), ("{", "cannot be read"), ("[]", "is not a")])
+def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
+    if content is not None:
+        (tmp_path / "figures").mkdir()
+        (tmp_path / "figures" / "claims.json").write_text(content)
+    with pytest.raises(report.ReportError, match=rf"claims\.json: {problem}") as caught:
+        report.page(tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_benchmark_metrics_become_tables(root):
+    (table,) = benchmarks.tables(root / "benchmarks")
+    assert table["columns"] == ["disks", "microseconds per step"] and table["rows"] == [["908", "12.5"]]
+    assert table["notes"] == ["lammps: some version"]
+
+
+#: Put in front of the page: keeps errors, and says in the end what the browser sees.
+PROBE = """<script>
+window.problems = [];
+window.addEventListener("error", function (e) { window.problems.push(String(e.message)); }, true);
+["error", "warn"].forEach(function (kind) {
+  console[kind] = function () { window.problems.push(Array.from(arguments).join(" ")); };
+});
+window.addEventListener("load", function () {
+  const slider = document.getElementById("force"), canvas = document.getElementById("panel-0");
+  const before = canvas.toDataURL(), note = document.getElementById("note-0").textContent;
+  slider.value = slider.value === "0" ? "1" : "0";
+  slider.dispatchEvent(new Event("input"));
+  const seen = {
+    problems: window.problems,
+    images: Array.from(document.images, function (i) { return [i.naturalWidth, i.naturalHeight, i.clientWidth]; }),
+    claims: document.querySelectorAll("tr.claim").length,
+    width: document.documentElement.clientWidth,
+    content: document.documentElement.scrollWidth,
+    label: document.getElementById("force-label").textContent,
+    canvasChanged: canvas.toDataURL() !== before,
+    notes: [note, document.getElementById("note-0").textContent],
+    requests: performance.getEntriesByType("resource").map(function (r) { return r.name.slice(0, 40); })
+      .filter(function (name) { return !name.startsWith("data:"); }),
+  };
+  const out = document.createElement("pre");
+  out.id = "seen";
+  out.textContent = JSON.stringify(seen);
+  document.body.appendChild(out);
+});
+</script>"""
+
+
+def look(path, width):
+    """What a page reports of itself in a headless browser, inside a frame of some width."""
+    frame = path.with_name(f"frame{width}.html")
+    frame.write_text(
+        f'<iframe id="f" src="{path.name}" style="width:{width}px;height:3000px;border:0"></iframe>'
+        '<pre id="copy"></pre>'
+        "<script>document.getElementById('f').onload = function () { document.getElementById('copy').textContent ="
+        " this.contentDocument.getElementById('seen').textContent; };</script>"
+    )
+    command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
+    command += ["--allow-file-access-from-files", "--window-size=1600,3200", "--virtual-time-budget=20000"]
+    command += [f"--user-data-dir={path.parent / 'profile'}", "--dump-dom", frame.as_uri()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=180, check=True)
+    found = re.search(r'<pre id="copy">(.+?)</pre>', done.stdout, re.DOTALL)
+    assert found, done.stdout[-2000:] + done.stderr[-2000:]
+    return json.loads(html.unescape(found[1]))
+
+
+@pytest.mark.skipif(BROWSER is None, reason="no Chromium or Chrome is installed (Debian: apt install chromium)")
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_browser_shows_all_of_it(root, page, tmp_path, width):
+    path = tmp_path / "page.html"
+    path.write_text(page.replace("<head>", "<head>" + PROBE, 1))
+    seen = look(path, width)
+    stored = json.loads((root / "figures" / "claims.json").read_text())
+    assert seen["problems"] == [] and seen["requests"] == []
+    assert seen["claims"] == stored["counts"]["total"]
+    assert len(seen["images"]) == 5
+    assert all(w > 0 and h > 0 and shown <= width for w, h, shown in seen["images"])
+    assert seen["width"] == width and seen["content"] <= width  # nothing sticks out
+    assert seen["canvasChanged"] and seen["notes"][0] != seen["notes"][1]
+    assert seen["label"] in ("F = 1 mg", "F = 4 mg")
