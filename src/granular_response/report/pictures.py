@@ -14,6 +14,9 @@ from PIL import Image
 #: Width of an embedded picture in pixels, and its number of colours: sharp on a phone, modest in size.
 WIDTH, COLOURS = 1200, 128
 
+#: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
+SHOWN = 0.62
+
 NUMBER_OF_FIGURES = 24
 
 #: What each figure of the paper shows here.
@@ -60,6 +63,7 @@ class Picture:
     source: str  #: data URI
     width: int
     height: int
+    shown: int  #: width on a wide screen in pixels of the page
 
     @property
     def module(self) -> str:
@@ -107,10 +111,11 @@ def embed(path: Path) -> Picture:
     """A drawn picture as a data URI, not wider than WIDTH and with few colours."""
     with Image.open(path) as image:
         plain = image.convert("RGB")
+    shown = round(SHOWN * plain.width)
     if plain.width > WIDTH:
         plain = plain.resize((WIDTH, round(plain.height * WIDTH / plain.width)), Image.Resampling.LANCZOS)
     small = plain.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     buffer = io.BytesIO()
     small.save(buffer, format="PNG", optimize=True)
     source = "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
-    return Picture(path.stem, path.parent.name, source, small.width, small.height)
+    return Picture(path.stem, path.parent.name, source, small.width, small.height, shown)
