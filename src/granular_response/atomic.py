@@ -17,9 +17,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 
-def write_bytes(
-    path: str | os.PathLike[str], data: bytes, check: Callable[[bytes], None] | None = None
-) -> None:
+def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[bytes], None] | None = None) -> None:
     """Write ``data`` to ``path``: afterwards the file is whole and on the disk, or as it was before.
 
     Parameters

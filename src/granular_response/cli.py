@@ -123,9 +123,7 @@ def run(
 )
 def simulate(
     group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Local processes; all cores if not given.")
-    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Local processes; all cores if not given.")] = None,
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a running Dask scheduler, in place of local processes.")
     ] = None,
@@ -163,9 +161,7 @@ def simulate(
 )
 def draw(
     group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
-    data: Annotated[
-        Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")
-    ] = None,
+    data: Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")] = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder of the figures; figures/GROUP if not given.")
     ] = None,
@@ -245,9 +241,7 @@ def claims(
 
 @app.command(epilog=_examples("granular-response report", "granular-response report -o page.html"))
 def report(
-    output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path(
-        "figures/report.html"
-    ),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path("figures/report.html"),
     root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
 ) -> None:
     """Make the page that shows verdicts, figures and benchmarks. It needs no network."""

@@ -68,9 +68,7 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
             writers[output.suffix](dataset, made)
             atomic.write_bytes(output, made.read_bytes())
     except ModuleNotFoundError as error:
-        raise ExportError(
-            f"{output}: needs the package {error.name}, install granular-response[export]"
-        ) from error
+        raise ExportError(f"{output}: needs the package {error.name}, install granular-response[export]") from error
     except OSError as error:
         raise ExportError(f"{output}: cannot be written: {error.strerror or error}") from error
     return output

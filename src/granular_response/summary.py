@@ -81,11 +81,7 @@ def _response(result: xr.Dataset) -> Table:
         table.add_column(title, justify="right")
     x = result["x"].values
     responses = np.atleast_2d(result["floor_response"].values)
-    forces = (
-        np.atleast_1d(result["total_force"].values)
-        if "total_force" in result
-        else np.full(len(responses), np.nan)
-    )
+    forces = np.atleast_1d(result["total_force"].values) if "total_force" in result else np.full(len(responses), np.nan)
     for force, response in zip(forces, responses, strict=True):
         if np.isnan(response).all():
             table.add_row("none", *["-"] * 4)

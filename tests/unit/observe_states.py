@@ -53,12 +53,7 @@ def slab(layers: int, long_row: int) -> State:
         position += [(1.0 + short + 2.0 * k, 1.0 + layer * ROW) for k in range(long_row - short)]
     centre = np.array(position)
     n = len(centre)
-    links = [
-        (i, j)
-        for i in range(n)
-        for j in range(i + 1, n)
-        if np.linalg.norm(centre[i] - centre[j]) < 2.0 + 1e-9
-    ]
+    links = [(i, j) for i in range(n) for j in range(i + 1, n) if np.linalg.norm(centre[i] - centre[j]) < 2.0 + 1e-9]
     walls = [(i, FLOOR) for i in range(n) if centre[i, 1] < 1.1]
     walls += [(i, LEFT_WALL) for i in range(n) if centre[i, 0] < 1.1]
     walls += [(i, RIGHT_WALL) for i in range(n) if centre[i, 0] > 2.0 * long_row - 1.1]

@@ -230,9 +230,7 @@ def test_finished_tasks_outlive_an_interruption(group, monkeypatch):
 
 def test_the_address_of_a_scheduler_reaches_the_sweep(group, monkeypatch):
     seen = []
-    monkeypatch.setattr(
-        Study, "simulate", lambda *_, **__: seen.append(os.environ["DASK_SCHEDULER_ADDRESS"]) or {}
-    )
+    monkeypatch.setattr(Study, "simulate", lambda *_, **__: seen.append(os.environ["DASK_SCHEDULER_ADDRESS"]) or {})
     simulation.simulate(group, scheduler="tcp://127.0.0.1:8786")
     assert seen == ["tcp://127.0.0.1:8786"]
     assert "DASK_SCHEDULER_ADDRESS" not in os.environ
@@ -269,9 +267,7 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     )
     parent, child = pty.openpty()
     command = [sys.executable, "-m", "granular_response", "run", "scene.yaml", "-o", "result.nc"]
-    run = subprocess.Popen(
-        command, cwd=tmp_path, stdin=child, stdout=child, stderr=child, start_new_session=True
-    )
+    run = subprocess.Popen(command, cwd=tmp_path, stdin=child, stdout=child, stderr=child, start_new_session=True)
     os.close(child)
     time.sleep(4)
     assert run.poll() is None

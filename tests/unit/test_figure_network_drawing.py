@@ -91,9 +91,7 @@ def test_force_lines_are_centred_and_scaled_by_magnitude(axes) -> None:
 def test_rotation_marks_start_vertical_and_turn_counter_clockwise(axes) -> None:
     marks = np.array(nd.draw_rotations(axes, POSITION[:2], RADIUS[:2], [0.0, np.pi / 2]).get_segments())
     direction = marks[:, 1] - marks[:, 0]
-    np.testing.assert_allclose(
-        direction / np.linalg.norm(direction, axis=1)[:, None], [[0, 1], [-1, 0]], atol=1e-15
-    )
+    np.testing.assert_allclose(direction / np.linalg.norm(direction, axis=1)[:, None], [[0, 1], [-1, 0]], atol=1e-15)
     np.testing.assert_allclose(marks.mean(axis=1), POSITION[:2])
 
 

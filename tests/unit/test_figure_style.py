@@ -23,9 +23,7 @@ def _drawn():
 @pytest.mark.parametrize("file_format", ["png", "pdf", "svg"])
 def test_bytes_do_not_depend_on_the_users_settings(file_format: str) -> None:
     plain = style.render(_drawn(), file_format)
-    with mpl.rc_context(
-        {"font.size": 20, "lines.linewidth": 9, "legend.facecolor": "red", "grid.color": "blue"}
-    ):
+    with mpl.rc_context({"font.size": 20, "lines.linewidth": 9, "legend.facecolor": "red", "grid.color": "blue"}):
         assert style.render(_drawn(), file_format) == plain
     with style.context():
         other = _drawn()

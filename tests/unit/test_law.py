@@ -66,9 +66,7 @@ def test_literal_rule_freezes_the_spring_beyond_the_limit_also_on_unloading():
 finite = st.floats(-5.0, 5.0, allow_nan=False)
 
 
-@given(
-    overlap=st.floats(1e-6, 0.1), normal=finite, slip=finite, spring=st.floats(-0.02, 0.02), dt=st.floats(0.0, 1e-2)
-)
+@given(overlap=st.floats(1e-6, 0.1), normal=finite, slip=finite, spring=st.floats(-0.02, 0.02), dt=st.floats(0.0, 1e-2))
 def test_agrees_with_the_plain_law(overlap, normal, slip, spring, dt):
     material = Material(1000.0, 10.0, 800.0, 5.0, 0.5)
     fn = normal_force(overlap, normal, LAW)

@@ -40,9 +40,7 @@ ALLOWED = {
 
 def tool(*command: str) -> None:
     paths = os.pathsep.join([str(SOURCE), os.environ.get("PYTHONPATH", "")])
-    run = subprocess.run(
-        command, cwd=ROOT, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": paths}
-    )
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": paths})
     assert run.returncode == 0, run.stdout + run.stderr
 
 
@@ -88,9 +86,7 @@ def test_a_part_imports_what_its_place_allows(part):
 
 
 def test_every_import_is_a_declared_dependency():
-    declared = set(
-        re.findall(r'^    "([A-Za-z0-9_-]+)[>=]', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
-    )
+    declared = set(re.findall(r'^    "([A-Za-z0-9_-]+)[>=]', (ROOT / "pyproject.toml").read_text(), re.MULTILINE))
     declared |= {"pydantic_core", "distributed", "gsd", "pyevtk"}  # part of pydantic; of the extras
     declared |= {"cycler", "yaml"}  # part of matplotlib; the package pyyaml
     used = {name for part in PARTS for name in outside_imports(part)}

@@ -57,9 +57,7 @@ def test_matching_gives_one_list_and_keeps_the_forces():
     position = np.array([[1.0, 0.9], [3.0, 0.8], [4.9, 1.2]])
     rest = state(
         position,
-        contacts(
-            [(0, 1), (2, 1)], np.array([1.0, 2.0]), np.array([0.1, -0.2]), np.array([STICKING, SLIDING])
-        ),
+        contacts([(0, 1), (2, 1)], np.array([1.0, 2.0]), np.array([0.1, -0.2]), np.array([STICKING, SLIDING])),
         contacts([(0, FLOOR), (2, RIGHT_WALL)], np.array([3.0, 4.0])),
     )
     loaded = state(

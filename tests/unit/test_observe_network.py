@@ -57,9 +57,7 @@ def test_lattice_directions_do_not_depend_on_the_order_of_partners():
     expected = [HORIZONTAL] * 2 + [RISING] * 2 + [FALLING] * 2
     assert lattice_direction(s).tolist() == expected
     np.testing.assert_allclose(contact_angle(s), np.repeat([0.0, np.pi / 3, 2 * np.pi / 3], 2), atol=1e-15)
-    tilted = state(
-        position + np.array([[0.0, 1e-17], [0.0, -1e-17], [0.1, 0.0], [0.1, 0.0]]), contacts(links)
-    )
+    tilted = state(position + np.array([[0.0, 1e-17], [0.0, -1e-17], [0.1, 0.0], [0.1, 0.0]]), contacts(links))
     assert lattice_direction(tilted).tolist() == expected
     assert np.all((contact_angle(tilted) >= 0.0) & (contact_angle(tilted) < np.pi))
 
@@ -104,9 +102,7 @@ def chain_with_loose_ends():
     position = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 2.7], [4.0, 2.7], [6.0, 2.7], [9.0, 1.0]])
     status = np.array([STICKING] * 5 + [OPEN])
     pairs = contacts([(0, 1), (1, 2), (0, 2), (2, 3), (3, 4), (1, 5)], status=status)
-    walls = contacts(
-        [(0, FLOOR), (1, FLOOR), (5, FLOOR), (4, FLOOR)], status=np.array([STICKING] * 3 + [OPEN])
-    )
+    walls = contacts([(0, FLOOR), (1, FLOOR), (5, FLOOR), (4, FLOOR)], status=np.array([STICKING] * 3 + [OPEN]))
     return state(position, pairs, walls)
 
 

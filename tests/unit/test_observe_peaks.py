@@ -102,9 +102,7 @@ def test_small_bumps_beside_a_peak_do_not_count():
 
 
 @settings(deadline=None)  # machines are shared
-@given(
-    st.integers(0, 2**32 - 1), st.sampled_from([ONE, TWO, THREE, profile(1.0, 1.0, 0.3), profile(0.9, 1, 1)])
-)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([ONE, TWO, THREE, profile(1.0, 1.0, 0.3), profile(0.9, 1, 1)]))
 def test_rounding_noise_changes_nothing(seed, r):
     noise = 1e-13 * np.random.default_rng(seed).standard_normal(r.size)
     clean, noisy = find_peaks(X, r), find_peaks(X, r + noise)

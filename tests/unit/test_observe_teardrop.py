@@ -77,9 +77,7 @@ def test_equally_near_contacts_begin_the_region_together():
 
 
 def test_region_reaches_the_floor_with_a_contact_of_two_floor_disks():
-    to_row_one = [
-        p for row, x in ((5, 0.0), (4, 1.0), (3, 0.0), (2, 1.0), (1, 0.0)) for p in row_pairs(row, x)
-    ]
+    to_row_one = [p for row, x in ((5, 0.0), (4, 1.0), (3, 0.0), (2, 1.0), (1, 0.0)) for p in row_pairs(row, x)]
     short = teardrop(REST, opened(REST, to_row_one), TOP)
     assert short.depth == pytest.approx(5 * ROW)
     assert not short.reaches_floor
@@ -106,9 +104,7 @@ def test_start_narrows_where_the_region_begins():
     wide = {"start_distance": 20.0}
     assert teardrop(REST, opened(REST, at_wall), TOP, **wide).count == 1
     assert teardrop(REST, opened(REST, at_wall), TOP, start=start, **wide).count == 0
-    off_axis = (
-        np.abs(0.5 * (REST.position[REST.pairs.first] + REST.position[REST.pairs.second])[:, 0] - LONG) > 0.5
-    )
+    off_axis = np.abs(0.5 * (REST.position[REST.pairs.first] + REST.position[REST.pairs.second])[:, 0] - LONG) > 0.5
     region = teardrop(REST, opened(REST, near + row_pairs(2, 5.0)), TOP, start=off_axis, **wide)
     assert np.flatnonzero(region.contacts).tolist() == row_pairs(2, 5.0)
 

@@ -122,9 +122,7 @@ def test_an_interrupted_sweep_continues(tmp_path):
     finished = len(list(kept.iterdir()))
     assert finished == 3
     seen.clear()
-    result = map_tasks(
-        task, range(8), workers=2, checkpoint=kept, progress=lambda done, total, what: seen.append(done)
-    )
+    result = map_tasks(task, range(8), workers=2, checkpoint=kept, progress=lambda done, total, what: seen.append(done))
     assert result == [item * item for item in range(8)]
     assert seen == [3, 4, 5, 6, 7, 8]
     assert sum(len(starts(marks, item)) for item in range(8)) <= 8 + 2  # again: at most one per worker
@@ -211,10 +209,7 @@ def test_digests_are_equal_for_equal_values_only():
 
 
 def test_digests_are_equal_in_every_process():
-    script = (
-        "import sys; sys.path.insert(0, sys.argv[1]); from test_sweep import *;"
-        "print(digest((Task, {'b', 'a'})))"
-    )
+    script = "import sys; sys.path.insert(0, sys.argv[1]); from test_sweep import *;print(digest((Task, {'b', 'a'})))"
     for seed in ("1", "2"):
         name = subprocess.run(
             [sys.executable, "-c", script, Path(__file__).parent],

@@ -82,9 +82,7 @@ def test_equal_bonds_are_isotropic(k_n: float, k_t: float) -> None:
 
 @settings(max_examples=200)
 @given(k1n=stiffness, k2n=stiffness, k1t=stiffness, k2t=stiffness)
-def test_criterion_r_is_minus_the_squared_peak_position(
-    k1n: float, k2n: float, k1t: float, k2t: float
-) -> None:
+def test_criterion_r_is_minus_the_squared_peak_position(k1n: float, k2n: float, k1t: float, k2t: float) -> None:
     m = lattice.moduli(Springs(k1n, k2n, k1t, k2t))
     s, p = m.shape
     assert m.peak_criterion == pytest.approx(s / (2.0 * p), rel=1e-9, abs=1e-12)

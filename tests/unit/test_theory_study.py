@@ -35,9 +35,7 @@ def test_predictions_are_symmetric_and_carry_the_force(datasets) -> None:
         np.testing.assert_allclose(pressure.sum(axis=-1) * step, 1.0, atol=missing)
     assert float(data["x"][60]) == 0.0
     assert int(data["slab_rough"].argmax("x")) == 60
-    assert float(abs(data["x"][int(data["rays"][1].argmax("x"))])) == pytest.approx(
-        np.tan(np.pi / 6), abs=step
-    )
+    assert float(abs(data["x"][int(data["rays"][1].argmax("x"))])) == pytest.approx(np.tan(np.pi / 6), abs=step)
 
 
 def test_claims_can_be_read_off(datasets) -> None:

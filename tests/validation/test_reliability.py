@@ -190,7 +190,6 @@ def test_any_tree_as_parameters(tmp_path, content):
 # Restarts
 
 
-
 def labelled(tmp_path: Path, solution):
     store.write(tmp_path / "result.nc", to_dataset(solution))
     return store.read(tmp_path / "result.nc")[""]

@@ -88,16 +88,12 @@ def random_packing() -> tuple[State, float]:
     rng = np.random.default_rng(20)
     width = 14.0
     position = rng.uniform([1.0, 1.0], [width - 1.0, 11.0], size=(40, 2))
-    links = {
-        tuple(sorted((int(t[i]), int(t[i - 1])))) for t in Delaunay(position).simplices for i in range(3)
-    }
+    links = {tuple(sorted((int(t[i]), int(t[i - 1])))) for t in Delaunay(position).simplices for i in range(3)}
     walls = [(i, FLOOR) for i in range(40) if position[i, 1] < 3.0]
     walls += [(i, LEFT_WALL) for i in range(40) if position[i, 0] < 3.0]
     walls += [(i, RIGHT_WALL) for i in range(40) if position[i, 0] > width - 3.0]
     pairs = contacts(sorted(links), rng.normal(size=len(links)), rng.normal(size=len(links)))
-    return state(
-        position, pairs, contacts(walls, rng.normal(size=len(walls)), rng.normal(size=len(walls)))
-    ), width
+    return state(position, pairs, contacts(walls, rng.normal(size=len(walls)), rng.normal(size=len(walls)))), width
 
 
 def slab_in_equilibrium(load: float, layers: int = 9, long_row: int = 15) -> tuple[State, float]:
@@ -179,14 +175,10 @@ def test_sigma_zz_over_a_line_carries_the_load_above_it():
         # A point force is counted above the line to the extent of its smeared-out share there.
         share = 0.5 * (1.0 + erf((height[side] - z) / 2.0))
         expected = load - np.sum(force[side, 1] * share)
-        assert line_integral(load_forces(rest, loaded, width), z, width) == pytest.approx(
-            expected, rel=tolerance
-        )
+        assert line_integral(load_forces(rest, loaded, width), z, width) == pytest.approx(expected, rel=tolerance)
     weight_and_load = line_integral(contact_forces(loaded, width), 7.0, width)
     only_load = line_integral(load_forces(rest, loaded, width), 7.0, width)
-    assert weight_and_load - only_load == pytest.approx(
-        line_integral(contact_forces(rest, width), 7.0, width)
-    )
+    assert weight_and_load - only_load == pytest.approx(line_integral(contact_forces(rest, width), 7.0, width))
 
 
 def test_sigma_zz_just_above_the_floor_carries_the_floor_force():
@@ -207,9 +199,7 @@ def test_load_needs_no_gravity_in_the_balance():
     points = grid_points(np.linspace(6.0, 24.0, 13), np.linspace(8.0, 17.0, 9))
     got = divergence(s, points, 2.0)
     expected = body_force_density(loaded.position[[top]], np.array([[0.0, -load]]), points, 2.0, WHOLE)
-    walls = body_force_density(
-        wall_points(loaded, width), loaded.wall_force() - rest.wall_force(), points, 2.0, WHOLE
-    )
+    walls = body_force_density(wall_points(loaded, width), loaded.wall_force() - rest.wall_force(), points, 2.0, WHOLE)
     np.testing.assert_allclose(got, expected + walls, atol=1e-8)
     assert np.abs(walls).max() < 0.02 * np.abs(expected).max()
 

@@ -12,9 +12,7 @@ from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab, response_of_layers
 
 
-def finite_element_floor_force(
-    moduli: Moduli, floor: str, half_width: float, cells: int
-) -> NDArray[np.float64]:
+def finite_element_floor_force(moduli: Moduli, floor: str, half_width: float, cells: int) -> NDArray[np.float64]:
     """Force on each floor node of the right half of a slab of height 1 (bilinear squares, ``cells`` high)."""
     size, across = 1.0 / cells, round(half_width * cells)
     shear = np.diag([0.0, 0.0, 0.5 * moduli.d])  # engineering shear strain
@@ -24,9 +22,9 @@ def finite_element_floor_force(
     for gx in (-1, 1):
         for gz in (-1, 1):
             x, z = gx / np.sqrt(3.0), gz / np.sqrt(3.0)
-            slope = np.stack(
-                [corner[:, 0] * (1 + corner[:, 1] * z), corner[:, 1] * (1 + corner[:, 0] * x)], axis=1
-            ) / (2.0 * size)
+            slope = np.stack([corner[:, 0] * (1 + corner[:, 1] * z), corner[:, 1] * (1 + corner[:, 0] * x)], axis=1) / (
+                2.0 * size
+            )
             strain = np.zeros((3, 8))
             strain[0, ::2], strain[1, 1::2] = slope[:, 0], slope[:, 1]
             strain[2, ::2], strain[2, 1::2] = slope[:, 1], slope[:, 0]

@@ -69,9 +69,7 @@ def draw_rotations(
     return _segments(axes, centre - arm, centre + arm, {"color": style.MUTED, "linewidth": 0.4, **lines})
 
 
-def draw_contacts(
-    axes: Axes, position: ArrayLike, first: ArrayLike, second: ArrayLike, **lines: Any
-) -> LineCollection:
+def draw_contacts(axes: Axes, position: ArrayLike, first: ArrayLike, second: ArrayLike, **lines: Any) -> LineCollection:
     """Connect the centres of the pairs ``first``, ``second`` (m,): thin black lines unless said otherwise."""
     centre = _points(position, "position")
     start, end = centre[np.asarray(first, dtype=int)], centre[np.asarray(second, dtype=int)]

@@ -53,9 +53,7 @@ def _bond(axes: Axes, start: FloatArray, end: FloatArray, family: str, outside: 
 
     near, far = 0.13, 0.62
     surface = float(np.sqrt(_RADIUS**2 - near**2))
-    axes.plot(
-        *_coil(at(surface, -near), at(2.0 - surface, -near), 9, 0.085).T, color=_COLOUR["n"], linestyle="-"
-    )
+    axes.plot(*_coil(at(surface, -near), at(2.0 - surface, -near), 9, 0.085).T, color=_COLOUR["n"], linestyle="-")
     for arm in ([at(surface, near), at(1.0, near)], [at(2.0, _RADIUS), at(2.0, far), at(1.0, far)]):
         axes.plot(*np.transpose(arm), color=style.MUTED, linewidth=0.9, linestyle="-")
     axes.plot(*_coil(at(1.0, near), at(1.0, far), 4, 0.085).T, color=_COLOUR["t"], linestyle="-")

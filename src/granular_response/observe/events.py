@@ -56,9 +56,7 @@ def bisect_event(
     if at_high is None:
         at_high, evaluations = bool(predicate(high)), evaluations + 1
     if at_low == at_high:
-        raise EventNotBracketed(
-            f"the predicate is {at_low} at both {low} and {high}; no event between them is known"
-        )
+        raise EventNotBracketed(f"the predicate is {at_low} at both {low} and {high}; no event between them is known")
     while high - low > tolerance:
         middle = low + 0.5 * (high - low)
         if not low < middle < high:

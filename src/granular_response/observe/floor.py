@@ -66,9 +66,7 @@ def smoothed_response(x_eval: ArrayLike, x_disk: ArrayLike, response: ArrayLike,
     return np.asarray(response, dtype=float) @ kernel.T
 
 
-def interior_mask(
-    x: ArrayLike, width: float, margin: float = 10.0, *, left_wall: float = 0.0
-) -> NDArray[np.bool_]:
+def interior_mask(x: ArrayLike, width: float, margin: float = 10.0, *, left_wall: float = 0.0) -> NDArray[np.bool_]:
     """Whether each ``x`` is at least ``margin`` away from both side walls; same shape as ``x``.
 
     ``left_wall`` is the position of the left wall in the coordinate of ``x`` (for x measured from the loaded
@@ -76,8 +74,6 @@ def interior_mask(
     Raises ``ValueError`` if nothing can be in the interior.
     """
     if not 0.0 <= margin < width / 2.0:
-        raise ValueError(
-            f"margin: {margin} given; it must be at least 0 and less than half the width {width}"
-        )
+        raise ValueError(f"margin: {margin} given; it must be at least 0 and less than half the width {width}")
     distance = np.asarray(x, dtype=float) - left_wall
     return (distance >= margin) & (distance <= width - margin)

@@ -80,25 +80,16 @@ def interior_contacts(state: State, width: float, margin: float = 10.0) -> BoolA
     Raises ``ValueError`` if nothing can be in the interior.
     """
     if not 0.0 <= margin < width / 2.0:
-        raise ValueError(
-            f"margin: {margin} given; it must be at least 0 and less than half the width {width}"
-        )
+        raise ValueError(f"margin: {margin} given; it must be at least 0 and less than half the width {width}")
     x = contact_centre(state)[:, 0]
     return (x >= margin) & (x <= width - margin)
 
 
-def bulk_disks(
-    state: State, width: float, side_margin: float = 10.0, vertical_margin: float = 4.0
-) -> BoolArray:
+def bulk_disks(state: State, width: float, side_margin: float = 10.0, vertical_margin: float = 4.0) -> BoolArray:
     """(n,) disks whose centres keep ``side_margin`` from the side walls and ``vertical_margin`` from the
     floor and from the highest centre; by default that leaves out two rows of a lattice below, three above."""
     x, z = state.position[:, 0], state.position[:, 1]
-    return (
-        (x >= side_margin)
-        & (x <= width - side_margin)
-        & (z >= vertical_margin)
-        & (z <= z.max() - vertical_margin)
-    )
+    return (x >= side_margin) & (x <= width - side_margin) & (z >= vertical_margin) & (z <= z.max() - vertical_margin)
 
 
 def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
@@ -187,9 +178,7 @@ def mirror_disks(position: FloatArray, axis: float, tolerance: float = 0.1) -> N
             f"the packing is not symmetric about x = {axis}"
         )
     if not np.array_equal(index[index], np.arange(index.size)):
-        raise ValueError(
-            f"position: two disks share a mirror image about x = {axis}; tolerance {tolerance} too large"
-        )
+        raise ValueError(f"position: two disks share a mirror image about x = {axis}; tolerance {tolerance} too large")
     return index.astype(np.intp)
 
 

@@ -204,20 +204,14 @@ def _outer_peaks(
     return peaks if both else None
 
 
-def _samples(
-    x: ArrayLike, response: ArrayLike, interior: NDArray[np.bool_] | None
-) -> tuple[FloatArray, FloatArray]:
+def _samples(x: ArrayLike, response: ArrayLike, interior: NDArray[np.bool_] | None) -> tuple[FloatArray, FloatArray]:
     x, r = np.asarray(x, dtype=float), np.asarray(response, dtype=float)
     if x.ndim != 1 or x.shape != r.shape:
-        raise ValueError(
-            f"response: shape {r.shape} given for x of shape {x.shape}; both must be the same 1-D shape"
-        )
+        raise ValueError(f"response: shape {r.shape} given for x of shape {x.shape}; both must be the same 1-D shape")
     if interior is not None:
         mask = np.asarray(interior)
         if mask.shape != x.shape or mask.dtype != np.bool_:
-            raise ValueError(
-                f"interior: {mask.dtype} of shape {mask.shape} given; it must be bool of shape {x.shape}"
-            )
+            raise ValueError(f"interior: {mask.dtype} of shape {mask.shape} given; it must be bool of shape {x.shape}")
         x, r = x[mask], r[mask]
     if x.size < 3:
         raise ValueError(f"x: {x.size} samples in the interior; at least 3 are needed")

@@ -60,14 +60,10 @@ def load_forces(rest: State, loaded: State, width: float) -> ContactForces:
     field, by the product of rest forces and displacements. Raises ``ValueError`` if the states list
     different candidates.
     """
-    return _contact_forces(
-        loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded), width
-    )
+    return _contact_forces(loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded), width)
 
 
-def _contact_forces(
-    state: State, pair_force: FloatArray, wall_force: FloatArray, width: float
-) -> ContactForces:
+def _contact_forces(state: State, pair_force: FloatArray, wall_force: FloatArray, width: float) -> ContactForces:
     position, pairs, walls = state.position, state.pairs, state.walls
     at_wall = position[walls.first]
     on_wall = at_wall.copy()

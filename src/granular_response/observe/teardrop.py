@@ -106,9 +106,7 @@ def open_region(
     return OpenRegion(
         contacts=inside,
         depth=float(origin[1] - centre[region, 1].min()),
-        width=_largest_row(
-            state.position[first], state.position[second], np.sqrt(3.0) / 8.0 * lattice_constant
-        ),
+        width=_largest_row(state.position[first], state.position[second], np.sqrt(3.0) / 8.0 * lattice_constant),
         reaches_floor=bool(np.any(on_floor[first] & on_floor[second])),
     )
 

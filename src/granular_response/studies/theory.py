@@ -82,11 +82,7 @@ class _Parameters:
             self.depths = np.asarray(depths, dtype=float)
         except (TypeError, ValueError):
             self.depths = np.empty(0)
-        if (
-            self.depths.ndim != 1
-            or not self.depths.size
-            or not np.all((self.depths > 0) & (self.depths < np.inf))
-        ):
+        if self.depths.ndim != 1 or not self.depths.size or not np.all((self.depths > 0) & (self.depths < np.inf)):
             raise ValueError(f"depths = {depths!r}: must be a list of positive numbers")
 
 
@@ -117,21 +113,15 @@ def _predictions(values: _Parameters) -> xr.Dataset:
     ]
     return xr.Dataset(
         {
-            "slab_rough": _variable(
-                "x", Slab(1.0, solid, "rough").floor_pressure(x), f"{pressure}, rough floor"
-            ),
-            "slab_smooth": _variable(
-                "x", Slab(1.0, solid, "smooth").floor_pressure(x), f"{pressure}, smooth floor"
-            ),
+            "slab_rough": _variable("x", Slab(1.0, solid, "rough").floor_pressure(x), f"{pressure}, rough floor"),
+            "slab_smooth": _variable("x", Slab(1.0, solid, "smooth").floor_pressure(x), f"{pressure}, smooth floor"),
             "half_plane": _variable(
                 "x",
                 half_plane.pressure(x, 1.0, solid),
                 "pressure times depth / force in a half plane, same depth",
             ),
             "rays": _variable(("depth", "x"), np.stack(hyperbolic), f"{pressure}, two diffusing rays"),
-            "poisson_ratio": _variable(
-                (), poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"
-            ),
+            "poisson_ratio": _variable((), poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"),
             "ray_angle": _variable((), values.ray_angle, "angle of the rays to the vertical in degrees"),
             "diffusion_length": _variable(
                 (), values.diffusion_length, "squared width of a ray over depth, in mean disk radii"
@@ -150,15 +140,11 @@ def _peak_criterion() -> xr.Dataset:
     ratio = [[crossover.stiffness_ratio(body, rotations) for body in BODIES] for rotations in ROTATIONS]
     return xr.Dataset(
         {
-            "criterion": _variable(
-                names, criterion, "r of the lattice without horizontal springs; two peaks if < 0"
-            ),
+            "criterion": _variable(names, criterion, "r of the lattice without horizontal springs; two peaks if < 0"),
             "root": _variable(
                 "rotations", [lattice.peak_criterion_root(r) for r in ROTATIONS], "k_2t/k_2n at which r = 0"
             ),
-            "root_closed_form": _variable(
-                "rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"
-            ),
+            "root_closed_form": _variable("rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"),
             "crossover": _variable(
                 ("rotations", "body"),
                 ratio,

@@ -162,8 +162,7 @@ class Slab:
         # Gauss-Legendre in each stretch, short beside the height over which the pressure varies.
         pieces = int(np.ceil(np.max(np.diff(bounds)) / (0.25 * self.height)))
         fine = np.concatenate(
-            [np.linspace(left, right, pieces, endpoint=False) for left, right in pairwise(bounds)]
-            + [bounds[-1:]]
+            [np.linspace(left, right, pieces, endpoint=False) for left, right in pairwise(bounds)] + [bounds[-1:]]
         )
         node, weight = np.polynomial.legendre.leggauss(8)
         half = 0.5 * np.diff(fine)
