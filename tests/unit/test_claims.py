@@ -183,7 +183,7 @@ def frictionless_study():
             contact_partner=("contact", first + 1),
         ),
         "sizes": dataset(
-            {"force": forces, "layers": ("slab", slabs)},
+            {"force": forces, "layers": ("slab", slabs), "normal_stiffness": ("slab", [3000.0, 3000.0])},
             teardrop_depth=(dims, np.array([[5.0, 9.0, 14.0], [5.0, 8.5, 13.0]])),
             teardrop_width=(dims, np.array([[4.0, 8.0, 12.0], [4.0, 8.0, 12.0]])),
             reaches_floor=(dims, np.array([[0, 0, 1], [0, 0, 0]])),

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import xarray as xr
 
 from .claim import Claim, Condition, Data, Finding, NotMeasured, sampled_event
 
 GROUP = "frictionless_crossover"
 FRICTION = "friction_linear_range"
+
+#: The paper's stiffness of contacts.
+STIFFNESS = 3000.0
 
 #: Distance of two rows of disks, and of two disks in a row (mean radii): the resolution of a region's size.
 ROW, DISK = float(np.sqrt(3.0)), 2.0
@@ -87,8 +91,17 @@ def teardrop_shape(data: Data) -> Finding:
     )
 
 
+def _sizes(data: Data, *names: str) -> xr.Dataset:
+    """Slabs of several depths, all with the paper's stiffness."""
+    sizes = data.get(GROUP, "sizes", "layers", "normal_stiffness", "force", *names)
+    alike = np.isclose(sizes["normal_stiffness"].values, STIFFNESS)
+    if not alike.any():
+        raise NotMeasured(f"data/{GROUP}.nc: sizes holds no slab with k_N = {STIFFNESS:g}")
+    return sizes.isel(slab=alike)
+
+
 def teardrop_and_depth(data: Data) -> Finding:
-    sizes = data.get(GROUP, "sizes", "layers", "teardrop_depth", "teardrop_width", "reaches_floor", "force")
+    sizes = _sizes(data, "teardrop_depth", "teardrop_width", "reaches_floor")
     layers = sizes["layers"].values
     thin, deep = int(np.argmin(layers)), int(np.argmax(layers))
     if thin == deep:
@@ -119,7 +132,7 @@ def teardrop_and_depth(data: Data) -> Finding:
 
 
 def deep_and_shallow(data: Data) -> Finding:
-    sizes = data.get(GROUP, "sizes", "layers", "double_peaked", "force")
+    sizes = _sizes(data, "double_peaked")
     layers, double = sizes["layers"].values, sizes["double_peaked"].values.astype(bool)
     thin, deep = int(np.argmin(layers)), int(np.argmax(layers))
     force = sizes["force"].values
@@ -140,17 +153,21 @@ def deep_and_shallow(data: Data) -> Finding:
 
 def stiffness_response(data: Data) -> Finding:
     study = data.get(GROUP, "stiffness", "response_change", "compared_stiffness", "force")
-    change = np.abs(study["response_change"].values)
+    change, force = np.abs(study["response_change"].values), study["force"].values
     soft, stiff = study["compared_stiffness"].values
     if not (abs(soft - 1e3) < 1.0 and abs(stiff - 1e5) < 100.0):
         raise NotMeasured(f"data/{GROUP}.nc: stiffness does not compare 1000 and 1e5")
     small = change <= 0.03
     return Finding(
-        f"changes by {change.min():.1%} to {change.max():.1%}, depending on the force",
+        f"changes by {change[0]:.1%} at the smallest force, by up to {change.max():.1%} at {force[change.argmax()]:g} mg",
         float(change.max()),
         [
             Condition("at most 3 % at the smallest force", bool(small[0]), f"{change[0]:.1%} at the smallest force"),
-            Condition("at most 3 % at every stored force", bool(small.all()), f"up to {change.max():.1%}"),
+            Condition(
+                "at most 3 % at every stored force",
+                bool(small.all()),
+                f"up to {change.max():.1%}, at {force[change.argmax()]:g} mg",
+            ),
         ],
         (float(change.min()), float(change.max())),
         "The paper does not name the force at which it compared",

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
-from markupsafe import Markup
 
 from granular_response import __version__, atomic, store
 
@@ -71,14 +70,14 @@ def page(root: Path) -> str:
             verdicts=[(v, v.replace(" ", "_"), claims["counts"][v.replace(" ", "_")]) for v in _VERDICTS],
             numbered=shown.numbered,
             further=shown.further,
-            states=Markup(_json_in_html(states)) if states else None,
+            states=_json_in_html(states) if states else None,
             explored=states is not None
             and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
             readings=rows,
             benchmarks=benchmarks.tables(root / "benchmarks"),
             groups=groups,
-            style=Markup(_resource("style.css")),
-            script=Markup(_resource("explorer.js")),
+            style=_resource("style.css"),
+            script=_resource("explorer.js"),
         )
         + "\n"
     )
