@@ -246,25 +246,31 @@ def averages_study():
 
 
 def phases_study():
-    dims = ("polydispersity", "friction")
-    force = np.array([[3.0, 10.0, 20.0], [2.0, 8.0, 15.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0]])
+    disorders, frictions = np.meshgrid([0.0, 0.01, 0.1, 0.25], [0.0, 0.2, 1.0], indexing="ij")
+    force = np.array([[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0]]).ravel()
+    interval = np.stack([0.95 * force, force, 1.05 * force], axis=-1)
     return {
-        "crossover": dataset(
-            {"polydispersity": [0.0, 0.01, 0.1, 0.25], "friction": [0.0, 0.1, 0.2]},
-            crossover_force=(dims, force),
-            interval_low=(dims, 0.95 * force),
-            interval_high=(dims, 1.05 * force),
+        "crossovers": dataset(
+            {
+                "polydispersity": ("case", disorders.ravel()),
+                "friction": ("case", frictions.ravel()),
+                "width": [6.0],
+                "level": [0.025, 0.5, 0.975],
+            },
+            force=(("width", "case"), force[None]),
+            kind=(("width", "case"), np.where(force == 30.0, 2, 0)[None]),
+            interval=(("width", "case", "level"), interval[None]),
         )
     }
 
 
 def superposition_study():
     return {
-        "error": dataset(
+        "errors": dataset(
             {"force": [0.2, 1.0], "distance": [4.0, 8.0]},
-            superposition_error=(("force", "distance"), np.array([[0.01, 0.02], [0.05, 0.1]])),
+            floor_error_largest=(("realization", "distance", "force"), np.array([[[0.01, 0.05], [0.02, 0.1]]])),
         ),
-        "events": events(("linear_range", 0.05, 0.4, 0.41)),
+        "linear_range": dataset(linear_until=("realization", [0.4, 0.3]), nonlinear_from=("realization", [0.5, 0.4])),
     }
 
 
@@ -397,11 +403,14 @@ PERTURBED = [
     ),
     ("D5", put("polydisperse_averages", "averages", "mean_of_few", profile(-0.1)), "not reproduced"),
     ("D7", scaled("polydisperse_averages", "packings", "coordination_number_bulk", 1.2), "not reproduced"),
-    ("D3", put("phase_diagram", "crossover", "interval_high", 0.1), "not reproduced"),
-    ("D6", put("phase_diagram", "crossover", "interval_high", NAN), "differs"),
-    ("U1", scaled("superposition", "error", "superposition_error", 10.0), "not reproduced"),
-    ("U2", moved("superposition", "linear_range", 0.05, 3.0, 3.1), "differs"),
-    ("U3", scaled("superposition", "error", "superposition_error", 10.0), "not reproduced"),
+    ("D3", put("phase_diagram", "crossovers", "interval", [0.0, 0.05, 0.1]), "differs"),
+    ("D3", scaled("phase_diagram", "crossovers", "interval", np.geomspace(1.0, 1e-6, 12)[:, None]), "differs"),
+    ("D6", put("phase_diagram", "crossovers", "interval", NAN), "differs"),
+    ("D6", put("phase_diagram", "crossovers", "kind", 2), "not reproduced"),
+    ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), "not reproduced"),
+    ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "differs"),
+    ("U2", put("superposition", "linear_range", "nonlinear_from", NAN), "not reproduced"),
+    ("U3", scaled("superposition", "errors", "floor_error_largest", 10.0), "not reproduced"),
     ("N1", scaled("numerics", "stop_energy", "loaded_error", 100.0), "not reproduced"),
     ("N2", scaled("numerics", "restart", "kinetic_energy", 1e8), "not reproduced"),
     ("N3", scaled("numerics", "at_rest", "mean_acceleration", 10.0), "differs"),

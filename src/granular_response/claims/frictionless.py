@@ -159,7 +159,8 @@ def stiffness_response(data: Data) -> Finding:
         raise NotMeasured(f"data/{GROUP}.nc: stiffness does not compare 1000 and 1e5")
     small = change <= 0.03
     return Finding(
-        f"changes by {change[0]:.1%} at the smallest force, by up to {change.max():.1%} at {force[change.argmax()]:g} mg",
+        f"changes by {change[0]:.1%} at the smallest force and by up to {change.max():.1%}, "
+        f"at {force[change.argmax()]:g} mg",
         float(change.max()),
         [
             Condition("at most 3 % at the smallest force", bool(small[0]), f"{change[0]:.1%} at the smallest force"),
