@@ -343,6 +343,12 @@ def put(group, name, variable, values):
     return change
 
 
+def overlapping(groups):
+    """A phase diagram whose intervals are all alike: nothing contradicts the order, nothing shows it."""
+    put("phase_diagram", "crossovers", "kind", 0)(groups)
+    put("phase_diagram", "crossovers", "interval", [0.0, 0.05, 0.1])(groups)
+
+
 def tilted(groups):
     """Contacts that are no longer horizontal."""
     data = groups[SLAB]["states"].copy(deep=True)
@@ -403,7 +409,7 @@ PERTURBED = [
     ),
     ("D5", put("polydisperse_averages", "averages", "mean_of_few", profile(-0.1)), "not reproduced"),
     ("D7", scaled("polydisperse_averages", "packings", "coordination_number_bulk", 1.2), "not reproduced"),
-    ("D3", put("phase_diagram", "crossovers", "interval", [0.0, 0.05, 0.1]), "differs"),
+    ("D3", overlapping, "differs"),
     ("D3", scaled("phase_diagram", "crossovers", "interval", np.geomspace(1.0, 1e-6, 12)[:, None]), "differs"),
     ("D6", put("phase_diagram", "crossovers", "interval", NAN), "differs"),
     ("D6", put("phase_diagram", "crossovers", "kind", 2), "not reproduced"),

@@ -22,7 +22,7 @@ from granular_response.pipeline import drawing, simulation
 from granular_response.scene import SceneError
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ["run", "simulate", "draw", "show", "export", "cite", "version"]
+COMMANDS = ["run", "simulate", "draw", "show", "export", "claims", "report", "cite", "version"]
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
 contact: {friction: 0.0}
