@@ -1,0 +1,129 @@
+"""The study of Sec. IV: what it asks for, what it measures on a rest state, where its rest states come from."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from granular_response.figures.frictionless_crossover import nearest
+from granular_response.scene import Packing
+from granular_response.solve import Problem
+from granular_response.studies import frictionless_crossover as study
+from granular_response.studies.frictionless_crossover import Slab
+
+PARAMETERS = {
+    "method": "auto",
+    "layers": 5,
+    "disks_per_row": 11,
+    "normal_stiffness": 3000.0,
+    "forces": [0.5, 1],
+    "tolerance": 0.01,
+    "sizes": [[5, 11], [6, 12]],
+    "widths": [[5, 11], [5, 15]],
+    "size_stiffnesses": [3000.0, 1e5],
+    "size_forces": [1.0, 2.0],
+    "size_tolerance": 0.05,
+    "stiffnesses": [1000.0, 3000.0, 1e5],
+    "stiffness_forces": [0.75],
+    "compared_stiffnesses": [1000.0, 1e5],
+}
+
+
+def test_each_slab_is_one_task_with_all_its_forces() -> None:
+    tasks = study.Parameters(PARAMETERS).tasks()
+    forces = {task.slab: task.forces for task in tasks}
+    assert len(forces) == len(tasks) == 7
+    assert forces[Slab(5, 11, 3000.0)] == (0.5, 0.75, 1.0, 2.0)
+    assert forces[Slab(5, 11, 1e5)] == (0.75, 1.0, 2.0)
+    assert forces[Slab(5, 11, 1000.0)] == (0.75,)
+    assert forces[Slab(6, 12, 1e5)] == (1.0, 2.0)
+    assert [task.slab for task in tasks if task.keep_states] == [Slab(5, 11, 3000.0)]
+    assert {task.slab: task.tolerance for task in tasks}[Slab(5, 15, 3000.0)] == 0.05
+    sizes = [task.slab.layers * task.slab.disks_per_row for task in tasks]
+    assert sizes == sorted(sizes, reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"layers": None}, "layers is missing from the parameters of the study 'frictionless_crossover'"),
+        ({"layers": 1}, "layers = 1: must be a whole number from 2"),
+        ({"disks_per_row": 11.0}, "disks_per_row = 11.0: must be a whole number from 7"),
+        ({"normal_stiffness": True}, "normal_stiffness = True: must be a positive number"),
+        ({"tolerance": 0.0}, "tolerance = 0.0: must be a positive number"),
+        ({"forces": [1.0, 0.5]}, "forces = [1.0, 0.5]: must be a list of positive numbers in increasing order"),
+        ({"forces": [0.0, 0.5]}, "forces = [0.0, 0.5]: must be a list of positive numbers in increasing order"),
+        ({"size_forces": "1"}, "size_forces = '1': must be a list of positive numbers in increasing order"),
+        ({"sizes": [[5, 11], [6]]}, "sizes = [[5, 11], [6]]: must be a list of [layers, disks_per_row], from 2 and 7"),
+        ({"widths": []}, "widths = []: must be a list of [layers, disks_per_row], from 2 and 7 on"),
+        ({"compared_stiffnesses": [1000.0, 2000.0]}, "compared_stiffnesses = [1000.0, 2000.0]: must be two of"),
+    ],
+)
+def test_a_bad_parameter_is_named(change: dict, message: str) -> None:
+    given = {key: value for key, value in {**PARAMETERS, **change}.items() if value is not None}
+    with pytest.raises(ValueError, match=re.escape(message)):
+        study.simulate(given)
+
+
+def test_asymmetry_is_the_lean_alone() -> None:
+    """Spreading apart is symmetric, a shift is not; heights do not count."""
+    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene("auto"))
+    packing: Packing = problem.packing
+    state = problem.bare_state()
+    middle = 0.5 * packing.width
+    away = packing.position[:, 0] - middle
+
+    def asymmetry(shift) -> float:
+        moved = packing.position + np.stack([shift, 0.1 * away], axis=1)
+        return study.rest_asymmetry(packing.position, replace(state, position=moved), packing.width)
+
+    assert asymmetry(0.01 * away) == pytest.approx(0.0, abs=1e-15)
+    assert asymmetry(0.01 * away + 0.03) == pytest.approx(0.03)
+    assert asymmetry(np.where(np.arange(len(away)) == 0, 0.04, 0.0)) == pytest.approx(0.02)
+
+
+def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
+    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene("auto"))
+    packing = problem.packing
+    pushed = packing.position.copy()
+    pushed[:, 0] *= 0.999
+    state = problem.relisted(replace(problem.bare_state(), position=pushed))
+    assert study.new_neighbours(packing.position, state) == 0
+    # the first disk of the bottom row goes on top of the third
+    pushed[0] = pushed[2] + (0.0, 1.9)
+    moved = problem.relisted(replace(problem.bare_state(), position=pushed))
+    touching = moved.pairs.touching & ((moved.pairs.first == 0) | (moved.pairs.second == 0))
+    others = np.where(moved.pairs.first == 0, moved.pairs.second, moved.pairs.first)[touching]
+    apart = np.linalg.norm(packing.position[others] - packing.position[0], axis=1) > 3.0
+    assert apart.any()
+    assert study.new_neighbours(packing.position, moved) == int(apart.sum())
+
+
+def test_soft_disks_are_settled_by_dynamics() -> None:
+    """Where the lattice does not hold, the rest state comes from the fall; elsewhere from the minimum."""
+    soft, stiff = Slab(8, 24, 20.0), Slab(8, 24, 3000.0)
+    packing = Problem.from_scene(soft.scene("auto")).packing
+    fallen, held = study.settle(soft, "auto"), study.settle(stiff, "auto")
+    assert fallen.information["certificate"].stable
+    assert fallen.information["certificate"].force_residual < 1e-9
+    assert study.new_neighbours(packing.position, fallen) > 0
+    assert held.information["method"] == "minimise"
+    assert study.new_neighbours(packing.position, held) == 0
+
+
+def test_a_wide_slab_leans_to_one_side() -> None:
+    """A slab whose symmetric equilibrium is a saddle rests in a stable state beside it."""
+    wide, narrow = Slab(15, 241, 3000.0), Slab(15, 61, 3000.0)
+    lean = {}
+    for slab in (wide, narrow):
+        packing = Problem.from_scene(slab.scene("auto")).packing
+        rest = study.settle(slab, "auto")
+        assert rest.information["certificate"].stable
+        lean[slab] = study.rest_asymmetry(packing.position, rest, packing.width)
+    assert lean[narrow] < 1e-10
+    assert 1e-3 < lean[wide] < 1e-2
+
+
+def test_nearest_stored_values_once_each() -> None:
+    assert nearest(np.array([0.5, 1.0, 3.0]), (0.4, 0.6, 2.9, 50.0)) == [0, 2]
