@@ -35,6 +35,13 @@ def plain_bytes(image: bytes | bytearray | memoryview) -> bytes:
     return bytes(data)
 
 
+def is_complete(data: bytes) -> bool:
+    """Whether an HDF5 file with a superblock of version 2 or 3 is as long as it says; True for other files."""
+    if data[8:9] not in (b"\2", b"\3"):
+        return len(data) > 8
+    return len(data) >= 36 and len(data) >= _integer(data, 28, 8)  # [II.A]
+
+
 def _integer(data: bytes | bytearray, start: int, width: int) -> int:
     return int.from_bytes(data[start : start + width], "little")
 

@@ -10,6 +10,7 @@ plain errors. Its bytes depend on the data alone.
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
 from collections.abc import Mapping
@@ -27,6 +28,7 @@ from . import __version__, atomic, hdf5_image
 FORMAT = "granular_response 1"
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_SEAL = b"granular_response sha256 "
 _GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
 
 
@@ -69,6 +71,7 @@ def write(
     root = root.assign_attrs({**(attributes or {}), "format": FORMAT, "package_version": __version__})
     groups = {"": root, **groups}
     data = _image(path, groups)
+    data += _SEAL + hashlib.sha256(data).digest()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         atomic.write_bytes(path, data, check=lambda written: _verify(path, written, groups))
@@ -174,25 +177,38 @@ def _verify(path: Path, data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
 
 def _open(path: str | os.PathLike[str]) -> netCDF4.Dataset:
     try:
-        with open(path, "rb") as file:
-            start = file.read(len(_SIGNATURE))
+        data = Path(path).read_bytes()
     except FileNotFoundError:
         raise _error(path, "no such file") from None
     except OSError as error:
         raise _error(path, f"cannot be read: {error.strerror or error}") from None
-    if not start:
+    if not data:
         raise _error(path, "is empty")
-    if not _SIGNATURE.startswith(start):
+    if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
         raise _error(path, "is not a netCDF-4 file")
+    _check_seal(path, data)
     try:
-        dataset = netCDF4.Dataset(os.fspath(path), mode="r")
+        dataset = netCDF4.Dataset(os.fspath(path), mode="r", memory=data)
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
-    except (OSError, RuntimeError, ValueError) as error:
+    except Exception as error:  # damage can surface as nearly any kind of error
         raise _error(path, "is truncated or damaged") from error
     if attributes.get("format") != FORMAT:
         dataset.close()
-        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
+        raise _error(path, f"has another layout, must have the attribute format = {FORMAT!r}")
     return dataset
+
+
+def _check_seal(path: str | os.PathLike[str], data: bytes) -> None:
+    """Raise StoreError unless ``data`` is as ``write`` left it."""
+    start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
+    if data[start : start + len(_SEAL)] != _SEAL or start < 0:
+        if not hdf5_image.is_complete(data):
+            raise _error(path, "is truncated or damaged")
+        if FORMAT.encode() in data:
+            raise _error(path, "is truncated or damaged, or another program has written it anew")
+        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
+    if hashlib.sha256(memoryview(data)[:start]).digest() != data[start + len(_SEAL) :]:
+        raise _error(path, "is damaged: its digest differs from the one made when it was written")
 
 
 def _walk(file: netCDF4.Dataset, prefix: str = "") -> list[tuple[str, netCDF4.Dataset]]:

@@ -130,10 +130,9 @@ def test_truncated_and_foreign_files_are_one_line(tmp_path, solution):
 
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(cut=st.floats(0.0, 0.999), place=st.floats(0.0, 0.999), flip=st.integers(1, 255))
-def test_a_damaged_file_is_never_read_silently_wrong(tmp_path, solution, cut, place, flip):
+def test_a_damaged_file_is_never_read(tmp_path, solution, cut, place, flip):
     path = tmp_path / "damaged.nc"
-    expected = to_dataset(solution)
-    store.write(path, expected)
+    store.write(path, to_dataset(solution))
     whole = path.read_bytes()
     path.write_bytes(whole[: int(cut * len(whole))])
     with pytest.raises(store.StoreError) as error:
@@ -142,16 +141,9 @@ def test_a_damaged_file_is_never_read_silently_wrong(tmp_path, solution, cut, pl
     damaged = bytearray(whole)
     damaged[int(place * len(whole))] ^= flip
     path.write_bytes(damaged)
-    try:
-        data = store.read(path)[""]
-    except store.StoreError as error_found:
-        assert "\n" not in str(error_found)
-    except KeyError:
-        pass  # the name of a group was hit
-    else:  # the flipped byte was in a text or in a place that nobody reads, not in the numbers
-        for name in set(data.variables) & set(expected.variables):
-            if expected[name].dtype.kind == "f" and expected[name].ndim:
-                np.testing.assert_array_equal(data[name], expected[name])
+    with pytest.raises(store.StoreError) as error:
+        store.read(path)
+    assert "\n" not in str(error.value)
 
 
 # Parameter files
