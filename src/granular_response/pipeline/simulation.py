@@ -12,8 +12,12 @@ from typing import Any
 from granular_response import store, sweep
 from granular_response.pipeline import GroupError, data_path, group_function
 from granular_response.scene import SceneError, text
+from granular_response.studies import settled
 
 PARAMETERS = Path("params.yaml")
+
+#: Beside the datasets: rest states that later groups need again.
+REST_STATES = ".rest_states"
 
 
 def parameters(group: str, path: Path = PARAMETERS) -> dict[str, Any]:
@@ -55,14 +59,17 @@ def simulate(
     """Run the simulations of a group and store its datasets; returns the path of the file.
 
     Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
-    continues.
+    continues; rest states are kept there for other groups.
     """
     function = group_function("simulate", group)
     given = parameters(group, parameter_file)
     output = output or data_path(group)
     store.check_writable(output)
     kept = output.parent / f".{output.stem}.checkpoint"
-    environment = {sweep.CHECKPOINT_VARIABLE: str(kept)}
+    environment = {
+        sweep.CHECKPOINT_VARIABLE: str(kept),
+        settled.FOLDER_VARIABLE: os.environ.get(settled.FOLDER_VARIABLE, str(output.parent / REST_STATES)),
+    }
     if scheduler:
         environment[sweep.SCHEDULER_VARIABLE] = scheduler
     with _environment(environment):

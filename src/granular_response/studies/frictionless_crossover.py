@@ -25,8 +25,9 @@ from numpy.typing import NDArray
 from granular_response.observe import network
 from granular_response.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.scene import Scene
-from granular_response.solve import Problem, State, rest_state
+from granular_response.solve import Problem, State
 from granular_response.solve.equilibrium import Rearranged
+from granular_response.studies.settled import rest_state
 from granular_response.studies.slab_response import (
     SCALARS,
     Event,

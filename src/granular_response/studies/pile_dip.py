@@ -24,7 +24,8 @@ from granular_response.observe.peaks import central_dip
 from granular_response.observe.teardrop import open_region
 from granular_response.result import FORCE, LENGTH, certificates_dataset, common_candidates, variable
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, State, minimise, rest_state
+from granular_response.solve import Problem, State, minimise
+from granular_response.studies.settled import rest_state
 from granular_response.sweep import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]

@@ -17,8 +17,9 @@ import xarray as xr
 from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.result import variable
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, State, Stop, loaded_states, relax, rest_state
+from granular_response.solve import Dynamics, Problem, State, Stop, loaded_states, relax
 from granular_response.solve.timestep import resolve_time_step
+from granular_response.studies.settled import rest_state
 from granular_response.sweep import Progress, map_tasks
 
 REFERENCE = "reference"

@@ -25,8 +25,9 @@ from granular_response.result import (
     variable,
 )
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, State, loaded_states, rest_state
+from granular_response.solve import Problem, State, loaded_states
 from granular_response.solve.path import Crossing
+from granular_response.studies.settled import rest_state
 
 FloatArray = NDArray[np.float64]
 

@@ -22,8 +22,9 @@ from granular_response.observe import network
 from granular_response.observe.events import EventNotBracketed, bisect_event
 from granular_response.result import FORCE, LENGTH, variable
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Dynamics, Problem, State, Stop, relax, rest_state
+from granular_response.solve import Dynamics, Problem, State, Stop, relax
 from granular_response.solve.timestep import resolve_time_step
+from granular_response.studies.settled import rest_state
 from granular_response.studies.slab_response import (
     Event,
     FloatArray,

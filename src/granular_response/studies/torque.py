@@ -23,7 +23,8 @@ from granular_response.observe.difference import pair_force_difference, wall_for
 from granular_response.observe.network import contact_centre
 from granular_response.result import FORCE, LENGTH, certificates_dataset, common_candidates, variable
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, State, loaded_states, rest_state
+from granular_response.solve import Problem, State, loaded_states
+from granular_response.studies.settled import rest_state
 from granular_response.sweep import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
