@@ -22,7 +22,11 @@ NUMBER_OF_FIGURES = 24
 #: What each figure of the paper shows here.
 CAPTIONS: dict[int, str] = {
     1: "Two theories of the pressure on the floor below a force. Elliptic: an elastic slab on a rough or a smooth "
-    "floor, and a half plane at the same depth. Hyperbolic: two rays that spread diffusively, for two depths.",
+    "floor, and a half plane at the same depth. Hyperbolic: two rays that spread diffusively, for two depths. "
+    "Not in the paper: simulated responses to a force of 0.01 mg and the elastic slab with their moduli and floor, and the "
+    "largest distance of the two as the number of layers grows (8 wide: eight disks of a row for each layer; slow: gravity "
+    "grows slowly). Two things keep packings from it: beside smooth walls gravity opens contacts, which is felt in a narrow "
+    "slab of any depth, and a sudden fall on a rough floor can open a row in the middle, as with 15 layers.",
     2: "Contact forces in a disordered packing, polydispersity 0.25: under gravity, and what a force on top adds. "
     "Marks on the disks show how far they have turned.",
     3: "Ordered slab without friction: floor response per applied force. One peak splits into two as the force grows.",
