@@ -52,6 +52,16 @@ def test_a_kept_state_is_the_computed_one(monkeypatch, tmp_path, computed):
     np.testing.assert_array_equal(again.pairs.spring, first.pairs.spring)
 
 
+def test_a_minimised_packing_needs_no_stable_time_step(monkeypatch, tmp_path, computed):
+    """The step of the scene is too long for disks this stiff, but no step is taken."""
+    monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path / "kept"))
+    stiff = {"contact.friction": 0.0, "contact.normal_stiffness": 1e6, "protocol.time_step": 1e-3}
+    for _ in range(2):
+        state = settled.rest_state(Problem.from_scene(SCENE.updated(stiff)))
+        assert state.information["certificate"].force_residual < 1e-9
+    assert len(computed) == 1
+
+
 @pytest.mark.parametrize(
     "change",
     [

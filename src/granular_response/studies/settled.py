@@ -53,14 +53,16 @@ def name(problem: Problem) -> str:
     """Equal for problems with the same rest state."""
     packing, protocol = problem.packing, problem.scene.protocol
     method = rest_method(problem).method
-    numerics = (
-        protocol.integrator,
-        resolve_time_step(problem),
-        stop_energy(problem),
-        protocol.stop_rule,
-        protocol.maximum_steps,
-        protocol.static_finish,
-    )
+    numerics: tuple = ()
+    if method == "dynamics":  # only then must the time step be a stable one
+        numerics = (
+            protocol.integrator,
+            resolve_time_step(problem),
+            stop_energy(problem),
+            protocol.stop_rule,
+            protocol.maximum_steps,
+            protocol.static_finish,
+        )
     return digest(
         packing,
         problem.pair_law,
@@ -68,7 +70,7 @@ def name(problem: Problem) -> str:
         problem.rule,
         problem.scene.preparation,
         method,
-        numerics if method == "dynamics" else (),
+        numerics,
     )
 
 
