@@ -1,0 +1,155 @@
+"""Figs. 23 and 24 on small slabs, from parameters through a file to figures."""
+
+import numpy as np
+import pytest
+
+from granular_response import store
+from granular_response.figures import style
+from granular_response.figures import superposition as figures
+from granular_response.scene import Scene
+from granular_response.studies import superposition as study
+
+SCENE = {
+    "packing.layers": 6,
+    "packing.disks_per_row": 21,
+    "packing.polydispersity": 0.01,
+    "packing.lattice_constant": "touching-largest",
+    "contact.friction": 0.05,
+    "protocol.integrator": "verlet",
+    "protocol.time_step": 7.9e-4,
+    "protocol.stop_kinetic_energy": 1e-9,
+    "protocol.ramp_time": 5.0,
+}
+PARAMETERS = {
+    "method": "auto",
+    "scene": SCENE,
+    "realizations": 3,
+    "pair_realizations": 2,
+    "offsets": [1, 4],
+    "forces": [0.01, 0.2, 1.0],
+    "single_forces": [0.01, 0.5, 1.0, 2.0],
+    "width": 3.0,
+    "tolerance": 0.05,
+}
+CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "superposition.nc"
+    store.write(path, study.simulate(PARAMETERS, workers=1))
+    return store.read(path)
+
+
+def test_errors(datasets, num_regression) -> None:
+    errors = datasets["errors"].isel(force=slice(1, None))
+    num_regression.check(
+        {name: errors[name].values.ravel() for name in study.ERRORS}, default_tolerance={"rtol": 1e-4, "atol": 1e-7}
+    )
+
+
+def test_every_state_is_certified(datasets) -> None:
+    errors = datasets["errors"]
+    for name in CERTIFIED:
+        assert float(errors[f"certificate_{name}"].max()) < 1e-9
+    assert np.all(errors["certificate_negative_modes"] == 0)
+
+
+def test_smooth_walls_leave_every_load_to_the_floor(datasets) -> None:
+    total = datasets["responses"]["floor_response"].sum("floor_disk")
+    for part, loads in (("left", 1.0), ("right", 1.0), ("both", 2.0)):
+        np.testing.assert_allclose(total.sel(part=part), loads, atol=1e-8)
+
+
+def test_stored_errors_are_those_of_the_stored_responses(datasets) -> None:
+    responses = datasets["responses"]["floor_response"].isel(realization=1, distance=0, force=2)
+    left, right, both = (responses.sel(part=part).values for part in study.PARTS)
+    stored = datasets["errors"].isel(realization=1, distance=0, force=2)
+    difference = both - left - right
+    np.testing.assert_allclose(stored["floor_error"], np.sqrt(np.mean(difference**2) / np.mean(both**2)), rtol=1e-12)
+    np.testing.assert_allclose(stored["floor_error_largest"], np.abs(difference).max() / np.abs(both).max(), rtol=1e-12)
+
+
+def test_superposition_holds_for_small_loads_and_fails_for_large_ones(datasets) -> None:
+    errors = datasets["errors"]
+    for name in ("floor_error", "contact_error", "row_error"):
+        assert float(errors[name].isel(force=0).max()) < 1e-6
+        assert float(errors[name].isel(force=2).mean()) > 1e-2
+
+
+def test_loads_stand_where_they_should(datasets) -> None:
+    x = datasets["responses"]["load_x"]
+    expected = 2.0 * np.array(PARAMETERS["offsets"], dtype=float)
+    np.testing.assert_allclose(x.sel(side="right").mean("realization"), expected, atol=0.1)
+    np.testing.assert_allclose(x.sel(side="left").mean("realization"), -expected, atol=0.1)
+    np.testing.assert_array_equal(datasets["errors"]["distance"], [2.0, 8.0])
+
+
+def test_the_end_of_the_linear_range_is_bracketed(datasets) -> None:
+    linear = datasets["linear_range"]
+    assert linear.sizes["realization"] == 3
+    centre = linear["response_at_centre"].values
+    forces = linear["force"].values
+    for realization in range(3):
+        change = np.abs(centre[realization] / centre[realization, 0] - 1.0)
+        until, beyond = float(linear["linear_until"][realization]), float(linear["nonlinear_from"][realization])
+        assert np.all(change[forces <= until] <= 0.05)
+        if np.isfinite(beyond):
+            assert change[forces == beyond] > 0.05
+            assert forces[np.searchsorted(forces, until) + 1] == beyond
+    assert np.all(linear["contact_change"][:, 0] == 0.0)
+    assert np.any(np.isfinite(linear["nonlinear_from"]))
+
+
+def test_stages_agree_with_the_protocol_of_the_paper(datasets) -> None:
+    """Dynamics from rest to the force, in place of stages: a different history, nearly the same responses."""
+    scene = Scene().updated({**SCENE, "protocol.method": "dynamics", "protocol.ramp_time": 20.0, "loads": []})
+    pair = study.load_pair(study.Task(scene, study.settle(scene), 4, (0.2,)))
+    assert pair.by_dynamics.all()
+    staged = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=0.2).values
+    np.testing.assert_allclose(pair.response[0], staged, atol=0.01 * staged.max())
+
+
+@pytest.mark.parametrize(
+    ("both", "rms", "largest"), [([2.0, 4.0, 4.0], 0.0, 0.0), ([2.0, 4.0, 5.0], 1.0 / np.sqrt(45.0), 0.2)]
+)
+def test_the_size_of_an_error(both, rms, largest) -> None:
+    left, right = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 0.0])
+    found = study.superposition_error(left, right, np.array(both))
+    np.testing.assert_allclose(found, (rms, largest), atol=1e-15)
+    as_vectors = study.superposition_error(*(np.stack([v, 0.0 * v], axis=1) for v in (left, right, np.array(both))))
+    np.testing.assert_allclose(as_vectors, (rms, largest), atol=1e-15)
+
+
+def test_no_force_has_no_relative_error() -> None:
+    assert np.isnan(study.superposition_error(np.ones(2), np.ones(2), np.zeros(2))).all()
+
+
+def test_figures(datasets) -> None:
+    drawn = figures.draw(datasets)
+    assert list(drawn) == ["fig23_superposition", "fig24_superposition_large", "fig24_superposition_error"]
+    panels = drawn["fig24_superposition_large"].axes
+    lines = {line.get_label(): line.get_ydata() for line in panels[1].lines}
+    shown = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=1.0)
+    np.testing.assert_array_equal(lines["(Left+Right)"], shown.sel(part="both"))
+    np.testing.assert_array_equal(lines["(Left)+(Right)"], shown.sel(part="left") + shown.sel(part="right"))
+    for figure in drawn.values():
+        assert style.render(figure)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("forces", [1.0, 0.5], r"forces = \[1.0, 0.5\]: must be two or more increasing numbers above 0"),
+        ("single_forces", [1.0], r"single_forces = \[1.0\]: must be two or more"),
+        ("offsets", [0], r"offsets = \[0\]: must be places from 1 to 9"),
+        ("offsets", [10], "must be places from 1 to 9"),
+        ("offsets", [], "must be places"),
+        ("realizations", 0, "realizations = 0: must be at least 1"),
+        ("pair_realizations", 4, "pair_realizations = 4: must be from 1 to 3"),
+        ("tolerance", 0.0, "tolerance = 0.0: must be above 0"),
+    ],
+)
+def test_bad_parameters_are_named(key, value, message) -> None:
+    with pytest.raises(ValueError, match=message):
+        study.simulate({**PARAMETERS, key: value}, workers=1)
