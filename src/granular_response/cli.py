@@ -239,15 +239,26 @@ def claims(
     typer.echo(f"{output}: {judging.sentence(found)}")
 
 
-@app.command(epilog=_examples("granular-response report", "granular-response report -o page.html"))
+@app.command(
+    epilog=_examples(
+        "granular-response report",
+        "granular-response report -o page.html",
+        "granular-response report --notes docs/reproduction-notes.md",
+    )
+)
 def report(
     output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path("figures/report.html"),
     root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
+    notes: Annotated[
+        Path | None, typer.Option(help="Renew the table of readings in this file.", show_default=False)
+    ] = None,
 ) -> None:
     """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
     from . import report as reporting
 
     typer.echo(str(reporting.write(output, root)))
+    if notes is not None:
+        reporting.renew_notes(notes, root)
 
 
 @app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))
@@ -267,8 +278,8 @@ def print_version() -> None:
 def _expected_errors() -> tuple[type[BaseException], ...]:
     """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
     names = {
-        "claims": ["ClaimsError"],
         "export": ["ExportError"],
+        "generated": ["GeneratedError"],
         "pipeline": ["GroupError"],
         "report": ["ReportError"],
         "scene": ["SceneError"],

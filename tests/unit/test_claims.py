@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 import yaml
 
-from granular_response import claims, store
+from granular_response import claims, generated, store
 from granular_response.claims.claim import Bracket, Condition, Data, NotMeasured, at, sampled_event, verdict_of
 from granular_response.studies import theory
 
@@ -495,26 +495,18 @@ def test_stored_table_and_metrics_agree(tmp_path):
     assert (tmp_path / "claims.json").read_bytes() == again
 
 
-def test_counts_in_a_text_are_renewed(tmp_path):
+def test_the_counts_in_words():
     found = claims.document(claims.evaluate(Data({"pile_dip": pile_study()})))
-    text = f"before\n\n{claims.BEGIN}\nOf 7 claims of the paper: 7 reproduced.\n{claims.END}\n\nafter\n"
-    expected = f"Of {len(IDS)} claims of the paper: 3 reproduced, {len(IDS) - 3} not measured."
-    path = tmp_path / "README.md"
-    path.write_text(text)
-    claims.renew(path, found)
-    assert path.read_text() == f"before\n\n{claims.BEGIN}\n{expected}\n{claims.END}\n\nafter\n"
-    path.write_text("nothing to renew")
-    with pytest.raises(claims.ClaimsError, match=r"README\.md: the lines"):
-        claims.renew(path, found)
+    assert claims.sentence(found) == f"Of {len(IDS)} claims of the paper: 3 reproduced, {len(IDS) - 3} not measured."
 
 
 def test_the_readme_quotes_the_stored_table():
     stored = ROOT / "figures" / "claims.json"
-    text = (ROOT / "README.md").read_text()
-    assert text.count(claims.BEGIN) == text.count(claims.END) == 1
     if not stored.exists():
         pytest.skip("figures/claims.json is not there yet: dvc repro claims")
-    assert claims.quote(text, json.loads(stored.read_text())) == text, "granular-response claims --readme README.md"
+    text = (ROOT / "README.md").read_text()
+    counts = claims.sentence(json.loads(stored.read_text()))
+    assert generated.replace(text, claims.BLOCK, counts) == text, "granular-response claims --readme README.md"
 
 
 def test_the_stages_read_every_group_of_the_pipeline():

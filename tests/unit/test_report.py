@@ -7,18 +7,21 @@ import re
 import shutil
 import subprocess
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 from xarray import Dataset
 
-from granular_response import claims, report, store
+from granular_response import claims, generated, report, store
 from granular_response.claims.claim import Data
-from granular_response.report import benchmarks, explorer, pictures
+from granular_response.report import benchmarks, explorer, pictures, readings
 from granular_response.result import variable
+from granular_response.studies import sensitivity
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))), None)
+ROOT = Path(__file__).parents[2]
 FORCES = (0.0, 1.0, 4.0, 90.0)
 
 
@@ -70,7 +73,18 @@ def sensitivity_study():
             "largest_difference": variable(("variant",), np.array([0.0, 8e-6]), "difference"),
             "text": variable(("variant",), ["as it is", "time step <halved>"], "what is changed"),
         },
-        {"variant": variable(("variant",), ["reference", "time_step_halved"], "name")},
+        {"variant": variable(("variant",), ["reference", "of_its_own"], "name")},
+    )
+
+
+def readings_study(differences, **more):
+    """A sensitivity study with a step for each reading, in another order than the table's."""
+    names = ["reference", *reversed(list(readings.READINGS))]
+    columns = {"largest_difference": np.array([0.0, *differences]), **more}
+    return Dataset(
+        {name: variable(("variant",), values, name) for name, values in columns.items()}
+        | {"text": variable(("variant",), [f"words of {name}" for name in names], "what is changed")},
+        {"variant": variable(("variant",), names, "name")},
     )
 
 
@@ -154,6 +168,55 @@ def test_every_figure_of_the_paper_has_a_place_in_order(page):
 
 def test_texts_from_data_cannot_become_markup(page):
     assert "time step &lt;halved&gt;" in page and "<halved>" not in page
+
+
+def test_readings_stand_in_their_own_order_with_a_column_for_each_slab():
+    count = len(readings.READINGS)
+    small = readings_study(np.arange(1, count + 1) * 1e-3)
+    large = readings_study(np.arange(1, count + 1) * 1e-12).isel(variant=slice(0, -1))
+    found = readings.table({"mu_0.2": small, "mu_1": large, "another": Dataset()})
+    assert found.slabs == ("µ = 0.2", "µ = 1")
+    assert [row.reading for row in found.rows] == list(readings.READINGS.values())
+    assert found.rows[0].differences == ("1.2e-2", "")
+    assert found.rows[-1].differences == ("1.0e-3", "1.0e-12")
+
+
+def test_a_variant_without_words_is_shown_with_those_of_the_study():
+    (row,) = readings.table({"mu_0.2": sensitivity_study()}).rows
+    assert row.reading.question == "time step <halved>" and row.differences == ("8.0e-6",)
+
+
+def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
+    notes = tmp_path / "notes.md"
+    notes.write_text("By hand.\n<!-- readings: begin -->\n<!-- readings: end -->\nBy hand too.\n")
+    count = len(readings.READINGS)
+    study = readings_study(np.arange(1, count + 1) * 1e-3, response_sum=np.linspace(1.0, 0.9, count + 1))
+    store.write(tmp_path / "data" / "sensitivity.nc", {"mu_0.2": study})
+    report.renew_notes(notes, tmp_path)
+    text = notes.read_text()
+    assert text.startswith("By hand.\n<!-- readings: begin -->\n| reading | choice |")
+    assert text.endswith("<!-- readings: end -->\nBy hand too.\n")
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert len(rows) == count + 2 and {row.count("|") for row in rows} == {5}
+    assert "| how gravity comes | at once | grows over 100 sqrt(R/g) | 1.2e-2 |" in rows
+    place = 1 + list(reversed(list(readings.READINGS))).index("stop_1e-9")
+    assert f"stopped at 1e-9 per disk: {study['response_sum'].values[place]:.4f} (µ = 0.2)" in text
+    assert "literal rule:" not in text  # its kinetic energy is not stored here
+    report.renew_notes(notes, tmp_path)
+    assert notes.read_text() == text
+
+
+def test_the_notes_hold_the_stored_sensitivities():
+    stored = ROOT / "data" / "sensitivity.nc"
+    if not stored.exists():
+        pytest.skip("data/sensitivity.nc is not there yet: dvc repro simulate@sensitivity")
+    text = (ROOT / "docs" / "reproduction-notes.md").read_text()
+    fresh = generated.replace(text, readings.BLOCK, readings.markdown(store.read(stored)))
+    assert fresh == text, "granular-response report --notes docs/reproduction-notes.md"
+
+
+def test_every_reading_of_the_table_is_a_variant_of_the_study():
+    assert set(readings.READINGS) == {v.name for v in sensitivity.variants()} - {"reference"} | {"literal_friction"}
 
 
 def test_the_same_files_give_the_same_bytes(root, tmp_path):

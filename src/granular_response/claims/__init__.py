@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from granular_response import atomic, store
+from granular_response import atomic, generated, store
 
 from . import disorder, fields, friction, frictionless, numerics
 from .claim import VERDICTS, Claim, Data, Entry, Finding, NotMeasured, Verdict, judge
@@ -40,17 +40,13 @@ VERBS: dict[Verdict, str] = {
     "not measured": "not measured",
 }
 
-#: Between these lines the README quotes the counts.
-BEGIN, END = "<!-- claims: begin -->", "<!-- claims: end -->"
+#: Name of the generated lines in the README.
+BLOCK = "claims"
 
 __all__ = [
-    "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "ClaimsError", "Data", "Entry", "Finding", "NotMeasured",
-    "Verdict", "collect", "counts", "document", "evaluate", "judge", "quote", "renew", "sentence", "write",
+    "BLOCK", "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "Data", "Entry", "Finding", "NotMeasured",
+    "Verdict", "collect", "counts", "document", "evaluate", "judge", "renew", "sentence", "write",
 ]  # fmt: skip
-
-
-class ClaimsError(Exception):
-    """A file that cannot be read or renewed. The message is one line."""
 
 
 def collect(folder: str | os.PathLike[str] = "data") -> Data:
@@ -137,21 +133,5 @@ def sentence(found: dict[str, Any]) -> str:
 
 
 def renew(readme: str | os.PathLike[str], found: dict[str, Any]) -> None:
-    """Renew the counts that a file quotes. Raises ClaimsError if it cannot be read or has no place for them."""
-    path = Path(readme)
-    try:
-        text = quote(path.read_text(encoding="utf-8"), found)
-    except (OSError, ValueError) as error:
-        raise ClaimsError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
-    atomic.write_bytes(path, text.encode())
-
-
-def quote(text: str, found: dict[str, Any]) -> str:
-    """``text`` with the counts between its two marker lines renewed.
-
-    Raises ValueError if the markers are not there, once each and in order.
-    """
-    if text.count(BEGIN) != 1 or text.count(END) != 1 or text.index(BEGIN) > text.index(END):
-        raise ValueError(f"the lines {BEGIN} and {END} must be there once, in this order")
-    before, rest = text.split(BEGIN)
-    return f"{before}{BEGIN}\n{sentence(found)}\n{END}{rest.split(END)[1]}"
+    """Renew the counts that a file quotes. Raises GeneratedError if it cannot be read or has no place for them."""
+    generated.renew(readme, BLOCK, sentence(found))

@@ -75,7 +75,7 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))
     axes.annotate(
-        "to the slab with the other floor",
+        "to the other floor's slab",
         (layers[0], other),
         (0, -4),
         textcoords="offset points",

@@ -14,7 +14,7 @@ from typing import Any
 
 import jinja2
 
-from granular_response import __version__, atomic, store
+from granular_response import __version__, atomic, generated, store
 
 from . import benchmarks, explorer, pictures, readings
 
@@ -24,7 +24,7 @@ OUTPUT = Path("figures") / "report.html"
 #: Figure group whose states the slider shows, and the one whose table the readings come from.
 EXPLORED, SENSITIVITY = "friction_linear_range", "sensitivity"
 
-__all__ = ["OUTPUT", "ReportError", "page", "write"]
+__all__ = ["OUTPUT", "ReportError", "page", "renew_notes", "write"]
 
 
 class ReportError(Exception):
@@ -50,6 +50,20 @@ def write(output: str | os.PathLike[str] = OUTPUT, root: str | os.PathLike[str] 
     return target
 
 
+def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the table of readings in ``notes`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    granular_response.generated.GeneratedError
+        If the file cannot be read or has no place for the table.
+    granular_response.store.StoreError
+        If the dataset is missing or cannot be read.
+    """
+    datasets = store.read(Path(root) / "data" / f"{SENSITIVITY}.nc")
+    generated.renew(notes, readings.BLOCK, readings.markdown(datasets))
+
+
 def page(root: Path) -> str:
     """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing."""
     claims = _claims(root / "figures" / "claims.json")
@@ -57,7 +71,7 @@ def page(root: Path) -> str:
     data = root / "data"
     explored, sensitivity = (data / f"{group}.nc" for group in (EXPLORED, SENSITIVITY))
     states = explorer.payload(store.read(explored)) if explored.exists() else None
-    rows = readings.table(store.read(sensitivity)) if sensitivity.exists() else []
+    tried = readings.table(store.read(sensitivity)) if sensitivity.exists() else None
     groups = sorted({picture.group for picture in shown.all()} | {row["group"] for row in claims["table"]})
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
@@ -73,7 +87,7 @@ def page(root: Path) -> str:
             states=_json_in_html(states) if states else None,
             explored=states is not None
             and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
-            readings=rows,
+            readings=tried,
             benchmarks=benchmarks.tables(root / "benchmarks"),
             groups=groups,
             style=_resource("style.css"),

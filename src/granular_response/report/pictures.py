@@ -23,10 +23,11 @@ NUMBER_OF_FIGURES = 24
 CAPTIONS: dict[int, str] = {
     1: "Two theories of the pressure on the floor below a force. Elliptic: an elastic slab on a rough or a smooth "
     "floor, and a half plane at the same depth. Hyperbolic: two rays that spread diffusively, for two depths. "
-    "Not in the paper: simulated responses to a force of 0.01 mg and the elastic slab with their moduli and floor, and "
-    "the largest distance of the two as the number of layers grows (8 wide: eight disks of a row for each layer; slow: "
-    "gravity grows slowly). Two things keep packings from it: beside smooth walls gravity opens contacts, which is felt "
-    "in a narrow slab of any depth, and a sudden fall on a rough floor can open a row in the middle, as with 15 layers.",
+    "Not in the paper: simulated responses to a force of 0.01 mg beside the elastic slab with their moduli and floor, "
+    "and the largest distance of the two as the number of layers grows (8 wide: eight disks of a row for each layer; "
+    "slow: gravity grows slowly). Two things keep packings from it: beside smooth walls gravity opens contacts, which "
+    "is felt in a narrow slab of any depth, and a sudden fall on a rough floor can open a row in the middle, as with "
+    "15 layers.",
     2: "Contact forces in a disordered packing, polydispersity 0.25: under gravity, and what a force on top adds. "
     "Marks on the disks show how far they have turned.",
     3: "Ordered slab without friction: floor response per applied force. One peak splits into two as the force grows.",
@@ -51,12 +52,8 @@ CAPTIONS: dict[int, str] = {
     21: "Mean floor response of disordered slabs, with its standard error, for several polydispersities, coefficients "
     "of friction and forces.",
     22: "Crossover force from one peak to two against friction, for each polydispersity, with intervals.",
-    23: "Two loads of 0.2 mg on a slightly disordered slab: the response to both and the sum of the responses to each, "
-    "disk by disk, for several distances d.",
-    24: "The same with 1 mg. Then the difference of the two, root mean square relative to both: against the force, for "
-    "the floor and for all contacts, and against depth. Means of the realizations with standard errors. Dotted: change "
-    "of the contact forces per force under a single load, relative to the smallest. Shaded: forces at which the linear "
-    "range of half the realizations ends; broken line: its median.",
+    23: "Two small loads: the response to both against the sum of the responses to each, disk by disk.",
+    24: "The same with larger loads.",
 }
 
 _NUMBER = re.compile(r"fig(\d+)")

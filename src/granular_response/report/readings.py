@@ -1,20 +1,127 @@
-"""How much each reading of the paper matters: the stored sensitivities as rows of a table."""
+"""How much each reading of the paper matters: the stored sensitivities as a table, for the page and for the notes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import xarray as xr
 
+#: Name of the generated lines in the notes.
+BLOCK = "readings"
 
-def table(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
-    """Rows ``case``, ``text`` and ``difference`` from every dataset with variants and their largest difference."""
-    rows = []
-    for case, dataset in datasets.items():
-        if not {"text", "largest_difference"} <= set(dataset.variables):
-            continue
-        texts, values = dataset["text"].values, dataset["largest_difference"].values
-        for name, text, value in zip(dataset["variant"].values, texts, values, strict=True):
-            if str(name) != "reference":
-                rows.append({"case": case.replace("_", " "), "text": str(text), "difference": f"{float(value):.1e}"})
-    return rows
+
+@dataclass(frozen=True)
+class Reading:
+    """Where the paper leaves a choice: what is chosen, and one of the other options."""
+
+    question: str
+    choice: str
+    option: str
+
+
+#: By the variant that tries the other option; the order is that of the table.
+READINGS: Mapping[str, Reading] = {
+    "slow_gravity": Reading("how gravity comes", "at once", "grows over 100 sqrt(R/g)"),
+    "sudden_load": Reading("how the load comes", "ramp of 20 sqrt(R/g)", "at once"),
+    "ramp_80": Reading("how the load comes", "ramp of 20 sqrt(R/g)", "ramp of 80 sqrt(R/g)"),
+    "path": Reading("how the load comes", "ramp of 20 sqrt(R/g)", "quasi-static path"),
+    "no_static_finish": Reading("when to stop", "1e-13 per disk, then Newton", "1e-13 alone"),
+    "stop_1e-9": Reading("when to stop", "1e-13 per disk, then Newton", "1e-9 alone"),
+    "damping_halved": Reading("dashpots", "sqrt(k)", "half of it"),
+    "no_tensile_dashpot": Reading("pull of an opening contact", "allowed, as in eq. (2)", "cut off at zero"),
+    "literal_friction": Reading("Coulomb limit under load", "force cut, spring follows", "literal"),
+    "time_step_halved": Reading("time step", "5e-4 sqrt(R/g)", "2.5e-4 sqrt(R/g)"),
+    "verlet": Reading("integrator", "Beeman", "velocity Verlet"),
+    "gear": Reading("integrator", "Beeman", "Gear, step 2.4e-4 sqrt(R/g)"),
+}
+
+_NEEDED = {"text", "largest_difference"}
+
+
+@dataclass(frozen=True)
+class Row:
+    """A reading with the largest difference of the floor response in each slab, empty where it was not tried."""
+
+    reading: Reading
+    differences: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """All readings that were tried; ``slabs`` heads the columns of differences."""
+
+    slabs: tuple[str, ...]
+    rows: tuple[Row, ...]
+
+
+def table(datasets: Mapping[str, xr.Dataset]) -> Table:
+    """The readings that the datasets of the study ``sensitivity`` hold.
+
+    A variant that has no words here is shown with those of the study.
+    """
+    found = {name: data for name, data in datasets.items() if set(data.variables) >= _NEEDED}
+    values = {name: dict(_column(data, "largest_difference")) for name, data in found.items()}
+    words = {variant: str(text) for data in found.values() for variant, text in _column(data, "text")}
+    variants = [v for v in READINGS if v in words] + [v for v in words if v not in READINGS]
+    return Table(
+        slabs=tuple(name.replace("mu_", "µ = ") for name in found),
+        rows=tuple(
+            Row(
+                READINGS.get(variant, Reading(words[variant], "", "")),
+                tuple(_short(column[variant]) if variant in column else "" for column in values.values()),
+            )
+            for variant in variants
+        ),
+    )
+
+
+def _short(value: float) -> str:
+    """Two digits, without the zero that Python puts into small exponents."""
+    digits, exponent = f"{value:.1e}".split("e")
+    return f"{digits}e{int(exponent)}"
+
+
+def _column(data: xr.Dataset, name: str) -> list[tuple[str, Any]]:
+    """The values of a variable by variant, without the reference."""
+    pairs = zip(data["variant"].values.tolist(), data[name].values.tolist(), strict=True)
+    return [(str(variant), value) for variant, value in pairs if str(variant) != "reference"]
+
+
+def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
+    """The table in Markdown, and below it what else the notes quote of the study. Equal data give equal text."""
+    shown = table(datasets)
+    heads = ["reading", "choice", "other option", *(f"change, {slab}" for slab in shown.slabs)]
+    lines = [_line(heads), "|---" * len(heads) + "|"]
+    before = Reading("", "", "")
+    for row in shown.rows:
+        reading = row.reading
+        same = reading.question == before.question
+        lines.append(
+            _line(["" if same else reading.question, "" if same else reading.choice, reading.option, *row.differences])
+        )
+        before = reading
+    quoted = [
+        f"* {what}: {', '.join(values)} ({', '.join(shown.slabs)})"
+        for variant, name, form, what in _QUOTED
+        if (values := _values(datasets, variant, name, form))
+    ]
+    return "\n".join(lines + ([""] if quoted else []) + quoted)
+
+
+#: What else the notes speak of: variant, variable, how it is written, in words.
+_QUOTED: tuple[tuple[str, str, Callable[[float], str], str], ...] = (
+    ("stop_1e-9", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-9 per disk"),
+    ("no_static_finish", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-13 per disk"),
+    ("literal_friction", "kinetic_energy", _short, "Kinetic energy per disk at the end of the literal rule"),
+)
+
+
+def _values(datasets: Mapping[str, xr.Dataset], variant: str, name: str, form: Callable[[float], str]) -> list[str]:
+    columns = [dict(_column(data, name)) for data in datasets.values() if set(data.variables) >= {name, *_NEEDED}]
+    return [form(column[variant]) for column in columns if variant in column]
+
+
+def _line(cells: list[str]) -> str:
+    return "|" + "".join(f" {cell} |" if cell else " |" for cell in cells)
