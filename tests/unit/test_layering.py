@@ -31,6 +31,7 @@ ALLOWED = {
     "terminal": {"rich"},
     "atomic": set(),
     "floating_point": set(),
+    "generated": set(),
     "hdf5_image": set(),
     "claims": {"numpy", "xarray"},
     "report": {"PIL", "jinja2", "numpy", "xarray"},

@@ -13,11 +13,8 @@ import os
 import pickle
 import shutil
 from functools import cache
+from importlib import metadata
 from pathlib import Path
-
-import numba
-import numpy as np
-import scipy
 
 from granular_response import atomic
 from granular_response import solve as solvers
@@ -89,7 +86,7 @@ def _sources() -> str:
     """Changes with the code that settles a packing."""
     home = Path(solvers.__file__).parent.parent
     files = sorted(path for part in ("core", "scene", "solve") for path in (home / part).rglob("*.py"))
-    versions = (numba.__version__, np.__version__, scipy.__version__)
+    versions = [metadata.version(package) for package in ("numba", "numpy", "scipy")]
     return digest({path.relative_to(home).as_posix(): path.read_bytes() for path in files}, versions)
 
 
