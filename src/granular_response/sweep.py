@@ -238,14 +238,15 @@ def _over_dask(function: Callable, items: Sequence[Any], todo: Sequence[int], ad
     with client:
         futures = {client.submit(function, items[index], pure=False): index for index in todo}
         try:
-            for future in as_completed(futures, loop=client.loop):
-                index = futures[future]
+            for future in as_completed(list(futures), loop=client.loop):
+                index = futures.pop(future)
                 try:
                     result = future.result()  # waits once more if it was lost with its worker
                 except KilledWorker:
                     raise _failed(index, items, "killed its worker process several times") from None
                 except Exception as error:
                     raise _raised(index, items, error) from error
+                future.release()  # what the cluster still had to hold it would compute again after a death
                 yield index, result
         finally:
             client.cancel(list(futures))

@@ -251,10 +251,12 @@ class TestDask:
     def test_a_killed_worker_loses_only_what_was_in_flight(self, cluster, tmp_path):
         marks = tmp_path / "marks"
         marks.mkdir()
-        task = functools.partial(note, folder=marks, die_at=5)
+        task = functools.partial(note, folder=marks, die_at=12)
         result = map_tasks(task, range(16), scheduler=cluster.scheduler_address, checkpoint=tmp_path / "kept")
         assert result == [item * item for item in range(16)]
-        assert len(starts(marks, 5)) == 2
+        again = [item for item in range(16) if len(starts(marks, item)) > 1]
+        assert 12 in again
+        assert len(again) <= 3  # with what it had not yet handed over; not all that it ever finished
         assert len(list((tmp_path / "kept").iterdir())) == 16
 
     def test_a_failing_task_is_named(self, cluster):

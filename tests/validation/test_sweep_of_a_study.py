@@ -1,0 +1,155 @@
+"""A study gives the same file wherever its sweeps run, and goes on where it was stopped.
+
+Everything through the command line's own path, on a reduced ensemble, with a real Dask cluster on this machine.
+"""
+
+import contextlib
+import io
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import yaml
+
+from granular_response import cli, store, sweep
+from granular_response.pipeline import simulation
+from granular_response.studies import settled
+
+GROUP = "superposition"
+SECTIONS = {
+    "common": {"method": "auto"},
+    GROUP: {
+        "scene": {
+            "packing.layers": 5,
+            "packing.disks_per_row": 13,
+            "packing.polydispersity": 0.1,
+            "packing.lattice_constant": "touching-largest",
+            "contact.friction": 0.2,
+            "protocol.integrator": "verlet",
+            "protocol.time_step": "auto",
+            "protocol.ramp_time": 2.0,
+            "protocol.stop_kinetic_energy": 1e-9,
+        },
+        "realizations": 4,
+        "pair_realizations": 3,
+        "offsets": [1, 3],
+        "forces": [0.5, 1.0],
+        "single_forces": [0.5, 1.0],
+        "width": 3.0,
+        "tolerance": 0.05,
+    },
+}
+TASKS = 4 + 4 + 3 * 2  # rest states, single loads, pairs of loads
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty folder with the parameter file, from which commands start."""
+    (tmp_path / "params.yaml").write_text(yaml.safe_dump(SECTIONS))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    """The file that one process writes."""
+    folder = tmp_path_factory.mktemp("expected")
+    (folder / "params.yaml").write_text(yaml.safe_dump(SECTIONS))
+    path = simulation.simulate(GROUP, folder / "one.nc", parameter_file=folder / "params.yaml", workers=1)
+    assert store.read(path)["errors"]["floor_error"].notnull().all()
+    return path.read_bytes()
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """A scheduler and two worker processes, each started again when it dies."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50, host="127.0.0.1"
+    ) as cluster:
+        yield cluster
+
+
+@pytest.fixture
+def only_dask(monkeypatch):
+    """No task runs here or in a process of ours."""
+
+    def refuse(*_):
+        raise AssertionError("not on the cluster")
+
+    monkeypatch.setattr(sweep, "_here", refuse)
+    monkeypatch.setattr(sweep, "_over_processes", refuse)
+
+
+def command(monkeypatch, *arguments: str) -> bytes:
+    """The file that the command wrote."""
+    monkeypatch.setattr(sys, "argv", ["granular-response", "simulate", GROUP, "-o", "here.nc", *arguments])
+    with contextlib.redirect_stdout(io.StringIO()), pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 0
+    return Path("here.nc").read_bytes()
+
+
+def test_two_local_workers_write_the_same_bytes(folder, expected, monkeypatch) -> None:
+    assert command(monkeypatch, "--workers", "2") == expected
+
+
+def test_a_cluster_named_on_the_command_line_writes_the_same_bytes(
+    folder, expected, cluster, only_dask, monkeypatch
+) -> None:
+    assert command(monkeypatch, "--scheduler", cluster.scheduler_address) == expected
+
+
+def test_a_cluster_named_by_the_environment_writes_the_same_bytes(
+    folder, expected, cluster, only_dask, monkeypatch
+) -> None:
+    monkeypatch.setenv(sweep.SCHEDULER_VARIABLE, cluster.scheduler_address)
+    assert command(monkeypatch) == expected
+
+
+def test_a_dask_worker_killed_in_mid_sweep_changes_nothing(folder, expected, cluster, only_dask) -> None:
+    from distributed import Client
+
+    def kill_one(done, total, what="") -> None:
+        if what == "pairs of loads" and done == 2 and not killed:
+            with Client(cluster.scheduler_address, set_as_default=False) as client:
+                pids = client.run(os.getpid)
+            killed.append(next(iter(pids.values())))
+            os.kill(killed[0], signal.SIGKILL)
+
+    killed: list[int] = []
+    path = simulation.simulate(GROUP, folder / "here.nc", scheduler=cluster.scheduler_address, progress=kill_one)
+    assert killed
+    assert path.read_bytes() == expected
+
+
+def test_a_killed_run_continues_from_its_checkpoint(folder, expected) -> None:
+    """SIGKILL, as from a batch system out of patience: what is finished is on disk."""
+    kept = folder / ".here.checkpoint"
+    arguments = ["simulate", GROUP, "-o", "here.nc", "--workers", "1"]
+    environment = {**os.environ, settled.FOLDER_VARIABLE: ""}
+    run = subprocess.Popen(
+        [sys.executable, "-m", "granular_response", *arguments], env=environment, stdout=subprocess.DEVNULL
+    )
+    deadline = time.monotonic() + 60
+    while len(list(kept.glob("*.pickle"))) < 6 and run.poll() is None:
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    run.kill()
+    run.wait()
+    finished = len(list(kept.glob("*.pickle")))
+    assert 6 <= finished < TASKS
+    assert not (folder / "here.nc").exists()
+
+    calls = []
+    path = simulation.simulate(
+        GROUP, folder / "here.nc", workers=1, progress=lambda done, total, what="": calls.append((what, done))
+    )
+    assert path.read_bytes() == expected
+    assert not kept.exists()
+    at_start = dict(reversed(calls))  # the first call for each kind of task
+    assert sum(at_start.values()) == finished  # none of them ran again
