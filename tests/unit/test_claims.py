@@ -162,7 +162,6 @@ def numerics_study():
 
 def frictionless_study():
     forces = np.array([1.0, 2.0, 4.0])
-    slabs = np.array([15, 30])
     dims = ("slab", "force")
     # a lattice of one open column: two disks in each row, one row above the other
     rows = [8, 7, 7, 6, 6, 6, 5]
@@ -183,11 +182,15 @@ def frictionless_study():
             contact_partner=("contact", first + 1),
         ),
         "sizes": dataset(
-            {"force": forces, "layers": ("slab", slabs), "normal_stiffness": ("slab", [3000.0, 3000.0])},
-            teardrop_depth=(dims, np.array([[5.0, 9.0, 14.0], [5.0, 8.5, 13.0]])),
-            teardrop_width=(dims, np.array([[4.0, 8.0, 12.0], [4.0, 8.0, 12.0]])),
-            reaches_floor=(dims, np.array([[0, 0, 1], [0, 0, 0]])),
-            double_peaked=(dims, np.array([[0, 0, 1], [0, 0, 0]])),
+            {
+                "force": forces,
+                "layers": ("slab", [15, 30, 15, 30]),
+                "normal_stiffness": ("slab", [3000.0, 3000.0, 1e5, 1e5]),
+            },
+            teardrop_depth=(dims, np.array([[5.0, 9.0, 14.0], [5.0, 8.5, 13.0]] * 2)),
+            teardrop_width=(dims, np.array([[4.0, 8.0, 12.0], [4.0, 8.0, 12.0]] * 2)),
+            reaches_floor=(dims, np.array([[0, 0, 1], [0, 0, 0]] * 2)),
+            double_peaked=(dims, np.array([[0, 0, 1], [0, 0, 0]] * 2)),
         ),
         "stiffness": dataset(
             {"force": forces, "normal_stiffness": [500.0, 2000.0, 3000.0, 1e5]},
@@ -316,7 +319,8 @@ def test_without_data_nothing_is_measured_and_the_reason_names_what_is_missing()
 def scaled(group, name, variable, factor):
     def change(groups):
         data = groups[group][name].copy(deep=True)
-        data[variable] = data[variable] * factor
+        for each in [variable] if isinstance(variable, str) else variable:
+            data[each] = data[each] * factor
         groups[group][name] = data
 
     return change
@@ -356,6 +360,14 @@ def tilted(groups):
     groups[SLAB]["states"] = data
 
 
+def tilted_on_the_floor(groups):
+    """The same under the largest force alone, where the region has reached the lowest row."""
+    data = groups[SLAB]["states"].copy(deep=True)
+    data["position"].values[-1, :, 1] -= 4.0 * 3**0.5
+    data["position"].values[-1, 1::2, 1] += 1.2
+    groups[SLAB]["states"] = data
+
+
 FRICTION, SLAB, NAN = "friction_linear_range", "frictionless_crossover", float("nan")
 
 #: For every claim a change of its data, and the verdict that must follow.
@@ -368,7 +380,10 @@ PERTURBED = [
     ("F4", moved(SLAB, "crossover", 0.0, 50.0, NAN), "not reproduced"),
     ("F5", put(SLAB, "response", "teardrop_depth", [5.0, 1.0, 12.0]), "differs"),
     ("F5", tilted, "not reproduced"),
-    ("F6", scaled(SLAB, "sizes", "teardrop_depth", [[1.0], [0.4]]), "differs"),
+    ("F5", tilted_on_the_floor, "differs"),
+    ("F6", scaled(SLAB, "sizes", "teardrop_depth", [[1.0], [0.4], [1.0], [0.4]]), "differs"),
+    ("F6", scaled(SLAB, "sizes", ("teardrop_depth", "teardrop_width"), [[1.0], [0.1], [1.0], [1.0]]), "differs"),
+    ("F6", scaled(SLAB, "sizes", ("teardrop_depth", "teardrop_width"), [[1.0], [0.1], [1.0], [0.1]]), "not reproduced"),
     ("F7", put(SLAB, "sizes", "double_peaked", 1), "not reproduced"),
     ("F8", put(SLAB, "stiffness", "response_change", [0.02, 0.02, 0.2]), "differs"),
     ("F8", put(SLAB, "stiffness", "response_change", 0.2), "not reproduced"),

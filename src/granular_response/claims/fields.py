@@ -162,18 +162,18 @@ def _dip(data: Data, case: str) -> float:
 def dip_without_friction(data: Data) -> Finding:
     dip = _dip(data, "frictionless")
     return Finding(
-        f"{dip:.1%} of the largest vertical stress",
+        f"{dip:.2%} of the largest vertical stress",
         dip,
-        [Condition(f"a dip of at least {VISIBLE:.0%} of the largest stress", dip >= VISIBLE, f"{dip:.1%}")],
+        [Condition(f"a dip of at least {VISIBLE:.0%} of the largest stress", dip >= VISIBLE, f"{dip:.2%}")],
     )
 
 
 def no_dip_with_friction(data: Data) -> Finding:
     dip = _dip(data, "frictional")
     return Finding(
-        f"{dip:.1%} of the largest vertical stress",
+        f"{dip:.2%} of the largest vertical stress",
         dip,
-        [Condition(f"no dip, or one below {VISIBLE:.0%} of the largest stress", dip < VISIBLE, f"{dip:.1%}")],
+        [Condition(f"no dip, or one below {VISIBLE:.0%} of the largest stress", dip < VISIBLE, f"{dip:.2%}")],
     )
 
 
