@@ -1,7 +1,10 @@
 """Time steps that are too long are refused, and the safe one is safe."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
-from small_scenes import scene
+from small_scenes import free_disks, scene
 
 from granular_response.solve import Dynamics, DynamicsError, Problem, Stop, UnstableTimeStep, relax, solve_scene
 from granular_response.solve.timestep import oscillator_limit, resolve_time_step, stability_limit
@@ -39,3 +42,44 @@ def test_undamped_limit_of_verlet_is_two_over_the_frequency():
 def test_softer_disks_allow_longer_steps():
     soft = stability_limit(Problem.from_scene(scene(contact__normal_stiffness=300.0)))
     assert soft == pytest.approx(10**0.5 * stability_limit(Problem.from_scene(scene())), rel=1e-3)
+
+
+@pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
+def test_a_spring_advanced_by_the_predicted_velocity_allows_shorter_steps_than_one_on_the_position(integrator):
+    """Without much damping; with it the dashpot decides."""
+    stiffness, light, strong = 1.0, 0.05, 5.0
+    assert oscillator_limit(integrator, 0.0, light, stiffness) < 0.85 * oscillator_limit(integrator, stiffness, light)
+    assert oscillator_limit(integrator, 0.0, strong, stiffness) == pytest.approx(
+        oscillator_limit(integrator, stiffness, strong), rel=0.05
+    )
+
+
+def twisted(integrator: str, part: float) -> float:
+    """Energy of a disk whose contact with the floor sticks while it twists there, per its energy at the start."""
+    problem, state = free_disks(
+        [[5.0, 1.0]], contact__friction=0.0, wall__friction=1e6, wall__damping_ratio=0.01, wall__stiffness_ratio=1.0
+    )
+    down = state.position - [[0.0, 1.0 / 6000.0]]
+    state = replace(state, position=down, velocity=np.array([[1e-6, 0.0]]), angular_velocity=np.array([2e-6]))
+    step = part * oscillator_limit(integrator, 0.0, 3 * problem.wall_law[3], 3 * problem.wall_law[2])
+    dynamics = Dynamics(problem, state, integrator, step)
+    dynamics.set_ramps()
+    before = dynamics.kinetic_energy()
+    dynamics.advance(60)
+    return dynamics.kinetic_energy() / before
+
+
+@pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
+def test_the_limit_of_a_tangential_spring_is_the_kernels_own(integrator):
+    """Rolling translates and turns the disk: (1 + 2) k_T over the mass is the rate of that one motion."""
+    assert twisted(integrator, 0.97) < 1e-4
+    assert twisted(integrator, 1.05) > 10.0
+
+
+def test_one_small_disk_shortens_the_step():
+    positions = [[10.0, 1.0], [12.0, 1.0], [11.0, 2.8]]
+    equal, _ = free_disks(positions)
+    small, _ = free_disks(positions, radius=[1.3, 1.3, 0.4])
+    assert stability_limit(small) < 0.6 * stability_limit(equal)
+    slab = Problem.from_scene(scene(packing__polydispersity=0.25))
+    assert stability_limit(slab) == stability_limit(Problem.from_scene(scene()))

@@ -1,10 +1,22 @@
 """The largest time step that is stable for a scene.
 
-Forces are evaluated once a step with a predicted velocity, so dashpots limit the step more than springs do. The
-stiffest motions of a dense packing are (a) a disk against its six neighbours and (b) all disks turning the same
-way, when every contact slips at twice the rim's speed; with a disk's small moment of inertia the second decides
-in frictional scenes: its damping rate is ``24 nu_T`` for equal disks. For each motion the limit of an
-integrator is found from its amplification matrix.
+Forces are evaluated once a step with a predicted velocity, so dashpots limit the step more than springs do; and the
+tangential springs are advanced by that predicted velocity, which without much damping costs up to half of the step
+that the same spring on a position would allow. An integrator's limit for one motion follows from its amplification
+matrix, which has a spring of either kind and the dashpot. The motions that are looked at, for disks of mass 1 with
+moment of inertia 1/2 (radius 1), so that a tangential spring of stiffness k_T turns a disk at the rate 2 k_T:
+
+* *translation* of disks of a dense packing against their six neighbours, which move the opposite way: twice
+  ``sum n n = 3`` gives ``6 k_N`` and ``6 k_T``;
+* *rotation* of all disks the same way, when every contact slips at twice the rim's speed: ``6 · 2 · 2 k_T = 24 k_T``.
+  It decides in most scenes with friction;
+* *a disk on the floor* with four neighbours, *a disk in a corner* with two: the wall's springs couple translation and
+  rotation, ``slip = u_x - sqrt(2) w`` for the floor and ``u_z - sqrt(2) w`` for a side wall, ``w`` scaled with the
+  square root of the moment of inertia;
+* *the smallest disk* alone among heavier ones of radius 1, as many as fit around it.
+
+The study ``stability`` measures the limit of kicked packings against this one: they settle at 0.95 of it, and cycle
+or blow up between 1.05 and 1.5 times the limit.
 """
 
 from __future__ import annotations
@@ -14,31 +26,33 @@ from functools import lru_cache
 import numpy as np
 
 from ..core.integrators import INTEGRATORS
-from .problem import Problem
+from .problem import Law, Problem
 
 #: Part of the limit that ``time_step: auto`` takes.
 SAFETY = 0.6
-#: Contacts around a disk of a dense packing.
-NEIGHBOURS = 6
+#: Contacts around a disk of a dense packing, on the floor of one, and in its corner.
+NEIGHBOURS, ON_FLOOR, IN_CORNER = 6, 4, 2
 
 
 class UnstableTimeStep(ValueError):
     """The time step of a scene is beyond its stability limit."""
 
 
-@lru_cache(maxsize=256)
-def oscillator_limit(integrator: str, stiffness: float, damping: float) -> float:
-    """Largest stable step for ``x'' = -stiffness x - damping x'``.
+@lru_cache(maxsize=1024)
+def oscillator_limit(integrator: str, stiffness: float, damping: float, spring: float = 0.0) -> float:
+    """Largest stable step for ``x'' = -stiffness x - spring s - damping x'``.
 
-    The step grows until the largest eigenvalue of the amplification matrix exceeds 1 by more than 1e-4 (Gear's
-    corrector is weakly unstable without damping, far below what matters in a packing).
+    ``s`` follows ``x`` as tangential springs do, advanced by the predicted velocity. The step grows until the largest
+    eigenvalue of the amplification matrix exceeds 1 by more than 1e-4 (Gear's corrector is weakly unstable without
+    damping, far below what matters in a packing).
     """
     matrix = INTEGRATORS[integrator].amplification
 
     def stable(dt: float) -> bool:
-        return bool(np.abs(np.linalg.eigvals(matrix(stiffness * dt * dt, damping * dt))).max() <= 1.0 + 1e-4)
+        step = matrix(stiffness * dt * dt, damping * dt, spring * dt * dt)
+        return bool(np.abs(np.linalg.eigvals(step)).max() <= 1.0 + 1e-4)
 
-    step = 1e-3 / max(np.sqrt(stiffness), damping, 1e-300)
+    step = 1e-3 / max(np.sqrt(stiffness + spring), damping, 1e-300)
     while stable(1.1 * step) and step < 1e6:
         step *= 1.1
     unstable = 1.1 * step
@@ -48,24 +62,57 @@ def oscillator_limit(integrator: str, stiffness: float, damping: float) -> float
     return float(step)
 
 
+#: Stiffness that follows positions, stiffness of tangential springs, and damping rate, all over the mass.
+Motion = tuple[float, float, float]
+
+
+def _at_wall(pair: Law, wall: Law, neighbours: int, walls: int) -> list[Motion]:
+    """Stiffest motions of a disk at one wall or two: coordinates (x, z, rotation / sqrt(2))."""
+    kn, nun, kt, nut = pair[:4]
+    along = np.array([[1.0, 0.0, -np.sqrt(2.0)], [0.0, 1.0, -np.sqrt(2.0)]])[:walls]
+    inward = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])[:walls]
+    around = np.diag([1.0, 1.0, 0.0]) * neighbours
+    turning = np.diag([1.0, 1.0, 4.0]) * neighbours
+    direct = kn * around + wall[0] * inward.T @ inward
+    tangential = kt * turning + wall[2] * along.T @ along
+    damping = nun * around + nut * turning + wall[1] * inward.T @ inward + wall[3] * along.T @ along
+    motions: list[Motion] = []
+    for matrix in (direct + tangential, damping):
+        mode = np.linalg.eigh(matrix)[1][:, -1]
+        motions.append((float(mode @ direct @ mode), float(mode @ tangential @ mode), float(mode @ damping @ mode)))
+    return motions
+
+
+def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion]:
+    """Motions among which the one that limits the time step is; see the module.
+
+    ``smallest`` : as if all disks had the smallest mass.
+    """
+    frictionless = (0.0, 0.0)
+    pair, wall = problem.pair_law, problem.wall_law
+    pair = pair if problem.pair_friction else (*pair[:2], *frictionless, *pair[4:])
+    wall = wall if problem.wall_friction else (*wall[:2], *frictionless, *wall[4:])
+    kn, nun, kt, nut = pair[:4]
+    z = NEIGHBOURS
+    motions: list[Motion] = [(z * kn, z * kt, z * (nun + nut)), (0.0, 4 * z * kt, 4 * z * nut)]
+    motions += _at_wall(pair, wall, ON_FLOOR, 1) + _at_wall(pair, wall, IN_CORNER, 2)
+    mass = float(problem.packing.mass.min())
+    if smallest:
+        return [(direct / mass, spring / mass, damping / mass) for direct, spring, damping in motions]
+    around = np.pi / np.arcsin(1.0 / (1.0 + float(problem.packing.radius.min())))
+    half = 0.5 * around / mass
+    return [*motions, (half * kn, half * kt, half * (nun + nut)), (0.0, 4 * half * kt, 4 * half * nut)]
+
+
 def stability_limit(problem: Problem, integrator: str | None = None, *, smallest: bool = False) -> float:
     """Estimated largest stable time step in sqrt(R/g).
 
-    ``integrator`` : that of the scene unless given. ``smallest`` : for a disk of the smallest mass in place of the
-    mean one; the estimate is then on the safe side for a disordered packing.
+    ``integrator`` : that of the scene unless given. ``smallest`` : as if all disks had the mass of the smallest; the
+    estimate is then on the safe side for a disordered packing, by up to that mass.
     """
-    integrator = problem.scene.protocol.integrator if integrator is None else integrator
-    mass = problem.packing.mass.min() if smallest else 1.0
-    pair, wall = problem.pair_law, problem.wall_law
-    k, nu = max(pair[0], 0.5 * wall[0]), max(pair[1], 0.5 * wall[1])
-    kt = max(pair[2], 0.5 * wall[2]) if problem.pair_friction else 0.0
-    nut = max(pair[3], 0.5 * wall[3]) if problem.pair_friction else 0.0
-    motions = [(NEIGHBOURS * (k + kt) / mass, NEIGHBOURS * (nu + nut) / mass)]
-    if problem.pair_friction:
-        motions.append((4 * NEIGHBOURS * kt / mass, 4 * NEIGHBOURS * nut / mass))
-    elif problem.wall_friction:
-        motions.append((2 * wall[2] / mass, 2 * wall[3] / mass))
-    return min(oscillator_limit(integrator, float(w2), float(c)) for w2, c in motions)
+    name = problem.scene.protocol.integrator if integrator is None else integrator
+    motions = stiffest_motions(problem, smallest=smallest)
+    return min(oscillator_limit(name, direct, damping, spring) for direct, spring, damping in motions)
 
 
 def resolve_time_step(problem: Problem) -> float:

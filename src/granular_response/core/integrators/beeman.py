@@ -47,15 +47,17 @@ def start(q, v, history, dt):
     history[1] = history[0]
 
 
-def amplification(w2, c):
-    """(4, 4) matrix of one step of length 1 for ``x'' = -w2 x - c x'``."""
+def amplification(w2, c, spring_w2=0.0):
+    """(5, 5) matrix of one step of length 1 for ``x'' = -w2 x - spring_w2 s - c x'``, ``s' = x'`` (see ``record``)."""
 
-    def step(x, v, a, a_before):
+    def step(x, s, v, a, a_before):
+        predicted = v + (3.0 * a - a_before) / 2.0
         x = x + v + (4.0 * a - a_before) / 6.0
-        a_new = -w2 * x - c * (v + (3.0 * a - a_before) / 2.0)
-        return x, v + (2.0 * a_new + 5.0 * a - a_before) / 6.0, a_new, a
+        s = s + predicted
+        a_new = -w2 * x - spring_w2 * s - c * predicted
+        return x, s, v + (2.0 * a_new + 5.0 * a - a_before) / 6.0, a_new, a
 
-    return np.array([step(*unit) for unit in np.eye(4)]).T
+    return np.array([step(*unit) for unit in np.eye(5)]).T
 
 
 RECORD = Integrator(

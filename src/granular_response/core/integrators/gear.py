@@ -64,19 +64,21 @@ def start(q, v, history, dt):
     history[1:3] = 0.0
 
 
-def amplification(w2, c):
-    """(5, 5) matrix of one step of length 1 for ``x'' = -w2 x - c x'``."""
+def amplification(w2, c, spring_w2=0.0):
+    """(6, 6) matrix of one step of length 1 for ``x'' = -w2 x - spring_w2 s - c x'``, ``s' = x'`` (see ``record``)."""
 
-    def step(x, v, a, b, d):
+    def step(x, s, v, a, b, d):
         x = x + v + a / 2.0 + b / 6.0 + d / 24.0
         v = v + a + b / 2.0 + d / 6.0
         a = a + b + d / 2.0
         b = b + d
-        a_new = -w2 * x - c * v
+        s = s + v
+        a_new = -w2 * x - spring_w2 * s - c * v
         change = a_new - a
-        return x + 0.5 * _C0 * change, v + 0.5 * _C1 * change, a_new, b + 3.0 * _C3 * change, d + 12.0 * _C4 * change
+        x = x + 0.5 * _C0 * change
+        return x, s, v + 0.5 * _C1 * change, a_new, b + 3.0 * _C3 * change, d + 12.0 * _C4 * change
 
-    return np.array([step(*unit) for unit in np.eye(5)]).T
+    return np.array([step(*unit) for unit in np.eye(6)]).T
 
 
 RECORD = Integrator(

@@ -18,8 +18,10 @@ class Integrator:
 
     ``rows`` is the number of history rows, ``order`` the global order of its positions on a smooth problem once
     its history is known (Gear's start without higher derivatives costs it two orders),
-    ``start(q, v, history, dt)`` fills the history from its row 0. ``amplification(w2, c)`` is the matrix of one step
-    of length 1 for the damped oscillator ``x'' = -w2 x - c x'``: the step is stable while no eigenvalue exceeds 1.
+    ``start(q, v, history, dt)`` fills the history from its row 0. ``amplification(w2, c, spring_w2)`` is the matrix
+    of one step of length 1 for a damped oscillator with two springs, ``x'' = -w2 x - spring_w2 s - c x'``: the first
+    follows the position, as overlaps do, and ``s`` is advanced by the predicted velocity, as the tangential springs
+    are. The step is stable while no eigenvalue exceeds 1.
     """
 
     name: str

@@ -44,15 +44,17 @@ def start(q, v, history, dt):
     """Needs nothing beyond the present acceleration."""
 
 
-def amplification(w2, c):
-    """(3, 3) matrix of one step of length 1 for ``x'' = -w2 x - c x'``."""
+def amplification(w2, c, spring_w2=0.0):
+    """(4, 4) matrix of one step of length 1 for ``x'' = -w2 x - spring_w2 s - c x'``, ``s' = x'`` (see ``record``)."""
 
-    def step(x, v, a):
+    def step(x, s, v, a):
+        predicted = v + a
         x = x + v + a / 2.0
-        a_new = -w2 * x - c * (v + a)
-        return x, v + (a + a_new) / 2.0, a_new
+        s = s + predicted
+        a_new = -w2 * x - spring_w2 * s - c * predicted
+        return x, s, v + (a + a_new) / 2.0, a_new
 
-    return np.array([step(*unit) for unit in np.eye(3)]).T
+    return np.array([step(*unit) for unit in np.eye(4)]).T
 
 
 RECORD = Integrator(
