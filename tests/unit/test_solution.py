@@ -3,7 +3,8 @@
 import pytest
 from small_scenes import scene
 
-from granular_response.solve import solve_scene
+from granular_response.scene import SceneError
+from granular_response.solve import DynamicsError, NotSettled, PathError, solve_scene
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
 
@@ -41,8 +42,25 @@ def test_gravity_alone_has_no_loaded_states():
 
 
 def test_minimise_with_friction_is_refused():
-    with pytest.raises(ValueError, match="without friction"):
+    with pytest.raises(SceneError, match="must be path, dynamics or auto in a scene with friction"):
         solve_scene(scene(loads=LOAD, protocol__method="minimise"))
+
+
+@pytest.mark.parametrize("method", ["path", "dynamics", "auto"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_load_that_tears_a_disk_off_is_one_clear_line_and_soon(method, friction):
+    up = [{"disk": "top-centre", "force": [0.0, 3.0]}]
+    with pytest.raises(DynamicsError, match=r"^a load lifts disk 22 off the packing for good; nothing can hold it$"):
+        solve_scene(scene(contact__friction=friction, loads=up, protocol__method=method))
+
+
+def test_the_protocols_steps_bound_a_path_too():
+    """A disk on a smooth floor that a sideways torque-free force drags along never rests before the wall."""
+    dragged = scene(
+        2, 5, contact__friction=0.3, loads=[{"disk": "top-centre", "force": [40.0, 0.0]}], protocol__method="path"
+    )
+    with pytest.raises((PathError, NotSettled), match=r"within protocol\.maximum_steps = 3000"):
+        solve_scene(dragged.updated({"protocol.maximum_steps": 3000, "protocol.stop_kinetic_energy": 1e-5}))
 
 
 def test_rest_state_remembers_how_gravity_came():

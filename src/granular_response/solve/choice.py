@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..scene import SceneError
 from .problem import Problem
 
 
@@ -20,8 +21,17 @@ def rest_method(problem: Problem) -> Choice:
 
     Friction and disorder make the rest state depend on the fall into it, so it is reached as the paper does, by
     dynamics. The ordered frictionless packing has its minimum from wherever one starts.
+
+    Raises
+    ------
+    SceneError
+        When ``minimise`` is asked for a scene with friction.
     """
     asked = problem.scene.protocol.method
+    if asked == "minimise" and problem.rotations:
+        raise SceneError(
+            "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
+        )
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
     if problem.rotations:
@@ -32,21 +42,13 @@ def rest_method(problem: Problem) -> Choice:
 
 
 def load_method(problem: Problem) -> Choice:
-    """How to find the states under load.
-
-    Raises
-    ------
-    ValueError
-        When ``minimise`` is asked for a scene with friction.
-    """
+    """How to find the states under load."""
     asked = problem.scene.protocol.method
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
     if asked == "path":
         return Choice("path", "protocol.method is path")
     if problem.rotations:
-        if asked == "minimise":
-            raise ValueError("protocol.method: minimise needs a scene without friction (allowed: path, dynamics, auto)")
         return Choice("path", "friction and a load that only grows: a path of equilibria")
     return Choice("minimise", "no friction: equilibrium is a minimum of the energy")
 

@@ -24,6 +24,8 @@ CHECK_EVERY = 100
 STEADY_CHECKS = 5
 #: Checks between two looks at whether some disks roll freely, and the largest part of all disks that may.
 ROLLING_CHECKS, MOST_ROLLERS = 10, 0.1
+#: Gap above everything else at which a disk that its load pulls up is lost (mean radii).
+LIFTED = 5.0
 #: Time over which the envelope of the kinetic energy is taken.
 ENVELOPE_TIME = 20.0
 #: Largest mean acceleration at rest (Sec. III.C).
@@ -221,6 +223,20 @@ class Dynamics:
         loose = count < 2
         return bool(loose.any() and count.all() and loose.mean() <= MOST_ROLLERS)
 
+    def lifted_disk(self) -> int | None:
+        """A disk that its load has torn off the packing and carries up for good; None without one."""
+        n, problem = self.problem.n, self.problem
+        pull = self.load[1] * np.bincount(problem.load_disk, problem.load[:, 1], minlength=n)
+        risen = np.flatnonzero(pull > problem.weight)
+        if len(risen) == 0:
+            return None
+        z, radius = self.position[:, 1], problem.packing.radius
+        rest = np.setdiff1d(np.arange(n), risen)
+        top = float((z + radius)[rest].max(initial=0.0))
+        gone = risen[(z - radius)[risen] > top + LIFTED]
+        gone = gone[self.v[n + gone] > 0]
+        return int(gone[0]) if len(gone) else None
+
     def mean_acceleration(self) -> float:
         """Mean magnitude of the acceleration of disks with two contacts or more, in units of g."""
         n = self.problem.n
@@ -246,7 +262,7 @@ def relax(
     Raises
     ------
     DynamicsError
-        When the motion blows up.
+        When the motion blows up, or a load carries a disk off.
     """
     dynamics.set_ramps(gravity, load)
     started = dynamics.steps
@@ -266,6 +282,8 @@ def relax(
             progress(dynamics.steps - started, energy)
         if dynamics.time < ramp_time:
             continue
+        if load[1] and (lifted := dynamics.lifted_disk()) is not None:
+            raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
         if (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0:
             rolling = dynamics.loose_disks_roll()
         if energy > stop.kinetic_energy and (energy < 1e3 * stop.kinetic_energy or rolling):

@@ -68,6 +68,7 @@ def follow(
     time_step: float = 5e-4,
     longest_step: float = LONGEST_STEP,
     crossing_ramp: float = 20.0,
+    maximum_steps: int = 2_000_000,
     progress: Callable[[float], None] | None = None,
     record: PathRecord | None = None,
 ) -> list[State]:
@@ -80,23 +81,35 @@ def follow(
     factors : increasing multipliers of the loads.
     longest_step : bound on an increment, in mean disk weights.
     crossing_ramp : duration of the load ramp where dynamics takes over, in sqrt(R/g).
+    maximum_steps : most time steps in which dynamics must come to rest there.
 
     Raises
     ------
     PathError
         When dynamics does not settle either: the packing collapses or cycles under this load.
     """
-    return _Path(problem, rest, integrator, time_step, longest_step, crossing_ramp, progress, record).states(factors)
+    dynamics = _DynamicsOptions(integrator, time_step, crossing_ramp, maximum_steps)
+    return _Path(problem, rest, dynamics, longest_step, progress, record).states(factors)
+
+
+@dataclass(frozen=True)
+class _DynamicsOptions:
+    """How dynamics goes where it takes over."""
+
+    integrator: str
+    time_step: float
+    ramp: float
+    maximum_steps: int
 
 
 class _Path:
     """The present end of a load path."""
 
-    def __init__(self, problem, rest, integrator, time_step, longest_step, crossing_ramp, progress, record):
+    def __init__(self, problem, rest, dynamics: _DynamicsOptions, longest_step, progress, record):
         self.problem: Problem = problem
         self.record: PathRecord = PathRecord() if record is None else record
         self.progress = progress
-        self.dynamics = (integrator, time_step, crossing_ramp)
+        self.dynamics = dynamics
         applied = np.hypot(problem.load[:, 0], problem.load[:, 1]).sum()
         #: mean disk weights of one unit of the load factor; a pure torque counts as a force at one radius
         self.unit = max(float(applied), float(np.abs(problem.load[:, 2]).sum()), 1e-300)
@@ -174,9 +187,11 @@ class _Path:
         state = self._state()
         nudge = NUDGE * self.system.unstable_direction(self.trial)[: 2 * n].reshape(2, n).T
         nudged = self.problem.with_static_forces(replace(state, position=state.position + nudge))
-        dynamics = Dynamics(self.problem, nudged, *self.dynamics[:2])
+        options = self.dynamics
+        dynamics = Dynamics(self.problem, nudged, options.integrator, options.time_step)
         self.record.stability_trials += 1
-        settled = relax(dynamics, Stop(1e-11, maximum_steps=200_000), load=(self.factor, self.factor, 0.0))
+        stop = Stop(1e-11, maximum_steps=min(200_000, options.maximum_steps))
+        settled = relax(dynamics, stop, load=(self.factor, self.factor, 0.0))
         return bool(np.abs(settled.position - state.position).max() > LEFT)
 
     def _go_back_and_cross(self) -> None:
@@ -199,14 +214,20 @@ class _Path:
 
     def _cross(self, new: float, reason: str) -> None:
         """Dynamics from the last equilibrium to one at load factor ``new``."""
-        integrator, time_step, ramp_time = self.dynamics
+        options = self.dynamics
         here = self._state()
-        dynamics = Dynamics(self.problem, here, integrator, time_step)
-        load = (self.factor, new, ramp_time)
+        dynamics = Dynamics(self.problem, here, options.integrator, options.time_step)
+        load = (self.factor, new, options.ramp)
         energy = 1e-9
         settled = here
         for _ in range(4):
-            settled = relax(dynamics, Stop(energy, maximum_steps=2_000_000), load=load)
+            settled = relax(dynamics, Stop(energy, maximum_steps=options.maximum_steps), load=load)
+            if not settled.information["settled"]:
+                energy_left = settled.information["kinetic_energy"]
+                raise PathError(
+                    f"no equilibrium beyond load factor {self.factor:g}: the packing does not come to rest within "
+                    f"protocol.maximum_steps = {options.maximum_steps} (kinetic energy {energy_left:.1e} per disk)"
+                )
             load = (new, new, 0.0)
             energy *= 1e-2
             try:

@@ -126,7 +126,10 @@ def loaded_states(
             progress(abs(factor), largest, "load")
 
     step = resolve_time_step(problem)
-    states = follow(problem, rest, factors, integrator=protocol.integrator, time_step=step, progress=report)
+    states = follow(
+        problem, rest, factors, integrator=protocol.integrator, time_step=step,
+        maximum_steps=protocol.maximum_steps, progress=report,
+    )  # fmt: skip
     return choice, states
 
 
