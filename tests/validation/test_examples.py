@@ -99,6 +99,17 @@ def test_the_bidisperse_table_is_what_its_script_makes():
     assert rows == made
 
 
+def test_the_starts_of_a_disordered_slab_differ_as_the_notes_say():
+    example = runpy.run_path(str(EXAMPLES / "two_starts.py"))
+    table = example["compare"](example["scene"](0.01, layers=8, disks_per_row=21), 3, workers=1)
+    literal, touching = (table[start] for start in example["STARTS"])
+    horizontal, oblique = "horizontal, of those on a lattice", "oblique, of those on a lattice"
+    assert touching[horizontal][0] < 0.6 * literal[horizontal][0]
+    assert touching[oblique][0] > literal[oblique][0]
+    assert touching["contacts per disk"][0] < literal["contacts per disk"][0]
+    assert all(row["response"][0].shape == example["X"].shape for row in table.values())
+
+
 def test_an_example_runs_on_the_command_line_from_another_folder(tmp_path):
     command = [sys.executable, "-m", "granular_response", "run", str(EXAMPLES / "own_packing.yaml"), "-o", "out.nc"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)

@@ -1,0 +1,100 @@
+"""A sweep of your own: what the start of a disordered packing decides, over many realizations of the radii.
+
+    python examples/two_starts.py --polydispersity 0.01 --realizations 20
+
+Slabs without friction fall from a lattice of two mean radii, on which large disks overlap, or from one on which the
+largest just touch; then comes a force of 15. Tasks run on all cores here, or on a Dask cluster if --scheduler or
+DASK_SCHEDULER_ADDRESS names one; with --checkpoint, what is finished outlives an interruption.
+"""
+
+import argparse
+
+import numpy as np
+
+from granular_response.observe.floor import smoothed_response
+from granular_response.observe.network import HORIZONTAL, bulk_disks, coordination_number, lattice_direction
+from granular_response.result import to_dataset
+from granular_response.scene import Scene
+from granular_response.solve import solve_scene
+from granular_response.sweep import map_tasks
+
+STARTS = (2.0, "touching-largest")
+FORCE = 15.0
+X = np.linspace(-40.0, 40.0, 161)  # from the loaded disk, in mean radii
+
+
+def measure(task: tuple[Scene, float | str, int]) -> dict[str, np.ndarray | float]:
+    """One task: a realization, at rest and under the force. All random numbers come from its number."""
+    base, start, realization = task
+    scene = base.updated({"packing.lattice_constant": start, "packing.realization": realization})
+    solution = solve_scene(scene)
+    rest, packing = solution.rest, solution.problem.packing
+    horizontal = lattice_direction(rest) == HORIZONTAL
+    pairs = packing.neighbour_pairs()
+    in_row = packing.row[pairs[:, 0]] == packing.row[pairs[:, 1]]
+    result = to_dataset(solution)
+    return {
+        "contacts per disk": coordination_number(rest),
+        "the same, away from boundaries": coordination_number(rest, bulk_disks(rest, packing.width)),
+        "horizontal, of those on a lattice": (rest.pairs.touching & horizontal).sum() / in_row.sum(),
+        "oblique, of those on a lattice": (rest.pairs.touching & ~horizontal).sum() / (~in_row).sum(),
+        "response": smoothed_response(X, result["x"].values, result["floor_response"].values, 3.0),
+    }
+
+
+def scene(polydispersity: float, **packing: int) -> Scene:
+    """The paper's slab without friction, and settings that bring it to rest fast; the static finish does the rest."""
+    return Scene().updated(
+        {
+            "packing.polydispersity": polydispersity,
+            **{f"packing.{key}": value for key, value in packing.items()},
+            "contact.friction": 0.0,
+            "loads": [{"disk": "top-centre", "force": [0.0, -FORCE]}],
+            "protocol.integrator": "verlet",
+            "protocol.time_step": "auto",
+            "protocol.stop_kinetic_energy": 1e-9,
+        }
+    )
+
+
+def compare(base: Scene, realizations: int, **sweep) -> dict[float | str, dict[str, tuple[np.ndarray, np.ndarray]]]:
+    """Mean over realizations and its standard error of everything measured, for each start."""
+    tasks = [(base, start, realization) for start in STARTS for realization in range(realizations)]
+    found = map_tasks(measure, tasks, **sweep)
+    table = {}
+    for k, start in enumerate(STARTS):
+        group = found[k * realizations : (k + 1) * realizations]
+        values = {name: np.array([one[name] for one in group]) for name in group[0]}
+        table[start] = {
+            name: (v.mean(axis=0), v.std(axis=0, ddof=1) / np.sqrt(realizations)) for name, v in values.items()
+        }
+    return table
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--polydispersity", type=float, default=0.01)
+    parser.add_argument("--realizations", type=int, default=20)
+    parser.add_argument("--workers", type=int)
+    parser.add_argument("--scheduler")
+    parser.add_argument("--checkpoint")
+    options = parser.parse_args()
+    table = compare(
+        scene(options.polydispersity),
+        options.realizations,
+        workers=options.workers,
+        scheduler=options.scheduler,
+        checkpoint=options.checkpoint,
+    )
+    for start, row in table.items():
+        print(f"start: {start}")
+        response, error = row.pop("response")
+        for name, (mean, standard_error) in row.items():
+            print(f"  {name}: {mean:.3f} +- {standard_error:.3f}")
+        for x in (X[response.argmax()], 0.0):
+            at = int(np.abs(X - x).argmin())
+            print(f"  response at x = {x:g}: {response[at]:.4f} +- {error[at]:.4f}")
+
+
+if __name__ == "__main__":
+    main()
