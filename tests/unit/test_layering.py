@@ -15,7 +15,7 @@ PACKAGE = SOURCE / "granular_response"
 
 #: What each part may import from outside. What it may import from inside is checked by import-linter.
 ALLOWED = {
-    "core": {"numpy", "numba"},
+    "core": {"llvmlite", "numba", "numpy"},
     "scene": {"numpy", "pydantic", "pydantic_core", "yaml"},
     "solve": {"numpy", "scipy", "qdldl"},
     "observe": {"numpy", "scipy"},

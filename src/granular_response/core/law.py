@@ -3,12 +3,14 @@
 The law's constants travel as one tuple
 ``(normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force)``.
 ``least_force`` bounds the normal force of a closed contact from below: ``-inf`` lets the dashpot pull for a
-moment, as eq. (2) says; ``0`` cuts that off.
+moment, as eq. (2) says; ``0`` cuts that off. A scalar is a float, or the ``Lanes`` of several scenes.
 """
 
 from __future__ import annotations
 
 import numba as nb
+
+from .lanes import magnitude, quotient_where, select
 
 #: How the Coulomb limit acts on the tangential spring.
 CUT, LITERAL = 0, 1
@@ -18,7 +20,7 @@ CUT, LITERAL = 0, 1
 def normal_force(overlap, approach_velocity, law):
     """Eq. (2): spring plus dashpot of a closed contact; ``approach_velocity`` is v·n, positive in separation."""
     force = law[0] * overlap - law[1] * approach_velocity
-    return force if force > law[5] else law[5]
+    return select(force > law[5], force, law[5])
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -31,11 +33,10 @@ def tangential_cut(spring, slip_velocity, force_normal, law, time_step):
     trial = spring + slip_velocity * time_step
     damping = law[3] * slip_velocity
     force = -law[2] * trial - damping
-    limit = law[4] * abs(force_normal)
-    cut = limit if force > limit else force
-    cut = -limit if cut < -limit else cut
-    slipped = -(cut + damping) / law[2]
-    return cut, (slipped if cut != force else trial)
+    limit = law[4] * magnitude(force_normal)
+    cut = select(force > limit, limit, force)
+    cut = select(cut < -limit, -limit, cut)
+    return cut, quotient_where(cut != force, -(cut + damping), law[2], trial)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -45,6 +46,6 @@ def tangential_literal(spring, slip_velocity, force_normal, law, time_step):
     The force itself is not cut, and a frozen spring stays frozen on unloading too: kept to show that this
     reading does not settle.
     """
-    free = law[4] * abs(force_normal) - law[2] * abs(spring) > 0.0
-    new = spring + (slip_velocity * time_step if free else 0.0)
+    free = law[4] * magnitude(force_normal) - law[2] * magnitude(spring) > 0.0
+    new = spring + select(free, slip_velocity * time_step, 0.0)
     return -law[2] * new - law[3] * slip_velocity, new

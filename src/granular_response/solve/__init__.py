@@ -1,8 +1,8 @@
 """How equilibrium is reached.
 
 ``solve_scene`` settles and loads a scene. Below it: ``rest_state`` and ``loaded_states`` for studies that share a
-rest state, ``dynamics`` (explicit relaxation), ``minimise`` (no friction), ``equilibrium`` (Newton on the contact
-law), ``path`` (quasi-static loading), ``choice`` (which of them, and why).
+rest state, ``dynamics`` (explicit relaxation), ``lockstep`` (of many scenes at once), ``minimise`` (no friction),
+``equilibrium`` (Newton on the contact law), ``path`` (quasi-static loading), ``choice`` (which of them, and why).
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .choice import Choice
-    from .dynamics import Dynamics, DynamicsError, Stop, relax
+    from .dynamics import Dynamics, DynamicsError, Relaxation, Stop, relax
     from .energy import minimise
     from .equilibrium import Certificate, EquilibriumError, certify, finish
+    from .lockstep import relax_many
     from .path import PathError, PathRecord, follow
     from .problem import Problem
     from .solution import NotSettled, Solution, loaded_states, rest_state, solve_scene
@@ -26,6 +27,7 @@ _HOME = {
     "Choice": "choice",
     "Dynamics": "dynamics",
     "DynamicsError": "dynamics",
+    "Relaxation": "dynamics",
     "Stop": "dynamics",
     "relax": "dynamics",
     "Certificate": "equilibrium",
@@ -33,6 +35,7 @@ _HOME = {
     "certify": "equilibrium",
     "finish": "equilibrium",
     "minimise": "energy",
+    "relax_many": "lockstep",
     "PathError": "path",
     "PathRecord": "path",
     "follow": "path",
@@ -67,6 +70,7 @@ __all__ = [
     "PathError",
     "PathRecord",
     "Problem",
+    "Relaxation",
     "Solution",
     "State",
     "Stop",
@@ -77,6 +81,7 @@ __all__ = [
     "loaded_states",
     "minimise",
     "relax",
+    "relax_many",
     "rest_state",
     "solve_scene",
 ]

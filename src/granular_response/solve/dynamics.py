@@ -15,6 +15,7 @@ import numpy as np
 
 from ..core.forces import accelerations
 from ..core.integrators import INTEGRATORS
+from ..core.integrators.record import moved_beyond
 from .problem import Candidates, Problem, carry_springs, wall_normals
 from .state import Contacts, FloatArray, State
 
@@ -137,6 +138,11 @@ class Dynamics:
                 self._relist()
                 listed = True
 
+    def needs_new_list(self, steps: int) -> bool:
+        """Whether disks may leave the validity of the candidate list within so many steps."""
+        limit = self.candidates.limit
+        return bool(limit < np.inf and moved_beyond(self.q, self.v, self.problem.n, limit, steps * self.time_step))
+
     def _relist(self) -> None:
         """List candidates again around the present positions, keeping every spring."""
         if not np.isfinite(self.q).all():
@@ -245,6 +251,102 @@ class Dynamics:
         return float(np.hypot(a[0], a[1]).mean()) if bearing.any() else 0.0
 
 
+class Relaxation:
+    """Ramps of gravity and load that start now, and the relaxation to rest after them.
+
+    It advances step by step under its owner's control: after each ``CHECK_EVERY`` time steps of ``dynamics``,
+    :meth:`look` says whether it has ended. :meth:`run` does both; ``solve.lockstep`` advances many together.
+
+    Parameters
+    ----------
+    dynamics : the packing; ``stop`` : when it ends; ``gravity``, ``load`` : linear ramps ``(from, to, duration)``.
+    progress : called with the steps done and the kinetic energy per disk.
+    """
+
+    def __init__(
+        self,
+        dynamics: Dynamics,
+        stop: Stop,
+        *,
+        gravity: Ramp = (1.0, 1.0, 0.0),
+        load: Ramp = (0.0, 0.0, 0.0),
+        progress: Callable[[int, float], None] | None = None,
+    ):
+        dynamics.set_ramps(gravity, load)
+        self.dynamics = dynamics
+        self.stop = stop
+        self.progress = progress
+        self.started = dynamics.steps
+        self.ramp_time = max(gravity[2], load[2])
+        checks = max(1, round(ENVELOPE_TIME / (CHECK_EVERY * dynamics.time_step)))
+        self.envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
+        self.network: np.ndarray | None = None
+        self.fixed = 0
+        self.settled = self.rolling = False
+        self.scale = 1e6 * (1.0 + abs(load[1]) * float(np.abs(dynamics.problem.load).sum()))
+
+    @property
+    def ended(self) -> bool:
+        """Whether the stopping criteria hold, or ``maximum_steps`` have been taken."""
+        return self.settled or self.dynamics.steps - self.started >= self.stop.maximum_steps
+
+    def look(self) -> None:
+        """Judge the state after ``CHECK_EVERY`` more steps.
+
+        Raises
+        ------
+        DynamicsError
+            When the motion has blown up, or a load carries a disk off.
+        """
+        dynamics, stop = self.dynamics, self.stop
+        energy = dynamics.kinetic_energy()
+        if not energy < self.scale:
+            raise DynamicsError(dynamics._blow_up())
+        if self.progress is not None:
+            self.progress(dynamics.steps - self.started, energy)
+        if dynamics.time < self.ramp_time:
+            return
+        if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
+            raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
+        if (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0:
+            self.rolling = dynamics.loose_disks_roll()
+        if energy > stop.kinetic_energy and (energy < 1e3 * stop.kinetic_energy or self.rolling):
+            energy = dynamics.kinetic_energy(bearing_only=True)
+        self.envelope.append(energy)
+        if energy < 1e3 * stop.kinetic_energy:
+            now = dynamics.touching()
+            same = self.network is not None and np.array_equal(now, self.network)
+            self.fixed = self.fixed + CHECK_EVERY if same else 0
+            self.network = now
+        self.settled = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
+
+    def run(self) -> State:
+        """Advance until it has ended; returns :meth:`state`."""
+        while not self.ended:
+            self.dynamics.advance(CHECK_EVERY)
+            self.look()
+        return self.state()
+
+    def state(self) -> State:
+        """The state reached, with ``information``.
+
+        ``steps``, ``time``, ``kinetic_energy`` (per disk), ``settled``, and the other criteria of Sec. III.C:
+        ``network_fixed_steps``, ``sliding_contacts``, ``mean_acceleration``, ``loose_disks``. ``settled`` is
+        False when ``maximum_steps`` came first.
+        """
+        dynamics = self.dynamics
+        state = dynamics.state()
+        return dynamics.state(
+            kinetic_energy=dynamics.kinetic_energy(),
+            settled=self.settled,
+            relaxation_steps=dynamics.steps - self.started,
+            network_fixed_steps=self.fixed,
+            sliding_contacts=int((state.pairs.status == 2).sum() + (state.walls.status == 2).sum()),
+            mean_acceleration=dynamics.mean_acceleration(),
+            loose_disks=int((dynamics.contact_count() < 2).sum()),
+        )
+
+
 def relax(
     dynamics: Dynamics,
     stop: Stop,
@@ -253,57 +355,11 @@ def relax(
     load: Ramp = (0.0, 0.0, 0.0),
     progress: Callable[[int, float], None] | None = None,
 ) -> State:
-    """Run ramps of gravity and load, then relax to rest.
-
-    Returns the state with ``information``: ``steps``, ``time``, ``kinetic_energy`` (per disk), ``settled``,
-    and the other criteria of Sec. III.C: ``network_fixed_steps``, ``sliding_contacts``,
-    ``mean_acceleration``, ``loose_disks``. ``settled`` is False when ``maximum_steps`` came first.
+    """Run ramps of gravity and load, then relax to rest; arguments and result as of :class:`Relaxation`.
 
     Raises
     ------
     DynamicsError
         When the motion blows up, or a load carries a disk off.
     """
-    dynamics.set_ramps(gravity, load)
-    started = dynamics.steps
-    ramp_time = max(gravity[2], load[2])
-    checks = max(1, round(ENVELOPE_TIME / (CHECK_EVERY * dynamics.time_step)))
-    envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
-    network = None
-    fixed = 0
-    settled = rolling = False
-    scale = 1e6 * (1.0 + abs(load[1]) * float(np.abs(dynamics.problem.load).sum()))
-    while dynamics.steps - started < stop.maximum_steps:
-        dynamics.advance(CHECK_EVERY)
-        energy = dynamics.kinetic_energy()
-        if not energy < scale:
-            raise DynamicsError(dynamics._blow_up())
-        if progress is not None:
-            progress(dynamics.steps - started, energy)
-        if dynamics.time < ramp_time:
-            continue
-        if load[1] and (lifted := dynamics.lifted_disk()) is not None:
-            raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
-        if (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0:
-            rolling = dynamics.loose_disks_roll()
-        if energy > stop.kinetic_energy and (energy < 1e3 * stop.kinetic_energy or rolling):
-            energy = dynamics.kinetic_energy(bearing_only=True)
-        envelope.append(energy)
-        if energy < 1e3 * stop.kinetic_energy:
-            now = dynamics.touching()
-            same = network is not None and np.array_equal(now, network)
-            fixed = fixed + CHECK_EVERY if same else 0
-            network = now
-        if max(envelope) < stop.kinetic_energy and len(envelope) == envelope.maxlen:
-            settled = True
-            break
-    state = dynamics.state()
-    return dynamics.state(
-        kinetic_energy=dynamics.kinetic_energy(),
-        settled=settled,
-        relaxation_steps=dynamics.steps - started,
-        network_fixed_steps=fixed,
-        sliding_contacts=int((state.pairs.status == 2).sum() + (state.walls.status == 2).sum()),
-        mean_acceleration=dynamics.mean_acceleration(),
-        loose_disks=int((dynamics.contact_count() < 2).sum()),
-    )
+    return Relaxation(dynamics, stop, gravity=gravity, load=load, progress=progress).run()

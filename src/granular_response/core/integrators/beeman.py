@@ -10,16 +10,28 @@ from .record import LOOK_EVERY, Integrator, moved_beyond, ramp
 
 
 @nb.njit(cache=True, error_model="numpy")
+def predict(x, v, a, a_before, dt):
+    """Displacement after a step, and the velocity predicted for its forces. Scalars or lanes."""
+    x = x + (v * dt + (4.0 * a - a_before) * (dt * dt / 6.0))
+    return x, v + (3.0 * a - a_before) * (0.5 * dt)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def correct(v, a, a_before, a_new, dt):
+    """Velocity after a step."""
+    return v + (2.0 * a_new + 5.0 * a - a_before) * (dt / 6.0)
+
+
+@nb.njit(cache=True, error_model="numpy")
 def _predict(q, v, a, a_before, predicted, dt):
     for k in range(q.size):
-        q[k] += v[k] * dt + (4.0 * a[k] - a_before[k]) * (dt * dt / 6.0)
-        predicted[k] = v[k] + (3.0 * a[k] - a_before[k]) * (0.5 * dt)
+        q[k], predicted[k] = predict(q[k], v[k], a[k], a_before[k], dt)
 
 
 @nb.njit(cache=True, error_model="numpy")
 def _correct(v, a, a_before, a_new, dt):
     for k in range(v.size):
-        v[k] += (2.0 * a_new[k] + 5.0 * a[k] - a_before[k]) * (dt / 6.0)
+        v[k] = correct(v[k], a[k], a_before[k], a_new[k], dt)
         a_before[k] = a[k]
         a[k] = a_new[k]
 

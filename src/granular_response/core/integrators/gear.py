@@ -14,30 +14,37 @@ _C0, _C1, _C3, _C4 = 19.0 / 90.0, 3.0 / 4.0, 1.0 / 2.0, 1.0 / 12.0
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _predict(q, v, a, b, c, dt):
+def predict(x, v, a, b, c, dt):
+    """Taylor series of displacement and its first three derivatives; ``c`` is the fourth. Scalars or lanes."""
     h2 = dt * dt / 2.0
     h3 = h2 * dt / 3.0
     h4 = h3 * dt / 4.0
+    x = x + (v * dt + a * h2 + b * h3 + c * h4)
+    v = v + (a * dt + b * h2 + c * h3)
+    a = a + (b * dt + c * h2)
+    return x, v, a, b + c * dt
+
+
+@nb.njit(cache=True, error_model="numpy")
+def correct(x, v, a, b, c, a_new, dt):
+    """Displacement, velocity, third and fourth derivative for the new acceleration."""
+    change = a_new - a
+    x = x + _C0 * dt * dt / 2.0 * change
+    v = v + _C1 * dt / 2.0 * change
+    return x, v, b + _C3 * 3.0 / dt * change, c + _C4 * 12.0 / (dt * dt) * change
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _predict(q, v, a, b, c, dt):
     for k in range(q.size):
-        q[k] += v[k] * dt + a[k] * h2 + b[k] * h3 + c[k] * h4
-        v[k] += a[k] * dt + b[k] * h2 + c[k] * h3
-        a[k] += b[k] * dt + c[k] * h2
-        b[k] += c[k] * dt
+        q[k], v[k], a[k], b[k] = predict(q[k], v[k], a[k], b[k], c[k], dt)
 
 
 @nb.njit(cache=True, error_model="numpy")
 def _correct(q, v, a, b, c, a_new, dt):
-    h0 = _C0 * dt * dt / 2.0
-    h1 = _C1 * dt / 2.0
-    h3 = _C3 * 3.0 / dt
-    h4 = _C4 * 12.0 / (dt * dt)
     for k in range(q.size):
-        change = a_new[k] - a[k]
-        q[k] += h0 * change
-        v[k] += h1 * change
+        q[k], v[k], b[k], c[k] = correct(q[k], v[k], a[k], b[k], c[k], a_new[k], dt)
         a[k] = a_new[k]
-        b[k] += h3 * change
-        c[k] += h4 * change
 
 
 @nb.njit(cache=True, error_model="numpy", nogil=True)

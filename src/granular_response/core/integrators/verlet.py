@@ -10,16 +10,27 @@ from .record import LOOK_EVERY, Integrator, moved_beyond, ramp
 
 
 @nb.njit(cache=True, error_model="numpy")
+def drift(x, v, a, dt):
+    """Displacement after a step, and the velocity predicted for its forces. Scalars or lanes."""
+    return x + (v * dt + a * (0.5 * dt * dt)), v + a * dt
+
+
+@nb.njit(cache=True, error_model="numpy")
+def kick(v, a, a_new, dt):
+    """Velocity after a step."""
+    return v + (a + a_new) * (0.5 * dt)
+
+
+@nb.njit(cache=True, error_model="numpy")
 def _drift(q, v, a, predicted, dt):
     for k in range(q.size):
-        q[k] += v[k] * dt + a[k] * (0.5 * dt * dt)
-        predicted[k] = v[k] + a[k] * dt
+        q[k], predicted[k] = drift(q[k], v[k], a[k], dt)
 
 
 @nb.njit(cache=True, error_model="numpy")
 def _kick(v, a, a_new, dt):
     for k in range(v.size):
-        v[k] += (a[k] + a_new[k]) * (0.5 * dt)
+        v[k] = kick(v[k], a[k], a_new[k], dt)
         a[k] = a_new[k]
 
 

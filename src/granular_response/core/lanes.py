@@ -1,0 +1,233 @@
+"""A number for each of several scenes: the type that lock-step kernels calculate with.
+
+A ``Lanes`` value holds ``WIDTH`` doubles in vector registers. Arithmetic, comparison, :func:`select`, :func:`root`
+and :func:`magnitude` act on each lane alone, with the rounding of the scalar operation, so a lane's results do not
+depend on what the others hold; functions written with them serve scalars as well. Loops over scenes are left to
+the compiler in other codes; here vector instructions are what a kernel asks for, not what it may get.
+
+Lanes live in arrays of shape (rows, ``WIDTH``): :func:`load` and :func:`store` move ``array[row, :]``.
+With compilation off a ``Lanes`` value is a numpy array.
+"""
+
+from __future__ import annotations
+
+import operator
+from functools import partial
+
+import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, config, types
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, models, register_model
+
+#: Scenes that advance together: one AVX-512 register or two of AVX.
+WIDTH = 8
+
+
+class _LanesType(types.Type):
+    def __init__(self):
+        super().__init__(name=f"Lanes({WIDTH})")
+
+
+class _MaskType(types.Type):
+    def __init__(self):
+        super().__init__(name=f"LaneMask({WIDTH})")
+
+
+LANES, MASK = _LanesType(), _MaskType()
+_DOUBLES = ir.VectorType(ir.DoubleType(), WIDTH)
+_BITS = ir.VectorType(ir.IntType(1), WIDTH)
+
+
+@register_model(_LanesType)
+class _LanesModel(models.PrimitiveModel):
+    def __init__(self, manager, kind):
+        super().__init__(manager, kind, _DOUBLES)
+
+
+@register_model(_MaskType)
+class _MaskModel(models.PrimitiveModel):
+    def __init__(self, manager, kind):
+        super().__init__(manager, kind, _BITS)
+
+
+def _spread(builder, value):
+    """The same double in every lane."""
+    one = builder.insert_element(ir.Constant(_DOUBLES, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
+    return builder.shuffle_vector(one, ir.Constant(_DOUBLES, ir.Undefined), zeros)
+
+
+def _as_lanes(builder, kind, value):
+    return value if kind == LANES else _spread(builder, value)
+
+
+_ARITHMETIC = {operator.add: "fadd", operator.sub: "fsub", operator.mul: "fmul", operator.truediv: "fdiv"}
+_COMPARISONS = {operator.gt: ">", operator.ge: ">=", operator.lt: "<", operator.le: "<=", operator.ne: "!="}
+_OPERANDS = [(LANES, LANES), (LANES, types.float64), (types.float64, LANES)]
+
+
+def _define_binary(operation, result, instruction):
+    class Typing(AbstractTemplate):
+        def generic(self, args, kws):
+            if len(args) == 2 and LANES in args and not kws:
+                return signature(result, *(LANES if a == LANES else types.float64 for a in args))
+            return None
+
+    infer_global(operation)(Typing)
+
+    def lower(context, builder, sig, args):
+        left, right = (_as_lanes(builder, k, v) for k, v in zip(sig.args, args, strict=True))
+        return instruction(builder, left, right)
+
+    for operands in _OPERANDS:
+        lower_builtin(operation, *operands)(lower)
+
+
+for _operation, _name in _ARITHMETIC.items():
+    _define_binary(_operation, LANES, lambda builder, a, b, name=_name: getattr(builder, name)(a, b))
+for _operation, _sign in _COMPARISONS.items():
+    if _sign == "!=":
+        _define_binary(_operation, MASK, lambda builder, a, b: builder.fcmp_unordered("!=", a, b))
+    else:
+        _define_binary(_operation, MASK, lambda builder, a, b, sign=_sign: builder.fcmp_ordered(sign, a, b))
+
+
+@infer_global(operator.neg)
+class _Negative(AbstractTemplate):
+    def generic(self, args, kws):
+        return signature(LANES, LANES) if args == (LANES,) else None
+
+
+@lower_builtin(operator.neg, LANES)
+def _negative(context, builder, sig, args):
+    return builder.fneg(args[0])
+
+
+def _vector_function(builder, name, value):
+    function = cgutils.get_or_insert_function(
+        builder.module, ir.FunctionType(_DOUBLES, [_DOUBLES]), f"llvm.{name}.v{WIDTH}f64"
+    )
+    return builder.call(function, [value])
+
+
+def _place(context, builder, kind, array, row):
+    data = context.make_array(kind)(context, builder, array).data
+    return builder.gep(builder.bitcast(data, _DOUBLES.as_pointer()), [row])
+
+
+def _is_rows(array) -> bool:
+    return isinstance(array, types.Array) and array.ndim == 2 and array.dtype == types.float64 and array.layout == "C"
+
+
+@intrinsic
+def load(typing, array, row):
+    """Lanes ``array[row, :]``."""
+    if not _is_rows(array):
+        return None
+
+    def generate(context, builder, sig, args):
+        loaded = builder.load(_place(context, builder, sig.args[0], *args))
+        loaded.align = 8
+        return loaded
+
+    return LANES(array, types.intp), generate
+
+
+@intrinsic
+def store(typing, array, row, value):
+    """Set ``array[row, :]``."""
+    if not _is_rows(array) or value != LANES:
+        return None
+
+    def generate(context, builder, sig, args):
+        array, row, value = args
+        stored = builder.store(value, _place(context, builder, sig.args[0], array, row))
+        stored.align = 8
+        return context.get_dummy_value()
+
+    return types.none(array, types.intp, LANES), generate
+
+
+@intrinsic
+def spread(typing, value):
+    """Lanes that all hold ``value``."""
+    return LANES(types.float64), lambda context, builder, sig, args: _spread(builder, args[0])
+
+
+@intrinsic
+def select(typing, condition, yes, no):
+    """``yes`` where ``condition`` holds and else ``no``, without a branch; both are evaluated."""
+    if condition == MASK:
+
+        def generate(context, builder, sig, args):
+            yes, no = (_as_lanes(builder, k, v) for k, v in zip(sig.args[1:], args[1:], strict=True))
+            return builder.select(args[0], yes, no)
+
+        return LANES(MASK, *(LANES if k == LANES else types.float64 for k in (yes, no))), generate
+
+    def generate_scalar(context, builder, sig, args):
+        return builder.select(*args)
+
+    return types.float64(types.boolean, types.float64, types.float64), generate_scalar
+
+
+@intrinsic
+def root(typing, value):
+    """Square root."""
+    return LANES(LANES), lambda context, builder, sig, args: _vector_function(builder, "sqrt", args[0])
+
+
+@intrinsic
+def magnitude(typing, value):
+    """Absolute value."""
+    if value == LANES:
+        return LANES(LANES), lambda context, builder, sig, args: _vector_function(builder, "fabs", args[0])
+
+    def generate(context, builder, sig, args):
+        double = ir.DoubleType()
+        fabs = cgutils.get_or_insert_function(builder.module, ir.FunctionType(double, [double]), "llvm.fabs.f64")
+        return builder.call(fabs, args)
+
+    return types.float64(types.float64), generate
+
+
+@intrinsic
+def quotient_where(typing, condition, dividend, divisor, otherwise):
+    """``dividend / divisor`` where ``condition`` holds and else ``otherwise``; no lane divides when none has to."""
+    if condition == MASK:
+
+        def generate(context, builder, sig, args):
+            condition, dividend, divisor, otherwise = args
+            result = cgutils.alloca_once_value(builder, otherwise)
+            any_lane = builder.icmp_unsigned("!=", builder.bitcast(condition, ir.IntType(WIDTH)), ir.IntType(WIDTH)(0))
+            with builder.if_then(any_lane):
+                builder.store(builder.select(condition, builder.fdiv(dividend, divisor), otherwise), result)
+            return builder.load(result)
+
+        return LANES(MASK, LANES, LANES, LANES), generate
+
+    def generate_scalar(context, builder, sig, args):
+        condition, dividend, divisor, otherwise = args
+        return builder.select(condition, builder.fdiv(dividend, divisor), otherwise)
+
+    return types.float64(types.boolean, types.float64, types.float64, types.float64), generate_scalar
+
+
+if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
+    spread = partial(np.full, WIDTH)
+    root, magnitude = np.sqrt, np.abs
+
+    def load(array, row):
+        return array[row].copy()
+
+    def store(array, row, value):
+        array[row] = value
+
+    def select(condition, yes, no):
+        if isinstance(condition, np.ndarray):
+            return np.where(condition, yes, no)
+        return yes if condition else no
+
+    def quotient_where(condition, dividend, divisor, otherwise):
+        return select(condition, dividend / divisor, otherwise)
