@@ -16,6 +16,7 @@ PARAMETERS = yaml.safe_load((ROOT / "params.yaml").read_text())
 #: Modules at which a stage starts; {} is its figure group.
 STARTS = {
     "simulate": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
+    "derive": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
     "draw": ["granular_response.pipeline.drawing", "granular_response.figures.{}"],
     "claims": ["granular_response.claims"],
     "report": ["granular_response.report"],
@@ -147,7 +148,7 @@ def test_dependencies_and_parameters_exist(kind, group, definition):
 
 @pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
 def test_stages_have_the_agreed_form(kind, group, definition):
-    if kind == "simulate":
+    if kind in ("simulate", "derive"):
         assert definition["cmd"] == f"granular-response simulate {group}"
         assert definition["outs"] == [f"data/{group}.nc"]
         assert definition["params"] == ["common", group]
@@ -159,7 +160,13 @@ def test_stages_have_the_agreed_form(kind, group, definition):
 
 
 def test_every_group_has_both_stages():
-    assert PIPELINE["simulate"]["foreach"] == PIPELINE["draw"]["foreach"]
+    simulated, derived = PIPELINE["simulate"]["foreach"], PIPELINE["derive"]["foreach"]
+    assert sorted(simulated + derived) == sorted(PIPELINE["draw"]["foreach"])
+
+
+def test_what_is_derived_comes_after_the_data_that_it_reads():
+    for group in PIPELINE["derive"]["foreach"]:
+        assert PARAMETERS[group]["responses"] in PIPELINE["derive"]["do"]["deps"]
 
 
 @pytest.mark.parametrize(("package", "kind"), [("studies", "simulate"), ("figures", "draw")])
@@ -167,7 +174,8 @@ def test_every_group_module_is_in_the_pipeline(package, kind):
     for path in (SOURCE / "granular_response" / package).glob("*.py"):
         body = ast.parse(path.read_text()).body
         if any(isinstance(node, ast.FunctionDef) and node.name == kind for node in body):
-            assert path.stem in PIPELINE[kind]["foreach"]
+            listed = PIPELINE[kind]["foreach"] + (PIPELINE["derive"]["foreach"] if kind == "simulate" else [])
+            assert path.stem in listed
 
 
 def test_dvc_reads_the_pipeline():

@@ -47,11 +47,15 @@ CAPTIONS: dict[int, str] = {
     16: "Large forces: a third peak at friction 0.2, and the loss of symmetry at friction 1.",
     17: "A pile under gravity without and with friction: contact forces, vertical stress, and contact network.",
     18: "Force chains under an oblique force on one disk, for several torques on the same disk and packing.",
-    19: "Slightly disordered slabs without and with friction: single realizations thin, their mean thick.",
-    20: "Response at x = 0 per applied force in one slightly disordered slab, for several coefficients of friction.",
-    21: "Mean floor response of disordered slabs, with its standard error, for several polydispersities, coefficients "
-    "of friction and forces.",
-    22: "Crossover force from one peak to two against friction, for each polydispersity, with intervals.",
+    19: "Slightly disordered slabs without and with friction: single realizations thin, their mean thick. Above, "
+    "the largest disks touch at the start, which gives the paper's peaks; below, the start is the lattice that its "
+    "text names, of constant two mean radii.",
+    20: "Response at x = 0 per applied force in one slightly disordered slab, for several coefficients of friction, "
+    "beside the lattice, and where their linear ranges end (arrows: beyond the largest force).",
+    21: "Mean floor response of 20 disordered slabs, with its standard error, for several polydispersities, "
+    "coefficients of friction and forces. A number in brackets is that of the slabs at rest, where some collapsed.",
+    22: "Crossover force from one peak to two against friction, for each polydispersity and two smoothing widths. "
+    "Thick and thin bars hold 68 % and 95 % of the bootstrap draws over realizations; open triangles are bounds.",
     23: "Two small loads: the response to both against the sum of the responses to each, disk by disk.",
     24: "The same with larger loads.",
 }

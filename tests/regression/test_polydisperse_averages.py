@@ -1,0 +1,165 @@
+"""Figs. 2 and 19 to 21 on slabs of 5 layers, from parameters through a file to figures."""
+
+import copy
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from granular_response import store
+from granular_response.figures import polydisperse_averages as figures
+from granular_response.figures import style
+from granular_response.studies import polydisperse_averages as study
+
+PARAMETERS = {
+    "method": "auto",
+    "scene": {"packing.layers": 5, "packing.disks_per_row": 13, "protocol.integrator": "verlet"},
+    "lattice_constant": "touching-largest",
+    "stop_kinetic_energy": 1e-9,
+    "loading": {"ramp_time": 5.0, "largest_rate": 5.0, "stop_kinetic_energy": 1e-8},
+    "maximum_steps": 200_000,
+    "time_step_part": 0.9,
+    "longest_time_step": 1e-3,
+    "collapse_depth": 2.0,
+    "realizations": 3,
+    "cases": [
+        {"polydispersities": [0.0, 0.01], "friction": 0.0, "forces": [0.5, 15.0]},
+        {"polydispersities": [0.01, 0.25], "friction": 0.2, "forces": [1.0, 5.0, 15.0]},
+        {"polydispersities": [0.01], "friction": 0.0, "lattice_constant": 2.0, "realizations": 2, "forces": [15.0]},
+        {"polydispersities": [0.01], "friction": 0.2, "lattice_constant": 2.0, "realizations": 2, "forces": [15.0]},
+    ],
+    "widths": [3.0, 6.0],
+    "reach": 12.0,
+    "spacing": 1.0,
+    "few": 2,
+    "individual": {"polydispersity": 0.01, "frictions": [0.0, 0.2], "force": 15.0, "realizations": 3, "width": 3.0},
+    "linear_range": {
+        "polydispersities": [0.0, 0.01],
+        "frictions": [0.0, 0.2],
+        "forces": [0.1, 0.5, 2.0, 5.0],
+        "ramp_time": 5.0,
+        "width": 3.0,
+        "tolerance": 0.05,
+    },
+    "forces_picture": {"polydispersity": 0.25, "friction": 0.2, "force": 5.0, "realization": 0},
+}
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    return study.simulate(PARAMETERS, workers=1)
+
+
+@pytest.fixture(scope="module")
+def datasets(simulated, tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "polydisperse_averages.nc"
+    store.write(path, simulated)
+    return store.read(path)
+
+
+def test_averages(datasets, num_regression) -> None:
+    data = datasets["averages"]
+    values = {
+        f"case{c}_force{data['force'].values[c, s]:g}": data["mean"].values[1, c, s]
+        for c in range(data.sizes["case"])
+        for s in np.flatnonzero(np.isfinite(data["force"].values[c]))
+    }
+    num_regression.check(values, default_tolerance={"rtol": 1e-4, "atol": 1e-6})
+
+
+def test_mean_is_that_of_the_realizations_at_rest(datasets) -> None:
+    data, averages = datasets["ensembles"], datasets["averages"]
+    x = averages["x"].values
+    rows = study.smoothed(data, 1, 0, x, 3.0)
+    assert len(rows) == 3
+    np.testing.assert_allclose(averages["mean"].values[0, 1, 0], rows.mean(axis=0))
+    np.testing.assert_allclose(averages["mean_of_few"].values[0, 1, 0], rows[:2].mean(axis=0))
+    np.testing.assert_allclose(
+        averages["standard_error"].values[0, 1, 0], np.sqrt(rows.var(axis=0, ddof=1) / len(rows))
+    )
+
+
+def test_every_realization_is_accounted_for(datasets) -> None:
+    averages = datasets["averages"]
+    total = sum(averages[f"count_{name}"] for name in study.OUTCOMES)
+    planned = datasets["ensembles"]["realizations"]
+    for c in range(total.sizes["case"]):
+        used = np.isfinite(averages["force"].values[c])
+        assert np.all(total.values[c, used] == int(planned[c]))
+
+
+def test_states_are_certified_and_balance_the_load(datasets) -> None:
+    data = datasets["ensembles"]
+    at_rest = data["outcome"].values == study.AT_REST
+    assert at_rest.sum() >= 20
+    assert np.nanmax(data["force_residual"].values[at_rest]) < 1e-9
+    assert np.nanmax(data["coulomb_excess"].values[at_rest]) < 1e-9
+    # with smooth walls the floor bears the whole load
+    smooth = data["friction"].values == 0.0
+    response = np.nansum(data["floor_response"].values, axis=-1)[smooth]
+    np.testing.assert_allclose(response[at_rest[smooth]], 1.0, atol=1e-6)
+
+
+def test_packings_differ_and_are_the_same_for_every_friction(datasets) -> None:
+    packings = datasets["packings"]
+    numbers = packings["coordination_number"].values[1]
+    assert len(set(numbers[:3].tolist())) > 1
+    spacing = float(packings["angle"][1] - packings["angle"][0])
+    density = packings["contact_angle_density"].values[1, 0]
+    np.testing.assert_allclose(density.sum() * spacing, 1.0)
+
+
+def test_two_workers_give_the_same_bits(simulated) -> None:
+    again = study.simulate(PARAMETERS, workers=2)
+    assert again.keys() == simulated.keys()
+    for name, dataset in simulated.items():
+        xr.testing.assert_identical(dataset, again[name])
+
+
+def test_collapse_and_failure_are_reported() -> None:
+    parameters = copy.deepcopy(PARAMETERS)
+    case = {"polydispersities": [0.25], "friction": 0.2, "forces": [5.0, 60.0, 80.0], "realizations": 1}
+    # so shallow that every load collapses the packing, but the one that moves nothing
+    scene = study.ensemble_scene(parameters, study.read_cases({**parameters, "cases": [case]})[0], 0)
+    task = study.Task(
+        scene, (0.01, 5.0, 10.0), collapse_depth=1e-3, ramp_time=5.0, largest_rate=5.0, stop_kinetic_energy=1e-8
+    )
+    found = study.realize(task)
+    assert found.outcome.tolist() == [study.AT_REST, study.COLLAPSED, study.NOT_REACHED]
+    assert np.isfinite(found.response[0]).all()
+    assert np.isnan(found.response[1:]).all()
+
+    scene = task.scene.updated({"protocol.maximum_steps": 100})
+    failed = study.realize(replace(task, scene=scene, forces=(1.0, 2.0)))
+    assert failed.outcome.tolist() == [study.FAILED, study.NOT_REACHED]
+    assert failed.message.startswith("gravity: ")
+
+
+def test_figures(datasets) -> None:
+    drawn = figures.draw(datasets)
+    assert list(drawn) == [
+        "fig02_polydisperse_forces",
+        "fig19_disordered_response",
+        "fig20_disordered_linear_range",
+        "fig21_disordered_forces",
+    ]
+    panel = drawn["fig19_disordered_response"].axes[1]  # with friction, largest disks touching
+    rows = study.smoothed(datasets["ensembles"], 2, 2, datasets["individual"]["x"].values, 3.0)
+    np.testing.assert_allclose(panel.lines[len(rows)].get_ydata(), rows.mean(axis=0))
+    for figure in drawn.values():
+        assert style.render(figure)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "named"),
+    [
+        ("collapse_depth", 0.0, "collapse_depth = 0"),
+        ("realizations", 0, "realizations = 0"),
+        ("cases", [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0, 1.0]}], "cases.forces = "),
+        ("forces_picture", {"polydispersity": 0.3, "friction": 0.2, "force": 5.0, "realization": 0}, "forces_picture"),
+    ],
+)
+def test_bad_parameter_is_named(key, value, named) -> None:
+    with pytest.raises(ValueError, match=f"{named}.*: must be"):
+        study.simulate({**PARAMETERS, key: value}, workers=1)
