@@ -77,7 +77,8 @@ def follow(
     Parameters
     ----------
     problem : with its loads chosen.
-    rest : certified state at load factor ``rest.load_factor``; a path may start from any of its own states.
+    rest : certified state at load factor ``rest.load_factor``; a path may start from any of the states it returned,
+        also from a file, and then goes on to the last bit as if it had not been cut.
     factors : increasing multipliers of the loads.
     longest_step : bound on an increment, in mean disk weights.
     crossing_ramp : duration of the load ramp where dynamics takes over, in sqrt(R/g).
@@ -114,10 +115,17 @@ class _Path:
         #: mean disk weights of one unit of the load factor; a pure torque counts as a force at one radius
         self.unit = max(float(applied), float(np.abs(problem.load[:, 2]).sum()), 1e-300)
         self.longest = longest_step / self.unit
-        self.step = min(FIRST_STEP / self.unit, self.longest)
         self.factor = rest.load_factor
+        self._restart(rest)
+
+    def _restart(self, state: State) -> None:
+        """Go on from a state that is kept as from one read from a file: nothing but the state is remembered.
+
+        So a path may be cut at any of its states and taken up again without a change to the last bit.
+        """
+        self.step = min(FIRST_STEP / self.unit, self.longest)
         self.crossing = CROSSING / self.unit
-        self._begin(rest)
+        self._begin(state)
 
     def _begin(self, state: State) -> None:
         """Go on from a state, with nothing known of how displacements grow with the load."""
@@ -140,6 +148,7 @@ class _Path:
                 if self.progress is not None:
                     self.progress(self.factor)
             results.append(self._state())
+            self._restart(results[-1])
         return results
 
     def _advance(self, target: float) -> None:
