@@ -114,6 +114,53 @@ def run(
 
 
 @app.command(
+    "continue",
+    epilog=_examples(
+        "granular-response continue slab.nc --to 2 -o slab-to-twice-the-load.nc",
+        "granular-response continue slab.nc --to 1.5 --to 2 --to 4 -o slab-further.nc",
+    ),
+)
+def continue_(
+    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    to: Annotated[
+        list[float],
+        typer.Option(help="Multiple of the scene's loads to go to; repeated, growing.", show_default=False),
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
+    folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
+) -> None:
+    """Raise the loads of a result further.
+
+    The states so far are kept. The new ones are, to the last bit, those of a run that was never interrupted.
+    """
+    import time
+
+    from . import store
+    from .terminal import TerminalProgress
+
+    started = time.perf_counter()
+    stored = store.read(result).get("")
+    store.check_writable(output)
+
+    from .result import ResultError, solution_from, to_dataset
+    from .scene import SceneError
+    from .solve import continue_solution
+
+    try:
+        if stored is None:
+            raise ResultError("holds no states, must be a result of granular-response run")
+        solution = solution_from(stored, folder=folder)
+        with TerminalProgress() as progress:
+            solution = continue_solution(solution, to, progress=progress)
+    except (ResultError, SceneError) as error:
+        raise ResultError(f"{result}: {error}") from error
+    dataset = to_dataset(solution)
+    store.write(output, dataset, {"wall_clock_seconds": time.perf_counter() - started})
+    factors = ", ".join(f"{factor:g}" for factor in solution.load_factors)
+    typer.echo(f"{output}: load factors {factors}, {time.perf_counter() - started:.1f} s")
+
+
+@app.command(
     epilog=_examples(
         "granular-response simulate frictionless_crossover",
         "granular-response simulate polydisperse_averages --workers 8",
@@ -282,6 +329,7 @@ def _expected_errors() -> tuple[type[BaseException], ...]:
         "generated": ["GeneratedError"],
         "pipeline": ["GroupError"],
         "report": ["ReportError"],
+        "result": ["ResultError"],
         "scene": ["SceneError"],
         "solve": ["SOLVE_ERRORS"],
         "store": ["StoreError"],

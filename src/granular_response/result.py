@@ -7,7 +7,10 @@ weights; ``units`` is "1" throughout and ``long_name`` names the normalisation.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,7 +19,9 @@ from . import __version__
 from .observe.difference import match_candidates
 from .observe.floor import floor_disks, floor_force
 from .scene import Scene
+from .solve.choice import load_method, rest_method
 from .solve.equilibrium import Certificate
+from .solve.problem import Problem
 from .solve.solution import Solution
 from .solve.state import Contacts, State
 
@@ -36,6 +41,10 @@ _CONTACT_VARIABLES = {
     "status": "contact status",
 }
 _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
+
+
+class ResultError(ValueError):
+    """A dataset that is not a result, or not one that can be continued. The message is one line."""
 
 
 def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
@@ -173,16 +182,21 @@ def to_dataset(solution: Solution) -> xr.Dataset:
 
 
 def state_from(dataset: xr.Dataset, index: int = -1) -> State:
-    """A state back from a dataset, equal to the stored one to the last bit: a restart.
+    """A state back from a dataset, with its certificate, equal to the stored one to the last bit: a restart.
 
     Raises
     ------
-    ValueError
+    ResultError
         When the dataset holds no states.
     """
     if "contact_spring" not in dataset:
-        raise ValueError("the dataset holds no states (variable contact_spring is missing)")
+        raise ResultError("the dataset holds no states (variable contact_spring is missing)")
     one = dataset.isel(state=index)
+    stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
+    information = {}
+    if set(stored.values()) <= set(one.variables):
+        numbers: dict[str, Any] = {name: one[variable].values.item() for name, variable in stored.items()}
+        information["certificate"] = Certificate(**numbers)
 
     def contacts(prefix: str, partner: str) -> Contacts:
         values = [one[f"{prefix}_{name}"].values for name in _CONTACT_VARIABLES]
@@ -196,6 +210,36 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         pairs=contacts("contact", "contact_partner"),
         walls=contacts("wall", "wall_index"),
         load_factor=float(one["load_factor"]),
+        information=information,
+    )
+
+
+def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = None) -> Solution:
+    """The solution that a dataset was made from, to be continued (``solve.continue_solution``).
+
+    ``folder`` is that of the scene file, for a packing from a table.
+
+    Raises
+    ------
+    ResultError
+        When the dataset holds no states, or another packing than its scene describes.
+    granular_response.scene.SceneError
+        When the scene cannot be read.
+    """
+    rest = state_from(dataset, 0)
+    scene = scene_of(dataset, folder=folder)
+    problem = Problem.from_scene(scene).with_loads(rest.position)
+    if not np.array_equal(problem.packing.radius, dataset["radius"].values):
+        raise ResultError("the table of disks has changed since the result was made")
+    loaded = [state_from(dataset, k) for k in range(1, dataset.sizes["state"])]
+    return Solution(
+        scene=scene,
+        problem=problem,
+        rest=rest,
+        loaded=tuple(loaded),
+        load_factors=tuple(state.load_factor for state in loaded),
+        rest_choice=rest_method(problem),
+        load_choice=load_method(problem) if loaded else None,
     )
 
 

@@ -22,7 +22,7 @@ from granular_response.pipeline import drawing, simulation
 from granular_response.scene import SceneError
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ["run", "simulate", "draw", "show", "export", "claims", "report", "cite", "version"]
+COMMANDS = ["run", "continue", "simulate", "draw", "show", "export", "claims", "report", "cite", "version"]
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
 contact: {friction: 0.0}
@@ -106,6 +106,23 @@ def test_run_and_show(tmp_path):
     assert re.search(r"1\.0000000\d\d|0\.999999999", shown.stdout)
     for part in ("certificate", "force residual", "layers: 3", "minimise"):
         assert part in shown.stdout
+
+
+def test_a_result_is_continued_and_nothing_else(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    assert call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path).returncode == 0
+    finished = call("continue", "result.nc", "--to", "1.5", "--to", 3, "-o", "more.nc", folder=tmp_path)
+    assert finished.returncode == 0 and "load factors 1, 1.5, 3" in finished.stdout
+    with xr.open_dataset(tmp_path / "result.nc") as one, xr.open_dataset(tmp_path / "more.nc") as more:
+        assert more["load_factor"].values.tolist() == [0.0, 1.0, 1.5, 3.0]
+        np.testing.assert_array_equal(more["position"][:2], one["position"])
+        np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"])
+    finished = call("continue", "result.nc", "--to", "0.5", "-o", "less.nc", folder=tmp_path)
+    assert_one_line_error(finished, "result.nc: load factors [0.5]: must grow, from above 1")
+    store.write(tmp_path / "study.nc", {"other": xr.Dataset()})
+    finished = call("continue", "study.nc", "--to", "2", "-o", "less.nc", folder=tmp_path)
+    assert_one_line_error(finished, "study.nc: holds no states, must be a result of granular-response run")
+    assert not (tmp_path / "less.nc").exists()
 
 
 def test_run_by_another_method(tmp_path):

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .lockstep import relax_many
     from .path import PathError, PathRecord, follow
     from .problem import Problem
-    from .solution import NotSettled, Solution, loaded_states, rest_state, solve_scene
+    from .solution import NotSettled, Solution, continue_solution, loaded_states, rest_state, solve_scene
     from .state import State
     from .timestep import UnstableTimeStep
 
@@ -42,6 +42,7 @@ _HOME = {
     "Problem": "problem",
     "NotSettled": "solution",
     "Solution": "solution",
+    "continue_solution": "solution",
     "loaded_states": "solution",
     "rest_state": "solution",
     "solve_scene": "solution",
@@ -76,6 +77,7 @@ __all__ = [
     "Stop",
     "UnstableTimeStep",
     "certify",
+    "continue_solution",
     "finish",
     "follow",
     "loaded_states",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
-from ..scene import Scene
+from ..scene import Scene, SceneError
 from .choice import Choice, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
@@ -74,6 +75,35 @@ def solve_scene(scene: Scene, *, load_factors: Sequence[float] = (1.0,), progres
         return Solution(scene, problem, rest, (), (), rest_choice, None)
     choice, states = loaded_states(problem, rest, load_factors, progress=progress)
     return Solution(scene, problem, rest, tuple(states), tuple(map(float, load_factors)), rest_choice, choice)
+
+
+def continue_solution(
+    solution: Solution, load_factors: Sequence[float], *, progress: Progress | None = None
+) -> Solution:
+    """The solution with states at further ``load_factors``, as if they had been asked for from the beginning.
+
+    A path goes on from its last state, dynamics from rest, and both give the bits of a run that was never cut.
+
+    Raises
+    ------
+    SceneError
+        When the scene has no loads, or the factors do not grow from the largest one so far.
+    NotSettled, DynamicsError, EquilibriumError, PathError
+        As of ``solve_scene``.
+    """
+    if not solution.loaded:
+        raise SceneError("loads: none in this scene, so there is nothing to raise")
+    factors = [float(factor) for factor in load_factors]
+    if any(after <= before for before, after in pairwise([solution.load_factors[-1], *factors])):
+        raise SceneError(f"load factors {factors}: must grow, from above {solution.load_factors[-1]:g}")
+    again = solution.load_choice is not None and solution.load_choice.method == "dynamics"
+    start = solution.rest if again else solution.loaded[-1]
+    _, states = loaded_states(solution.problem, start, factors, progress=progress)
+    return replace(
+        solution,
+        loaded=(*solution.loaded, *states),
+        load_factors=(*solution.load_factors, *factors),
+    )
 
 
 def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
@@ -188,4 +218,12 @@ def _nudged(problem: Problem, state: State) -> State:
     return problem.with_static_forces(replace(state, position=moved))
 
 
-__all__ = ["DynamicsError", "NotSettled", "Solution", "loaded_states", "rest_state", "solve_scene"]
+__all__ = [
+    "DynamicsError",
+    "NotSettled",
+    "Solution",
+    "continue_solution",
+    "loaded_states",
+    "rest_state",
+    "solve_scene",
+]
