@@ -205,6 +205,19 @@ def assert_same(one, other) -> None:
             np.testing.assert_array_equal(getattr(getattr(one, kind), name), getattr(getattr(other, kind), name))
 
 
+def assert_same_contacts(one, other) -> None:
+    """As above, for states that may list their candidates in another order."""
+    for name in ("position", "angle", "velocity", "angular_velocity"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    names = ("first", "second", "overlap", "normal_force", "tangential_force", "spring", "status")
+    for kind in ("pairs", "walls"):
+        rows = []
+        for contacts in (getattr(one, kind), getattr(other, kind)):
+            touching = np.stack([getattr(contacts, name)[contacts.touching].astype(float) for name in names])
+            rows.append(touching[:, np.lexsort(touching[1::-1])])
+        np.testing.assert_array_equal(*rows)
+
+
 def test_loading_from_a_stored_rest_state_is_the_same_to_the_last_bit(tmp_path, solution):
     back = state_from(labelled(tmp_path, solution), 0)
     assert_same(back, solution.rest)
@@ -234,8 +247,10 @@ def test_a_continued_result_is_the_uninterrupted_one(tmp_path, changes):
         store.write(tmp_path / "part.nc", to_dataset(parts))
         parts = continue_solution(solution_from(store.read(tmp_path / "part.nc")[""]), [factor])
     for one, other in zip((straight.rest, *straight.loaded), (parts.rest, *parts.loaded), strict=True):
-        assert_same(one, other)
-    xr.testing.assert_identical(to_dataset(parts), to_dataset(straight))
+        assert_same_contacts(one, other)
+    # states of one file share one list of candidates, so what does not touch may be listed in another order
+    lists = {"contact", "wall_contact"}
+    xr.testing.assert_identical(to_dataset(parts).drop_dims(lists), to_dataset(straight).drop_dims(lists))
 
 
 def test_only_growing_loads_and_the_same_packing_can_be_continued(tmp_path, solution):
