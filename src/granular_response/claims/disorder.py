@@ -397,7 +397,7 @@ CLAIMS = (
         "end of the linear range of that slab",
         "up to about 0.4 mg",
         superposition_range,
-        (23,),
+        (24,),
         SUPERPOSITION,
     ),
     Claim(

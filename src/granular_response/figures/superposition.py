@@ -96,7 +96,14 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     change = linear["contact_change"].values.mean(axis=0)[1:]  # zero at the first force, by definition
     (dotted,) = contacts.plot(linear["force"].values[1:], change, color=style.BLACK, linestyle=(0, (1.2, 1.2)))
     contacts.legend([dotted], ["single load: nonlinearity"], loc="upper left", bbox_to_anchor=(-0.02, 0.93))
-    floor.legend(title="$d$ (diameters)", loc="upper left", bbox_to_anchor=(-0.02, 0.93), ncols=2, columnspacing=0.8)
+    floor.legend(
+        title=f"$d$ (diameters), {errors.sizes['realization']} realizations",
+        alignment="left",
+        loc="upper left",
+        bbox_to_anchor=(-0.02, 0.93),
+        ncols=2,
+        columnspacing=0.8,
+    )
     floor.set_ylabel("difference of both and sum, relative")
     last = FORCES["fig24_superposition_large"]
     profiles = errors["row_error"].sel(force=last).values
