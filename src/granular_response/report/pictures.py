@@ -56,8 +56,12 @@ CAPTIONS: dict[int, str] = {
     "coefficients of friction and forces. A number in brackets is that of the slabs at rest, where some collapsed.",
     22: "Crossover force from one peak to two against friction, for each polydispersity and two smoothing widths. "
     "Thick and thin bars hold 68 % and 95 % of the bootstrap draws over realizations; open triangles are bounds.",
-    23: "Two small loads: the response to both against the sum of the responses to each, disk by disk.",
-    24: "The same with larger loads.",
+    23: "Two loads of 0.2 mg on a slightly disordered slab: the response to both and the sum of the responses to each, "
+    "disk by disk, for several distances d.",
+    24: "The same with 1 mg. Then the difference of the two, root mean square relative to both: against the force, for "
+    "the floor and for all contacts, and against depth. Means of the realizations with standard errors. Dotted: change "
+    "of the contact forces per force under a single load, relative to the smallest. Shaded: where the linear range of "
+    "the middle half of the realizations ends; broken line: its median.",
 }
 
 _NUMBER = re.compile(r"fig(\d+)")
