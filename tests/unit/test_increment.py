@@ -62,3 +62,12 @@ def test_hopeless_increment_returns_none():
     system = StaticSystem(problem, rest)
     known = system.start(rest)
     assert solve_increment(system, known, external_force(problem, 1.0), known.q, Work()) is None
+
+
+def test_an_increment_gives_up_after_its_work(start, monkeypatch):
+    problem, system, known = start
+    monkeypatch.setattr(module, "DIRECT_ITERATIONS", 1)
+    monkeypatch.setattr(module, "MOST_WORK", 0)
+    work = Work()
+    assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
+    assert work.rounds <= 1

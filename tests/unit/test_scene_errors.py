@@ -108,7 +108,7 @@ MALFORMED = {
     "protocol: {time_step: 0}": "protocol.time_step = 0: must be a number greater than 0, or auto",
     "protocol: {static_finish: no}": "protocol.static_finish = 'no': must be true or false",
     "protocol: {maximum_steps: 1e6}": ("protocol.maximum_steps = 1000000.0: must be a whole number, 1 or greater"),
-    "preparation: {gravity: fast}": "preparation.gravity = 'fast': must be at-once or slow",
+    "preparation: {gravity: fast}": "preparation.gravity = 'fast': must be at-once or slow or frictionless",
 }
 
 

@@ -54,7 +54,7 @@ scenes = options(
         damping_ratio=st.none() | numbers(),
     ),
     loads=loads,
-    preparation=options(gravity=st.sampled_from(["at-once", "slow"]), ramp_time=numbers(open_low=True)),
+    preparation=options(gravity=st.sampled_from(["at-once", "slow", "frictionless"]), ramp_time=numbers(open_low=True)),
     protocol=options(
         method=st.sampled_from(["auto", "dynamics", "path", "minimise"]),
         integrator=st.sampled_from(["beeman", "verlet", "gear"]),

@@ -68,3 +68,15 @@ def test_rest_state_remembers_how_gravity_came():
     slow = solve_scene(scene(preparation__gravity="slow")).rest
     difference = abs(at_once.pairs.normal_force.sum() - slow.pairs.normal_force.sum())
     assert difference > 1e-4
+
+
+def test_friction_that_comes_after_gravity_leaves_no_tangential_force():
+    smooth = solve_scene(scene(contact__friction=0.0, loads=[])).rest
+    solution = solve_scene(scene(preparation__gravity="frictionless", loads=LOAD))
+    assert solution.rest_choice.method == "minimise" and "without friction" in solution.rest_choice.reason
+    assert solution.rest.position == pytest.approx(smooth.position, abs=1e-11)
+    assert abs(solution.rest.pairs.tangential_force).max() < 1e-10
+    assert abs(solution.loaded[0].pairs.tangential_force).max() > 0.01
+    for state in (solution.rest, *solution.loaded):
+        assert state.information["certificate"].stable
+        assert state.information["certificate"].force_residual < 1e-9

@@ -9,6 +9,7 @@ from granular_response.observe.floor import floor_force
 from granular_response.solve import (
     Dynamics,
     PathError,
+    PathRecord,
     Problem,
     Stop,
     finish,
@@ -80,3 +81,21 @@ def test_passes_the_load_where_contacts_begin_to_slide_together():
     assert state.information["crossings"] == []
     assert state.information["certificate"].force_residual < 1e-9
     assert (state.pairs.status == 2).any()
+
+
+def test_default_increments_are_within_the_aim_of_accuracy(settled):
+    """Largest error of the normalised response against a path in far smaller steps."""
+    problem, rest = settled
+    force = 4.0
+    fine = floor_force(follow(problem, rest, [force], longest_step=0.02)[0], FLOOR)
+    assert np.abs(floor_force(follow(problem, rest, [force])[0], FLOOR) - fine).max() / force < 1e-4
+
+
+def test_a_stretch_that_costs_too_much_is_left_to_dynamics(settled, monkeypatch):
+    problem, rest = settled
+    monkeypatch.setattr("granular_response.solve.path.MOST_WORK", 2)
+    record = PathRecord()
+    state = follow(problem, rest, [2.0], record=record)[0]
+    assert {c.reason for c in record.crossings} == {"too much work"}
+    assert record.crossings[-1].end <= 2.0 and state.load_factor == 2.0
+    assert state.information["certificate"].force_residual < 1e-9

@@ -33,16 +33,27 @@ def factorise(a, b):
 
 
 @nb.njit(cache=True, error_model="numpy")
+def _product(row, x):
+    """Scalar product in four partial sums, which may be kept side by side."""
+    s0 = s1 = s2 = s3 = 0.0
+    whole = row.size - row.size % 4
+    for j in range(0, whole, 4):
+        s0 += row[j] * x[j]
+        s1 += row[j + 1] * x[j + 1]
+        s2 += row[j + 2] * x[j + 2]
+        s3 += row[j + 3] * x[j + 3]
+    for j in range(whole, row.size):
+        s0 += row[j] * x[j]
+    return (s0 + s1) + (s2 + s3)
+
+
+@nb.njit(cache=True, error_model="numpy")
 def solve(a, b, x):
     """Overwrite ``x`` (n,) with the solution of L U x = x."""
     n = a.shape[0]
     for i in range(n):
-        total = x[i]
-        for j in range(max(0, i - b), i):
-            total -= a[i, b - i + j] * x[j]
-        x[i] = total
+        low = max(0, i - b)
+        x[i] -= _product(a[i, b - i + low : b], x[low:i])
     for i in range(n - 1, -1, -1):
-        total = x[i]
-        for j in range(i + 1, min(n, i + b + 1)):
-            total -= a[i, b - i + j] * x[j]
-        x[i] = total / a[i, b]
+        high = min(n, i + b + 1)
+        x[i] = (x[i] - _product(a[i, b + 1 : b + high - i], x[i + 1 : high])) / a[i, b]

@@ -17,14 +17,16 @@ TimeStep = Annotated[
 class Preparation(Description):
     """How gravity is brought onto the unloaded packing. A rest state with friction remembers it."""
 
-    gravity: Literal["at-once", "slow"] = Field(
+    gravity: Literal["at-once", "slow", "frictionless"] = Field(
         default="at-once",
         description="at-once: gravity acts in full from the start, and the packing falls into its "
-        "contacts, as in the paper; slow: gravity grows linearly from 0 to 1 over ramp_time.",
+        "contacts, as in the paper; slow: gravity grows linearly from 0 to 1 over ramp_time; "
+        "frictionless: the packing comes to rest without friction, which acts from then on, with "
+        "tangential springs at zero: the rest state is then found by statics in ordered packings of any size.",
     )
     ramp_time: Positive = Field(
         default=100.0,
-        description="Time over which slow gravity grows, in sqrt(R/g). Without effect when gravity is at- once.",
+        description="Time over which slow gravity grows, in sqrt(R/g). For slow gravity only.",
     )
 
 

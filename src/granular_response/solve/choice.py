@@ -34,6 +34,10 @@ def rest_method(problem: Problem) -> Choice:
         )
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
+    if problem.rotations and problem.scene.preparation.gravity == "frictionless":
+        if problem.packing.ordered:
+            return Choice("minimise", "prepared without friction, and no disorder: rest is the minimum of the energy")
+        return Choice("dynamics", "the rest state of a disordered packing depends on the fall into it")
     if problem.rotations:
         return Choice("dynamics", "with friction the rest state depends on how gravity was applied")
     if not problem.packing.ordered:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, certify, external_force
+from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, attainable, certify, external_force
 from .problem import Problem
 from .state import FloatArray, State
 from .system import REGULARISATION, StaticSystem, Trial
@@ -21,6 +21,12 @@ MAXIMUM_ITERATIONS = 2000
 LOOK_EVERY = 10
 #: No disk moves farther than this in one step (mean radii).
 LONGEST_STEP = 0.2
+#: A step that gains less than this part of what its quadratic model says is shortened, and damping grows.
+POOR = 0.25
+#: Least damping where the stiffness of the springs alone makes a step (units of the normal stiffness).
+SPRINGS_ALONE = 1e-6
+#: Factors of the damping after a poor and after a good step.
+MORE, LESS = 10.0, 0.1
 
 
 def energy(system: StaticSystem, trial: Trial, external: FloatArray) -> float:
@@ -58,7 +64,8 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
     while iterations < MAXIMUM_ITERATIONS:
         r = trial.contact_force + external
         size = float(np.abs(r).max())
-        settled = size < 0.01 * TOLERANCE or (size < TOLERANCE and damping == 0.0)
+        tolerance = attainable(system, q)
+        settled = size < 0.01 * TOLERANCE or (size < tolerance and damping == 0.0)
         if (settled or iterations % LOOK_EVERY == LOOK_EVERY - 1) and system.meets_unlisted(q):
             raise Rearranged("the packing rearranges on its way to a minimum of the energy; use method dynamics")
         if settled:
@@ -74,10 +81,12 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
             damping = 1e-4 * k
             iterations += 1
             continue
-        lu, negative = system.symmetric_factor(trial, damping + REGULARISATION * k)
+        lu = system.definite_factor(trial, damping + REGULARISATION * k)
         iterations += 1
-        if negative:
-            damping = max(4.0 * damping, 1e-8 * k)
+        if lu is None:
+            lu = system.definite_factor(system.without_prestress(trial), max(damping, SPRINGS_ALONE * k))
+        if lu is None:
+            damping = max(MORE * damping, 1e-8 * k)
             continue
         step = system.deinterleave(lu.solve(system.interleave(r)))
         length = float(np.abs(step).max())
@@ -92,17 +101,48 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
         gained = value - new_value
         new_size = float(np.abs(new.contact_force + external).max())
         rounding = 1e-11 * (abs(value) + 1.0)
-        ratio = gained / predicted if predicted > rounding else (1.0 if new_size < 2.0 * size else 0.0)
-        if ratio > 1e-3:
-            q, trial, value = q + step, new, new_value
-            if ratio > 0.5:
-                damping = 0.1 * damping if damping > 1e-9 * k else 0.0
-            elif ratio < 0.1:
-                damping = max(4.0 * damping, 1e-8 * k)
+        if predicted > rounding:
+            ratio = gained / predicted
         else:
-            damping = max(4.0 * damping, 1e-8 * k)
+            ratio = 1.0 if new_size < 2.0 * size or new_size < tolerance else 0.0
+        if ratio < POOR and predicted > rounding:
+            step, new = _shorter(system, known, external, q, step, float(step @ r), new)
+            new_value = energy(system, new, external)
+            if new_value > value:
+                damping = max(MORE * damping, 1e-8 * k)
+                continue
+        elif ratio < POOR:
+            damping = max(MORE * damping, 1e-8 * k)
+            continue
+        q, trial, value = q + step, new, new_value
+        if ratio > 0.5:
+            damping = LESS * damping if damping > 1e-9 * k else 0.0
+        elif ratio < POOR:
+            damping = max(MORE * damping, 1e-8 * k)
     else:
         raise EquilibriumError(f"no minimum of the energy within {MAXIMUM_ITERATIONS} iterations")
     state = system.state(trial, load_factor, method="minimise", newton_iterations=iterations, escapes=escapes)
     state.information["certificate"] = certify(problem, state, modes=0)
     return state
+
+
+def _shorter(system: StaticSystem, known, external, q, step, slope, full: Trial) -> tuple[FloatArray, Trial]:
+    """The part of a step that is too long at which the energy's slope has fallen to a quarter."""
+    low, at_low = 0.0, slope
+    high, at_high = 1.0, float((full.contact_force + external) @ step)
+    part, trial = 1.0, full
+    for k in range(8):
+        if at_high >= 0.0:
+            break
+        secant = low + (high - low) * at_low / (at_low - at_high)
+        part = secant if k % 2 == 0 else 0.5 * (low + high)
+        part = min(max(part, low + 0.05 * (high - low)), high - 0.05 * (high - low))
+        trial = system.trial(known, q + part * step)
+        here = float((trial.contact_force + external) @ step)
+        if abs(here) < 0.25 * slope:
+            break
+        if here > 0:
+            low, at_low = part, here
+        else:
+            high, at_high = part, here
+    return part * step, trial

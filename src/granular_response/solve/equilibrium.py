@@ -64,6 +64,12 @@ def external_force(problem: Problem, load_factor: float) -> FloatArray:
     return problem.weight_vector() + load_factor * problem.load_vector()
 
 
+def attainable(system: StaticSystem, q: FloatArray) -> float:
+    """Unbalanced force to reach: ``TOLERANCE``, or what the rounding of displacements leaves if that is more."""
+    rounding = 4.0 * float(np.finfo(float).eps) * system.problem.pair_law[0]
+    return max(TOLERANCE, rounding * float(np.abs(q).max(initial=0.0)))
+
+
 @dataclass(frozen=True)
 class NewtonReport:
     """How a Newton solution went."""
@@ -85,24 +91,34 @@ def newton(
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
     Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
-    for a moment). Returns the last trial and a report; ``report.converged`` says whether it is a solution.
+    for a moment). A factorisation serves as long as no contact changes its status and the residual falls
+    tenfold with it. Returns the last trial and a report; ``report.converged`` says whether it is a solution,
+    ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """
+    n = system.problem.n
     q = (known.q if start is None else start).copy()
     trial = system.trial(known, q)
     r = residual(system, trial, external)
     size = float(np.abs(r).max(initial=0.0))
     best = size
-    stalled = 0
-    for iteration in range(maximum_iterations):
+    stalled = iterations = 0
+    slow = False
+    while True:
         if size < 1e-3 * tolerance or (size < tolerance and stalled):
-            return trial, NewtonReport(True, iteration, size)
+            return trial, NewtonReport(True, iterations, size)
         try:
-            step = system.deinterleave(system.factorise(trial).solve(system.interleave(r)))
+            factor = None if slow else system.kept_factor(trial)
+            reused = factor is not None
+            if factor is None:
+                if iterations == maximum_iterations:
+                    break
+                iterations += 1
+                factor = system.factorise(trial)
+            step = system.deinterleave(factor.solve(system.interleave(r)))
         except RuntimeError:  # exactly singular
             break
         if not np.isfinite(step).all():
             break
-        n = system.problem.n
         length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, LONGEST_STEP / length) if length > 0 else 1.0
         for _ in range(6):
@@ -112,10 +128,13 @@ def newton(
             if size_new < 10.0 * size or size_new < tolerance:
                 break
             scale *= 0.5
+        slow = reused and size_new > 0.1 * size
+        if slow and size_new > size:
+            continue
         q, trial, r, size = q + scale * step, new, r_new, size_new
         stalled = stalled + 1 if size > 0.5 * best else 0
         best = min(best, size)
-    return trial, NewtonReport(size < tolerance, maximum_iterations, size)
+    return trial, NewtonReport(size < tolerance, iterations, size)
 
 
 def certify(problem: Problem, state: State, *, modes: int = -1) -> Certificate:

@@ -25,6 +25,8 @@ DIRECT_ITERATIONS = 8
 ROUNDS, FIRST_TRY = 24, 2
 #: Rounds after which limits must have stopped changing by more than this (mean disk weights), or the increment fails.
 PATIENCE, SLOW = 6, 0.05
+#: Factorisations after which an increment fails: a smaller one is cheaper.
+MOST_WORK = 150
 #: Levenberg shift of the minimisation, in units of the normal stiffness.
 SHIFT = 1e-7
 #: Residual at which a minimisation with fixed limits ends; they change anyway.
@@ -59,7 +61,10 @@ def solve_increment(
     here = system.trial(known, known.q)
     limits = (pair_mu * here.pair_normal, wall_mu * here.wall_normal)
     q = known.q
+    before_rounds = work.factorisations
     for done in range(1, ROUNDS + 1):
+        if work.factorisations - before_rounds > MOST_WORK:
+            return None
         work.rounds += 1
         trial = _minimise_with_limits(system, known, external, q, limits, work)
         q = trial.configuration.q

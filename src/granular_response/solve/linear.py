@@ -1,4 +1,4 @@
-"""Linear solves with the tangent stiffness: banded where the band is narrow, general sparse LU elsewhere."""
+"""Linear solves with the tangent stiffness: banded where the band is narrow, multifrontal elsewhere."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import splu
 
 from ..core import band
+from .multifrontal import Dissection, Multifrontal
 from .state import FloatArray
 
 #: Half-bandwidth (in unknowns) up to which the banded factorisation is the faster one.
@@ -24,6 +25,31 @@ class Factor(Protocol):
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution for one right-hand side."""
         ...
+
+
+class Storage(Protocol):
+    """Where the factors of all matrices with one sparsity pattern go."""
+
+    def factor(self, matrix: sp.csc_array) -> Factor:
+        """Factorise; RuntimeError for a matrix that is exactly singular."""
+        ...
+
+    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
+        """Factorisation of a symmetric matrix and its number of negative eigenvalues."""
+        ...
+
+    def definite_factor(self, matrix: sp.csc_array) -> Factor | None:
+        """Factorisation of a symmetric matrix; None when it is not positive definite."""
+        ...
+
+
+def elimination(position: FloatArray, first, second, freedoms: int) -> tuple[np.ndarray, Dissection | None]:
+    """(n,) order in which disks are eliminated, and the dissection it comes from where the band is too wide."""
+    order = node_order(position, first, second)
+    if (_width(order, first, second) + 1) * freedoms - 1 <= WIDEST_BAND:
+        return order, None
+    dissection = Dissection(position, first, second)
+    return dissection.order, dissection
 
 
 def node_order(position: FloatArray, first, second) -> np.ndarray:
@@ -41,24 +67,7 @@ def node_order(position: FloatArray, first, second) -> np.ndarray:
 def _width(order, first, second) -> int:
     place = np.empty(len(order), np.int64)
     place[order] = np.arange(len(order))
-    return int(np.abs(place[first] - place[second]).max())
-
-
-def sparse_factor(matrix: sp.csc_array, threshold: float = 0.001):
-    """SuperLU of a matrix whose pattern is symmetric."""
-    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=threshold, options={"SymmetricMode": True})
-
-
-def symmetric_factor(matrix: sp.csc_array, storage: Band | None) -> tuple[Factor, int]:
-    """Factorisation without row exchanges of a symmetric matrix, and its number of negative eigenvalues.
-
-    The pivots have the signs of the eigenvalues (Sylvester's law of inertia).
-    """
-    if storage is not None:
-        factor = storage.factor(matrix)
-        return factor, factor.negative_pivots()
-    lu = sparse_factor(matrix, 0.0)
-    return lu, int((lu.U.diagonal() < 0).sum())
+    return int(np.abs(place[first] - place[second]).max(initial=0))
 
 
 class Band:
@@ -78,23 +87,37 @@ class Band:
         band.factorise(a, self.half_width)
         return _BandFactor(matrix, a, self.half_width)
 
+    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[_BandFactor, int]:
+        """Factorisation, and the number of negative pivots: of negative eigenvalues (Sylvester's law of inertia)."""
+        factor = self.factor(matrix)
+        return factor, factor.negative_pivots()
+
+    def definite_factor(self, matrix: sp.csc_array) -> _BandFactor | None:
+        """Factorisation of a symmetric matrix; None when it is not positive definite."""
+        factor = self.factor(matrix)
+        return None if factor.negative_pivots() else factor
+
 
 class _BandFactor:
     def __init__(self, matrix: sp.csc_array, a: FloatArray, half_width: int):
         self._matrix, self._a, self._half_width = matrix, a, half_width
-        self._sparse: Factor | None = None
+        self._exchanged: Factor | None = None
 
     def negative_pivots(self) -> int:
-        """Number of negative pivots: of negative eigenvalues, for a symmetric matrix."""
         return int((self._a[:, self._half_width] < 0).sum())
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve; falls back to a factorisation with row exchanges when the residual is too large."""
-        if self._sparse is None:
+        if self._exchanged is None:
             x = right.copy()
             band.solve(self._a, self._half_width, x)
             error = np.abs(self._matrix @ x - right).max()
             if error <= ACCEPTED * np.abs(right).max():
                 return x
-            self._sparse = sparse_factor(self._matrix)
-        return self._sparse.solve(right)
+            self._exchanged = splu(
+                self._matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.001, options={"SymmetricMode": True}
+            )
+        return self._exchanged.solve(right)
+
+
+__all__ = ["Band", "Dissection", "Factor", "Multifrontal", "Storage", "elimination", "node_order"]

@@ -2,9 +2,10 @@
 
 Each increment is solved with the return map of ``core.statics`` (see :mod:`.increment`). Where a contact goes on
 opening, sliding or sticking throughout an increment the return map is exact for any length of the increment.
-Where none is found on the shortest increment, or the equilibrium has lost its stability, the branch has ended:
-explicit dynamics carries the packing to the next equilibrium and statics goes on from there. Every such crossing
-is recorded with its load and its reason.
+Where no equilibrium is found on the shortest increment, or the equilibrium has lost its stability, the branch has
+ended: explicit dynamics carries the packing to the next equilibrium and statics goes on from there. So
+it does where an increment, or a stretch of load, has cost more factorisations than the limits below. Every such
+crossing is recorded with its load and its reason.
 
 Stability is looked at about once per mean disk weight of load. With sliding contacts a negative eigenvalue of the
 tangent is only a suspicion (the tangent belongs to one direction of sliding), so it is tried: dynamics starts
@@ -25,12 +26,20 @@ from .problem import Problem
 from .state import State
 from .system import Configuration, StaticSystem, Trial
 
-#: First, longest and shortest load increments, in mean disk weights.
-FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1.0, 2.0, 0.1
+#: Longest load increment in mean disk weights, times the square root of the number of disks: the deeper a packing,
+#: the more load it takes to change as many contacts. With it the response of the paper's slab is within 1e-5 of the
+#: limit of small increments.
+LONGEST_STEP = 0.0033
+#: Longest increment of a large load, as a part of it.
+LARGE_LOAD = 0.005
+#: Shortest increment as a part of the longest.
+SHORTEST = 0.25
 #: Load that dynamics crosses at first, in mean disk weights; doubled while statics does not go on after it.
 CROSSING = 0.1
 #: Load between two looks at the stability.
 STABILITY_STEP = 1.0
+#: Factorisations that statics may spend on the load of one look; after that dynamics is the cheaper way.
+MOST_WORK = 1000
 #: Displacement along a suspicious direction with which dynamics starts, and the one that counts as leaving.
 NUDGE, LEFT = 1e-6, 2e-5
 
@@ -45,7 +54,7 @@ class Crossing:
 
     start: float
     end: float
-    reason: str  #: unstable, no equilibrium, or rearrangement
+    reason: str  #: unstable, no equilibrium, too much work, or rearrangement
     displacement: float  #: largest displacement of a disk on the way (mean radii)
 
 
@@ -66,7 +75,7 @@ def follow(
     *,
     integrator: str = "beeman",
     time_step: float = 5e-4,
-    longest_step: float = LONGEST_STEP,
+    longest_step: float | None = None,
     crossing_ramp: float = 20.0,
     maximum_steps: int = 2_000_000,
     progress: Callable[[float], None] | None = None,
@@ -80,7 +89,7 @@ def follow(
     rest : certified state at load factor ``rest.load_factor``; a path may start from any of the states it returned,
         also from a file, and then goes on to the last bit as if it had not been cut.
     factors : increasing multipliers of the loads.
-    longest_step : bound on an increment, in mean disk weights.
+    longest_step : bound on an increment, in mean disk weights; chosen by the size of the packing if not given.
     crossing_ramp : duration of the load ramp where dynamics takes over, in sqrt(R/g).
     maximum_steps : most time steps in which dynamics must come to rest there.
 
@@ -114,7 +123,10 @@ class _Path:
         applied = np.hypot(problem.load[:, 0], problem.load[:, 1]).sum()
         #: mean disk weights of one unit of the load factor; a pure torque counts as a force at one radius
         self.unit = max(float(applied), float(np.abs(problem.load[:, 2]).sum()), 1e-300)
-        self.longest = longest_step / self.unit
+        #: part of the load that an increment may have; nothing is added to what the caller asks for
+        self.part = LARGE_LOAD if longest_step is None else 0.0
+        self.least_longest = (LONGEST_STEP * problem.n**0.5 if longest_step is None else longest_step) / self.unit
+        self.shortest = SHORTEST * self.least_longest
         self.factor = rest.load_factor
         self._restart(rest)
 
@@ -123,8 +135,10 @@ class _Path:
 
         So a path may be cut at any of its states and taken up again without a change to the last bit.
         """
-        self.step = min(FIRST_STEP / self.unit, self.longest)
+        self.step = self.longest
         self.crossing = CROSSING / self.unit
+        #: load and work at which the work limit begins to count
+        self.mark = (self.factor, self.record.work.factorisations)
         self._begin(state)
 
     def _begin(self, state: State) -> None:
@@ -153,7 +167,9 @@ class _Path:
 
     def _advance(self, target: float) -> None:
         """One increment towards ``target``, by statics or across the end of a branch by dynamics."""
-        shortest = SHORTEST_STEP / self.unit
+        if self._worked_too_much():
+            self._cross(min(self.mark[0] + STABILITY_STEP / self.unit, target), "too much work")
+            return
         new = min(self.factor + self.step, target)
         if target - new < 0.1 * self.step:
             new = target
@@ -162,8 +178,8 @@ class _Path:
         rounds = self.record.work.rounds
         found = solve_increment(self.system, self.known, external_force(self.problem, new), guess, self.record.work)
         if found is None:
-            if increment > 1.01 * shortest:
-                self.step = max(0.5 * increment, shortest)
+            if increment > 1.01 * self.shortest:
+                self.step = max(0.5 * increment, self.shortest)
                 self.rate = None
             else:
                 self._cross(min(self.factor + self.crossing, target), "no equilibrium")
@@ -180,6 +196,18 @@ class _Path:
             return
         if new == target or new - self.stable_at >= STABILITY_STEP / self.unit:
             self._look_at_stability()
+
+    @property
+    def longest(self) -> float:
+        """Longest increment here."""
+        return max(self.least_longest, self.part * abs(self.factor))
+
+    def _worked_too_much(self) -> bool:
+        """Whether the last stretch of load has cost more than it may."""
+        work = self.record.work.factorisations
+        if self.factor - self.mark[0] >= STABILITY_STEP / self.unit:
+            self.mark = (self.factor, work)
+        return work - self.mark[1] > MOST_WORK
 
     def _look_at_stability(self) -> None:
         self.modes = self.system.negative_modes(self.trial)
@@ -249,7 +277,8 @@ class _Path:
         moved = float(np.abs(settled.position - here.position).max())
         self.record.crossings.append(Crossing(float(self.factor), float(new), reason, moved))
         self.factor = new
-        self.step = min(FIRST_STEP / self.unit, self.longest)
+        self.mark = (new, self.record.work.factorisations)
+        self.step = self.longest
         self._begin(settled)
 
     def _state(self) -> State:

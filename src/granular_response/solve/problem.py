@@ -141,6 +141,14 @@ class Problem:
             load=np.array([[*load.force, load.torque] for load in loads], float).reshape(-1, 3),
         )
 
+    def without_friction(self) -> Problem:
+        """The same packing with smooth disks and walls."""
+
+        def smooth(law: Law) -> Law:
+            return (*law[:4], 0.0, law[5])
+
+        return replace(self, pair_law=smooth(self.pair_law), wall_law=smooth(self.wall_law))
+
     def load_vector(self) -> FloatArray:
         """(dof,) generalised load at load factor 1."""
         total = np.zeros((3, self.n))

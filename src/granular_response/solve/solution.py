@@ -108,6 +108,10 @@ def continue_solution(
 
 def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
     """The certified state at rest under gravity, prepared as the scene says."""
+    if problem.rotations and problem.scene.preparation.gravity == "frictionless":
+        smooth = rest_state(problem.without_friction(), progress=progress)
+        # no tangential spring is stretched: an equilibrium with friction too
+        return finish(problem, problem.with_static_forces(smooth))
     choice = rest_method(problem)
     bare = problem.bare_state()
     if choice.method == "minimise":

@@ -15,7 +15,7 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 
 from ..core import statics
 from ..core.neighbours import close_pairs
-from .linear import WIDEST_BAND, Band, Factor, node_order, sparse_factor, symmetric_factor
+from .linear import Band, Factor, Multifrontal, Storage, elimination
 from .problem import Problem, wall_gap, wall_normals
 from .state import SLIDING, Contacts, FloatArray, State
 
@@ -54,6 +54,12 @@ class Trial:
         """(m + w,) statuses of all candidates."""
         return np.concatenate([self.pair_status, self.wall_status])
 
+    @property
+    def sense(self) -> np.ndarray:
+        """(m + w,) statuses, negative for contacts that slide against the tangent."""
+        tangential = np.concatenate([self.pair_tangential, self.wall_tangential])
+        return np.where((self.status == SLIDING) & (tangential < 0), -self.status, self.status)
+
 
 class StaticSystem:
     """Static equations of ``problem`` around the positions and candidate contacts of ``state``."""
@@ -76,6 +82,7 @@ class StaticSystem:
         self.wall_normals = wall_normals(self.wall)
         self.weight = problem.weight_vector()
         self._pattern()
+        self._kept: tuple[np.ndarray, Factor] | None = None
 
     @property
     def dof(self) -> int:
@@ -140,7 +147,7 @@ class StaticSystem:
     def _pattern(self) -> None:
         """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
         n, d = self.problem.n, self.problem.freedoms
-        self._order = node_order(self.reference, self.first, self.second)
+        self._order, dissection = elimination(self.reference, self.first, self.second, d)
         place_of = np.empty(n, np.int64)
         place_of[self._order] = np.arange(n)
         i, j = place_of[self.first], place_of[self.second]
@@ -174,8 +181,11 @@ class StaticSystem:
         self._indices = block_rows[np.repeat(starts, lengths) + offset]
         self._diagonal = (base[:n, None] + np.arange(d) * (stride[:n, None] + 1)).ravel()
         self._data = np.zeros(self._indptr[-1])
-        half_width = (int(np.abs(i - j).max(initial=0)) + 1) * d - 1
-        self._band = Band(self._indptr, self._indices, half_width) if half_width <= WIDEST_BAND else None
+        if dissection is None:
+            half_width = (int(np.abs(i - j).max(initial=0)) + 1) * d - 1
+            self._storage: Storage = Band(self._indptr, self._indices, half_width)
+        else:
+            self._storage = Multifrontal(dissection, d)
 
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`).
@@ -205,7 +215,17 @@ class StaticSystem:
         """LU of the tangent, a tiny regularisation included."""
         k = self.problem.pair_law[0]
         matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
-        return sparse_factor(matrix) if self._band is None else self._band.factor(matrix)
+        self._kept = None  # two need not be in memory
+        factor = self._storage.factor(matrix)
+        if np.ndim(shift) == 0 and shift == 0.0:
+            self._kept = trial.sense, factor
+        return factor
+
+    def kept_factor(self, trial: Trial) -> Factor | None:
+        """The last factorisation of a tangent, when every contact has the same status (and direction of sliding)."""
+        if self._kept is None or not np.array_equal(self._kept[0], trial.sense):
+            return None
+        return self._kept[1]
 
     def state(self, trial: Trial, load_factor: float, **information) -> State:
         """The state at rest of a solved trial."""
@@ -233,7 +253,25 @@ class StaticSystem:
     def symmetric_factor(self, trial: Trial, shift: float) -> tuple[Factor, int]:
         """Factorisation of the symmetric part of the tangent and its number of negative eigenvalues."""
         matrix = self.tangent(trial, shift)
-        return symmetric_factor(_symmetric_part(matrix), self._band)
+        return self._storage.symmetric_factor(_symmetric_part(matrix))
+
+    def without_prestress(self, trial: Trial) -> Trial:
+        """The trial with the stiffness of its springs alone: what the turn of contacts adds is left out.
+
+        Without friction this tangent has no negative eigenvalue, and its Newton steps always go downhill.
+        """
+        n, q = self.problem.n, trial.configuration.q
+        dx = self.dx0 + q[self.first] - q[self.second]
+        dz = self.dz0 + q[n + self.first] - q[n + self.second]
+        normal = np.stack([dx, dz], axis=1) / np.hypot(dx, dz)[:, None]
+        closed = np.where(trial.pair_normal > 0.0, self.problem.pair_law[0], 0.0)
+        g = np.zeros_like(trial.pair_tangent)
+        g[:, :2, :2] = -closed[:, None, None] * normal[:, :, None] * normal[:, None, :]
+        return replace(trial, pair_tangent=g)
+
+    def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
+        """Factorisation of the symmetric part of the tangent; None when it is not positive definite."""
+        return self._storage.definite_factor(_symmetric_part(self.tangent(trial, shift)))
 
     def meets_unlisted(self, q: FloatArray) -> bool:
         """Whether some disks overlap that are not among the candidates: the packing has rearranged."""
@@ -247,11 +285,13 @@ class StaticSystem:
         """Number of unstable directions of the tangent.
 
         Without sliding the tangent is symmetric (up to the turn of the contacts) and they are counted exactly.
-        Sliding makes it unsymmetric; then the four eigenvalues nearest to zero are computed and those with
-        a negative real part counted. ``shift`` keeps disks that roll freely from counting.
+        Sliding makes it unsymmetric. If its symmetric part has no negative eigenvalue, no eigenvalue of the tangent
+        has a negative real part (Bendixson); else the four nearest to zero are computed and those with a
+        negative real part counted. ``shift`` keeps disks that roll freely from counting.
         """
-        if SLIDING not in trial.pair_status and SLIDING not in trial.wall_status:
-            return self.symmetric_factor(trial, shift)[1]
+        modes = self.symmetric_factor(trial, shift)[1]
+        if modes == 0 or (SLIDING not in trial.pair_status and SLIDING not in trial.wall_status):
+            return modes
         origin = -1e-4 * self.problem.pair_law[0]
         factor = self.factorise(trial, shift - origin)
         values = eigs(

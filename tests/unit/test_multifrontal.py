@@ -1,0 +1,102 @@
+"""Multifrontal factorisation against dense and general sparse ones."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.sparse.linalg import spsolve
+from small_scenes import scene
+
+from granular_response.solve import Problem
+from granular_response.solve import linear as module
+from granular_response.solve.multifrontal import Dissection, Multifrontal
+from granular_response.solve.system import StaticSystem
+
+
+def lattice(columns, rows):
+    """Positions and neighbour pairs of a rectangular piece of a triangular lattice."""
+    x, z = np.meshgrid(np.arange(columns), np.arange(rows))
+    position = np.stack([(2.0 * x + z % 2).ravel(), np.sqrt(3.0) * z.ravel()], axis=1)
+    distance = np.linalg.norm(position[:, None] - position[None], axis=2)
+    first, second = np.nonzero(np.triu(distance < 2.1, 1))
+    return position, first, second
+
+
+def pattern(dissection, first, second, freedoms):
+    """A random unsymmetric matrix that ties each disk to its neighbours, in the order of elimination."""
+    n = len(dissection.order)
+    place = np.argsort(dissection.order)
+    graph = sp.csr_array((np.ones(len(first)), (place[first], place[second])), shape=(n, n))
+    full = sp.csc_array(sp.kron(graph + graph.T + sp.eye_array(n), np.ones((freedoms, freedoms))))
+    full.sort_indices()
+    full.data = np.random.default_rng(1).normal(size=len(full.data))
+    return full
+
+
+def shifted(matrix, shift):
+    return sp.csc_array(matrix + shift * sp.eye_array(matrix.shape[0]))
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(1, 1), (5, 3), (40, 9), (23, 31)])
+def test_fronts_cover_every_disk_and_tie(columns, rows):
+    position, first, second = lattice(columns, rows)
+    dissection = Dissection(position, first, second)
+    assert sorted(dissection.order.tolist()) == list(range(columns * rows))
+    place = np.argsort(dissection.order)
+    front = np.searchsorted(dissection.start, place, side="right") - 1
+    for a, b in zip(first, second, strict=True):
+        low, high = (a, b) if place[a] < place[b] else (b, a)
+        assert front[low] == front[high] or place[high] in dissection.boundary[front[low]]
+    children = [c for below in dissection.children for c in below]
+    assert len(children) == len(set(children)) and all(
+        child < parent for parent, below in enumerate(dissection.children) for child in below
+    )
+
+
+@pytest.mark.parametrize("freedoms", [2, 3])
+def test_lu_solves_what_a_general_solver_does(freedoms):
+    position, first, second = lattice(23, 31)
+    dissection = Dissection(position, first, second)
+    matrix = shifted(pattern(dissection, first, second, freedoms), 6.0)
+    right = np.random.default_rng(2).normal(size=matrix.shape[0])
+    x = Multifrontal(dissection, freedoms).factor(matrix).solve(right)
+    assert x == pytest.approx(spsolve(matrix, right), rel=1e-8, abs=1e-10)
+
+
+@pytest.mark.parametrize("shift", [60.0, 2.0])
+def test_symmetric_factors_solve_and_count_negative_eigenvalues(shift):
+    position, first, second = lattice(15, 20)
+    dissection = Dissection(position, first, second)
+    matrix = pattern(dissection, first, second, 2)
+    matrix = shifted(matrix + matrix.T, shift)
+    expected = int((np.linalg.eigvalsh(matrix.toarray()) < 0).sum())
+    assert (expected > 0) == (shift < 10.0)
+    fronts = Multifrontal(dissection, 2)
+    factor, negative = fronts.symmetric_factor(matrix)
+    assert negative == expected
+    assert (fronts.definite_factor(matrix) is None) == (expected > 0)
+    right = np.random.default_rng(2).normal(size=matrix.shape[0])
+    assert factor.solve(right) == pytest.approx(np.linalg.solve(matrix.toarray(), right), rel=1e-7, abs=1e-10)
+
+
+def test_singular_matrix_is_an_error():
+    position, first, second = lattice(3, 2)
+    dissection = Dissection(position, first, second)
+    with pytest.raises(RuntimeError, match="singular"):
+        Multifrontal(dissection, 2).factor(0.0 * pattern(dissection, first, second, 2))
+
+
+def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
+    problem = Problem.from_scene(scene(6, 13, contact__friction=0.2))
+    state = problem.bare_state()
+    banded = StaticSystem(problem, state)
+    monkeypatch.setattr(module, "WIDEST_BAND", 0)
+    fronts = StaticSystem(problem, state)
+    assert type(banded._storage) is not type(fronts._storage)
+    known = banded.start(state)
+    q = known.q + 1e-3 * np.random.default_rng(3).normal(size=known.q.size)
+    right = np.random.default_rng(4).normal(size=known.q.size)
+    solutions = []
+    for system in (banded, fronts):
+        factor = system.factorise(system.trial(known, q), 1000.0)
+        solutions.append(system.deinterleave(factor.solve(system.interleave(right))))
+    assert solutions[1] == pytest.approx(solutions[0], rel=1e-9, abs=1e-12)
