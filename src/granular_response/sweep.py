@@ -22,6 +22,7 @@ import pickle
 import reprlib
 import signal
 import threading
+import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -30,7 +31,7 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from . import __version__, atomic
+from . import __version__, atomic, floating_point
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -236,6 +237,7 @@ def _over_dask(function: Callable, items: Sequence[Any], todo: Sequence[int], ad
     except (OSError, TimeoutError, ValueError) as error:
         raise SweepError(f"no Dask scheduler answers at {address}: {error}") from error
     with client:
+        _compare_settings(client)
         futures = {client.submit(function, items[index], pure=False): index for index in todo}
         try:
             for future in as_completed(list(futures), loop=client.loop):
@@ -250,6 +252,23 @@ def _over_dask(function: Callable, items: Sequence[Any], todo: Sequence[int], ad
                 yield index, result
         finally:
             client.cancel(list(futures))
+
+
+def _compare_settings(client: Any) -> None:
+    """Warn where workers round otherwise than this process."""
+    here = _settings()
+    there = client.run(_settings, on_error="ignore")
+    different = sorted(address for address, settings in there.items() if settings != here)
+    if different:
+        warnings.warn(
+            f"{len(different)} of {len(there)} Dask workers, the first of them {different[0]}, are not set to round as "
+            f"this process does, so last digits may differ: see {floating_point.__name__}",
+            stacklevel=2,
+        )
+
+
+def _settings() -> dict[str, str | None]:
+    return {name: os.environ.get(name) for name in floating_point.variables()}
 
 
 class _Checkpoint:

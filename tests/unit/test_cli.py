@@ -308,6 +308,13 @@ def test_every_command_is_listed():
     )
 
 
+def test_a_shell_takes_the_floating_point_choices():
+    code = f'eval "$({sys.executable} -m granular_response.floating_point)"; env'
+    environment = {k: v for k, v in os.environ.items() if k not in floating_point.variables()}
+    done = subprocess.run(["sh", "-c", code], env=environment, capture_output=True, text=True, check=True)
+    assert {f"{name}={value}" for name, value in floating_point.variables().items()} <= set(done.stdout.splitlines())
+
+
 def test_floating_point_choices_are_accepted_by_numpy_without_warning():
     script = (
         f"import os; os.environ.update({floating_point.variables()}); import numpy as np;"

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -258,6 +259,14 @@ class TestDask:
         assert 12 in again
         assert len(again) <= 3  # with what it had not yet handed over; not all that it ever finished
         assert len(list((tmp_path / "kept").iterdir())) == 16
+
+    def test_workers_that_round_otherwise_are_reported(self, cluster, monkeypatch):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            map_tasks(response, ITEMS[:2], scheduler=cluster.scheduler_address)
+        monkeypatch.setenv("OMP_NUM_THREADS", "7")
+        with pytest.warns(UserWarning, match=r"Dask workers, the first of them tcp://.* last digits may differ"):
+            map_tasks(response, ITEMS[:2], scheduler=cluster.scheduler_address)
 
     def test_a_failing_task_is_named(self, cluster):
         with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) failed: ValueError: no equilibrium"):
