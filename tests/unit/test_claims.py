@@ -319,8 +319,7 @@ def test_without_data_nothing_is_measured_and_the_reason_names_what_is_missing()
 def scaled(group, name, variable, factor):
     def change(groups):
         data = groups[group][name].copy(deep=True)
-        for each in [variable] if isinstance(variable, str) else variable:
-            data[each] = data[each] * factor
+        data[variable] = data[variable] * factor
         groups[group][name] = data
 
     return change
@@ -381,9 +380,8 @@ PERTURBED = [
     ("F5", put(SLAB, "response", "teardrop_depth", [5.0, 1.0, 12.0]), "differs"),
     ("F5", tilted, "not reproduced"),
     ("F5", tilted_on_the_floor, "differs"),
-    ("F6", scaled(SLAB, "sizes", "teardrop_depth", [[1.0], [0.4], [1.0], [0.4]]), "differs"),
-    ("F6", scaled(SLAB, "sizes", ("teardrop_depth", "teardrop_width"), [[1.0], [0.1], [1.0], [1.0]]), "differs"),
-    ("F6", scaled(SLAB, "sizes", ("teardrop_depth", "teardrop_width"), [[1.0], [0.1], [1.0], [0.1]]), "not reproduced"),
+    ("F6", scaled(SLAB, "sizes", "teardrop_depth", [[1.0], [0.4], [1.0], [1.0]]), "differs"),
+    ("F6", scaled(SLAB, "sizes", "teardrop_width", [[1.0], [0.1], [1.0], [0.1]]), "not reproduced"),
     ("F7", put(SLAB, "sizes", "double_peaked", 1), "not reproduced"),
     ("F8", put(SLAB, "stiffness", "response_change", [0.02, 0.02, 0.2]), "differs"),
     ("F8", put(SLAB, "stiffness", "response_change", 0.2), "not reproduced"),

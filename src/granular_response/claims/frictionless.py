@@ -82,8 +82,8 @@ def teardrop_shape(data: Data) -> Finding:
     growing, least = min(shares[force] for force in away), min(shares, key=lambda force: shares[force])
     share = shares[least]
     return Finding(
-        f"until the region reaches the floor at least {growing:.1%} of the opened contacts are horizontal, {share:.1%} "
-        f"at {least:g} mg; depth grows from {depth[0]:.1f} to {depth.max():.1f} R",
+        f"horizontal part of the opened contacts: {growing:.1%} until the region reaches the floor, {share:.1%} at "
+        f"{least:g} mg; depth grows from {depth[0]:.1f} to {depth.max():.1f} R",
         growing,
         [
             Condition(
@@ -115,14 +115,15 @@ def _sizes(data: Data, *names: str) -> xr.Dataset:
     return sizes.isel(slab=alike)
 
 
-def _shrinks(depth: FloatArray, width: FloatArray, use: NDArray[np.bool_], deep: int) -> dict[str, tuple[bool, float]]:
-    """Whether depth and width in slab ``deep`` fall only slightly from slab 0, and their mean ratio."""
-    found = {}
-    for name, values, step in (("depth", depth, ROW), ("width", width, DISK)):
+def _slightly(depth: FloatArray, width: FloatArray, use: NDArray[np.bool_], deep: int) -> tuple[bool, float, float]:
+    """Whether depth and width in slab ``deep`` are only slightly below those in slab 0, and their mean ratios."""
+    slight = True
+    ratios: list[float] = []
+    for values, step in ((depth, ROW), (width, DISK)):
         a, b = values[0, use], values[deep, use]
-        slight = bool((b <= a + 1.05 * step).all() and (b >= 0.75 * a - 1.05 * step).all())
-        found[name] = slight, float(b.sum() / a.sum())
-    return found
+        slight &= bool((b <= a + 1.05 * step).all() and (b >= 0.75 * a - 1.05 * step).all())
+        ratios.append(float(b.sum() / a.sum()))
+    return slight, ratios[0], ratios[1]
 
 
 def teardrop_and_depth(data: Data) -> Finding:
@@ -140,21 +141,20 @@ def teardrop_and_depth(data: Data) -> Finding:
         use = (floor[0] == 0) & (depth[0] > 2.0 * ROW)
         if len(layers) < 2 or not use.any():
             raise NotMeasured(f"data/{GROUP}.nc: sizes holds one depth, or no open region away from the floor")
-        found = [_shrinks(depth, width, use, k) for k in range(1, len(layers))]
-        for name, (slight, ratio) in found[-1].items():
-            conditions.append(
-                Condition(
-                    f"k_N = {stiffness:g}: {name} in the deepest slab at most one lattice step above that in the "
-                    "thinnest, and at least 3/4 of it less one lattice step",
-                    slight,
-                    f"{name} {ratio:.2f} times that in the thinnest",
-                )
+        found = [_slightly(depth, width, use, k) for k in range(1, len(layers))]
+        slight, deep, wide = found[-1]
+        texts.append(f"depth {deep:.2f}, width {wide:.2f} times at k_N = {stiffness:g}")
+        conditions.append(
+            Condition(
+                f"k_N = {stiffness:g}: depth and width at least 3/4 of those in the thinnest slab less one lattice "
+                "step, and at most one step above them",
+                slight,
+                texts[-1],
             )
-        ratios.append(found[-1]["depth"][1])
-        both = ", ".join(f"{name} {ratio:.2f}" for name, (_, ratio) in found[-1].items())
-        texts.append(f"{both} times at k_N = {stiffness:g}")
-        holding = [all(slight for slight, _ in entry.values()) for entry in found]
-        if stiffness == STIFFNESS and not holding[-1]:
+        )
+        ratios.append(deep)
+        holding = [entry[0] for entry in found]
+        if stiffness == STIFFNESS and not slight:
             last = layers[holding.index(False)]
             remark = (
                 f"With the paper's stiffness it holds up to {last:.0f} layers. In deeper slabs gravity compresses "

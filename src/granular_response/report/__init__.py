@@ -72,7 +72,10 @@ def page(root: Path) -> str:
     explored, sensitivity = (data / f"{group}.nc" for group in (EXPLORED, SENSITIVITY))
     states = explorer.payload(store.read(explored)) if explored.exists() else None
     tried = readings.table(store.read(sensitivity)) if sensitivity.exists() else None
-    groups = sorted({picture.group for picture in shown.all()} | {row["group"] for row in claims["table"]})
+    numbers: dict[str, set[int]] = {row["group"]: set() for row in claims["table"]}
+    for picture in shown.all():
+        numbers.setdefault(picture.group, set()).update([picture.number] if picture.number else [])
+    groups = [{"name": group, "figures": sorted(numbers[group])} for group in sorted(numbers)]
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
@@ -90,12 +93,16 @@ def page(root: Path) -> str:
             readings=tried,
             benchmarks=benchmarks.tables(root / "benchmarks"),
             groups=groups,
+            versions=_versions(root / "requirements.lock"),
             style=_resource("style.css"),
             script=_resource("explorer.js"),
         )
         + "\n"
     )
 
+
+#: What the digits and the pictures come from.
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "qdldl", "xarray", "netCDF4", "matplotlib", "dvc")
 
 _VERDICTS = ("reproduced", "differs", "not reproduced", "not measured")
 
@@ -111,6 +118,14 @@ def _claims(path: Path) -> dict[str, Any]:
     if not known:
         raise ReportError(f"{path}: is not a table of claims")
     return found
+
+
+def _versions(lock: Path) -> list[tuple[str, str]]:
+    """Names and pinned versions of the libraries that results depend on, none without the file."""
+    if not lock.exists():
+        return []
+    pinned = dict(line.split("==") for line in lock.read_text(encoding="utf-8").split() if line.count("==") == 1)
+    return [(name, pinned[name]) for name in _LIBRARIES if name in pinned]
 
 
 def _resource(name: str) -> str:

@@ -64,6 +64,14 @@ CAPTIONS: dict[int, str] = {
     "the middle half of the realizations ends; broken line: its median.",
 }
 
+#: What further figures show, by stem.
+FURTHER: dict[str, str] = {
+    "numerics": "What the paper says about its numerics: the error of floor forces against the kinetic energy at which "
+    "a run stops, the kinetic energy of statically finished states put back into the dynamics, and the time to rest "
+    "against the damping of a contact.",
+    "sensitivity": "How much each reading of the paper changes the floor response; the table below has the numbers.",
+}
+
 _NUMBER = re.compile(r"fig(\d+)")
 
 
@@ -81,6 +89,21 @@ class Picture:
     @property
     def module(self) -> str:
         return f"src/granular_response/figures/{self.group}.py"
+
+    @property
+    def number(self) -> int | None:
+        """Number of the paper's figure that it belongs to."""
+        match = _NUMBER.match(self.stem)
+        return int(match[1]) if match and int(match[1]) in CAPTIONS else None
+
+    @property
+    def title(self) -> str:
+        return self.stem.replace("_", " ").capitalize()
+
+    @property
+    def caption(self) -> str:
+        """Of a further figure."""
+        return FURTHER.get(self.stem, "")
 
 
 @dataclass(frozen=True)
@@ -111,11 +134,10 @@ def collect(folder: Path) -> Pictures:
     further = []
     for path in sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name)):
         picture = embed(path)
-        match = _NUMBER.match(path.stem)
-        if match and int(match[1]) in numbered:
-            numbered[int(match[1])].append(picture)
-        else:
+        if picture.number is None:
             further.append(picture)
+        else:
+            numbered[picture.number].append(picture)
     figures = tuple(Figure(n, CAPTIONS[n], tuple(found)) for n, found in numbered.items())
     return Pictures(figures, tuple(further))
 
