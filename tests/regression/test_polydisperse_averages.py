@@ -143,6 +143,7 @@ def test_figures(datasets) -> None:
         "fig19_disordered_response",
         "fig20_disordered_linear_range",
         "fig21_disordered_forces",
+        "packings",
     ]
     panel = drawn["fig19_disordered_response"].axes[1]  # with friction, largest disks touching
     rows = study.smoothed(datasets["ensembles"], 2, 2, datasets["individual"]["x"].values, 3.0)

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from granular_response import store
+from granular_response.figures import phase_diagram as figures
+from granular_response.figures import style
 from granular_response.studies.phase_diagram import (
     ABOVE,
     BELOW,
@@ -156,6 +159,65 @@ def test_linear_end() -> None:
     last, after = linear_end(force, np.array([1.0, 1.02, 0.99, np.nan]), 0.05)
     assert last == 3.0
     assert np.isnan(after)
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """Ensembles of ten slabs whose two peaks part from one as the force grows, at two frictions, and a lattice."""
+    disks = np.arange(-60.0, 61.0, 2.0)
+    force = np.array([1.0, 2.0, 4.0, 8.0])
+    size = 10
+    rng = np.random.default_rng(2)
+    response = np.full((3, size, 4, len(disks)), np.nan)
+    for case, later, count in ((0, 0.0, 1), (1, 0.0, size), (2, 3.0, size)):
+        for r in range(count):
+            for k, f in enumerate(force):
+                away = max(0.0, 4.0 + 3.0 * np.log2(f) - later + (rng.normal(0.0, 1.0) if count > 1 else 0.0))
+                both = np.exp(-(((disks - away) / 6.0) ** 2)) + np.exp(-(((disks + away) / 6.0) ** 2))
+                response[case, r, k] = both / both.sum()
+    source = xr.Dataset(
+        {
+            "force": (("case", "step"), np.tile(force, (3, 1))),
+            "x": (("case", "realization", "slot"), np.tile(disks, (3, size, 1))),
+            "floor_response": (("case", "realization", "step", "slot"), response),
+            "outcome": (("case", "realization", "step"), np.zeros((3, size, 4), np.int8)),
+        },
+        coords={
+            "polydispersity": (("case",), [0.0, 0.1, 0.1]),
+            "friction": (("case",), [0.2, 0.2, 0.5]),
+            "lattice_constant": (("case",), ["touching-largest"] * 3),
+            "realizations": (("case",), [1, size, size]),
+        },
+    )
+    for variable in source.variables.values():
+        variable.attrs.update(long_name="made by hand", units="1")
+    path = tmp_path_factory.mktemp("data") / "polydisperse_averages.nc"
+    store.write(path, {"ensembles": source})
+    return path
+
+
+def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
+    parameters = {"draws": 50, "few": 5, "seed": 0, "least_part": 0.5, "spacing": 0.5, "reach": 30.0}
+    found = simulate({**parameters, "widths": [3.0, 6.0], "responses": stored})
+    again = simulate({**parameters, "widths": [3.0, 6.0], "responses": stored}, workers=2)
+    for name, dataset in found.items():
+        xr.testing.assert_identical(dataset, again[name])
+    data = found["crossovers"]
+    assert data["kind"].values[1].tolist() == [FOUND] * 3
+    force, interval = data["force"].values[1], data["interval"].values[1]
+    assert 1.7 < force[2] / force[1] < 2.3  # three radii later: twice the force
+    np.testing.assert_allclose(interval[0], force[0])  # one packing has no scatter
+    assert np.all(interval[1:, 0] < force[1:])
+    assert np.all(force[1:] < interval[1:, -1])
+    # more smoothing merges the peaks at larger forces
+    assert np.all(data["force"].values[0] < force)
+    store.write(tmp_path / "phase_diagram.nc", found)
+    drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))
+    assert list(drawn) == ["fig22_phase_diagram", "five_realizations"]
+    marks = [line for line in drawn["fig22_phase_diagram"].axes[1].get_lines() if line.get_marker() == "s"]
+    assert sorted(y for line in marks for y in line.get_ydata()) == pytest.approx(sorted(force[1:]))
+    for figure in drawn.values():
+        assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(("key", "value", "named"), [("draws", 0, "draws = 0"), ("least_part", 0.0, "least_part = 0")])

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from granular_response.figures import style
@@ -35,13 +36,14 @@ START_NAMES = {"touching-largest": "start: largest disks touch", "2.0": "start: 
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig02_polydisperse_forces``, ``fig19_disordered_response``, ``fig20_disordered_linear_range`` and
-    ``fig21_disordered_forces`` from the datasets of the study of the same name."""
+    """``fig02_polydisperse_forces``, ``fig19_disordered_response``, ``fig20_disordered_linear_range``,
+    ``fig21_disordered_forces`` and ``packings`` from the datasets of the study of the same name."""
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
         "fig19_disordered_response": _response(datasets["individual"]),
         "fig20_disordered_linear_range": _linear_range(datasets["linear_range"]),
         "fig21_disordered_forces": _averages(datasets["averages"]),
+        "packings": _packings(datasets["packings"], datasets["averages"]),
     }
 
 
@@ -237,5 +239,78 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         axes.plot(x, mean, color=colour, linestyle=style.LINE_STYLES[k], linewidth=1.0, label=label)
     axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
     axes.set_xlim(-45.0, 45.0)
-    axes.margins(y=0.1)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.3 * (high - low))  # room for letter and legend
     axes.legend(loc="upper right", fontsize=7, handlelength=1.6, title="$F_{\\mathrm{ext}}/mg$", title_fontsize=7)
+
+
+def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
+    """Directions of contacts, coordination numbers, and how many packings bear a force."""
+    figure, panels = style.figure(1, 3, width="double", height=2.7)
+    directions, coordination, bearing = panels[0]
+    starts = data["lattice_constant"].values
+    usual = starts[0]
+    deltas = sorted(set(data["polydispersity"].values.tolist()))
+    angle = np.degrees(data["angle"].values)
+    literal = [start for start in START_NAMES if start != usual and start in starts]
+    for delta, start in [*((delta, usual) for delta in deltas if delta), *((deltas[1], start) for start in literal)]:
+        case = _case(data, delta, 0.0, start)
+        if case is None:
+            continue
+        density = np.nanmean(data["contact_angle_density"].values[case], axis=0)
+        look = style.line(deltas.index(delta)) if start == usual else {"color": style.BLACK, "linestyle": ":"}
+        name = f"$\\delta = {delta:g}$" + ("" if start == usual else ", start $2\\bar R$")
+        directions.plot(angle, density, **look, linewidth=1.0, label=name)
+    directions.set(
+        xlabel="angle to the horizontal (degrees)",
+        ylabel="contact directions per radian, $\\mu = 0$",
+        xticks=range(0, 181, 60),
+        ylim=(0.0, 1.75 * directions.get_ylim()[1]),
+    )
+    directions.legend(loc="upper right", fontsize=7)
+    for index, delta in enumerate(deltas):
+        here = np.flatnonzero((data["polydispersity"].values == delta) & (starts == usual))
+        here = here[np.argsort(data["friction"].values[here])]
+        name = f"$\\delta = {delta:g}$" if delta else "lattice"
+        look = style.marked_line(index)
+        here = here[np.isfinite(data["coordination_number_bulk"].values[here]).any(axis=1)]
+        numbers = data["coordination_number_bulk"].values[here]
+        mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
+        look |= {"markersize": 3.5, "elinewidth": 0.8, "capsize": 2.0}
+        coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=name)
+        if delta:
+            _bearing(bearing, averages, delta, usual, style.COLOURS[index])
+    coordination.set(xlabel="$\\mu = \\mu^{\\mathrm{wall}}$", ylabel="contacts per disk in the bulk")
+    coordination.legend(loc="center right", bbox_to_anchor=(1.0, 0.68))
+    bearing.set(xlabel="$F_{\\mathrm{ext}}/mg$", ylabel="part of the packings at rest", xscale="log", ylim=(0.4, 1.02))
+    bearing.legend(*_friction_key(bearing), loc="lower left", title="$\\mu$", ncols=2, columnspacing=1.0)
+    for axes, name in zip(panels[0], "abc", strict=True):
+        style.letter(axes, name, place="above")
+    return figure
+
+
+def _bearing(axes: Axes, averages: xr.Dataset, delta: float, start: str, colour: str) -> None:
+    """The part of the packings at rest against the force: colour by polydispersity, line style by friction."""
+    here = (averages["polydispersity"].values == delta) & (averages["lattice_constant"].values == start)
+    cases = np.flatnonzero(here)
+    for index, case in enumerate(cases[np.argsort(averages["friction"].values[cases])]):
+        one = averages.isel(case=int(case))
+        used = np.isfinite(one["force"].values)
+        total = sum(one[f"count_{name}"].values[used] for name in ("at_rest", "collapsed", "failed", "not_reached"))
+        part = one["count_at_rest"].values[used] / total
+        label = f"{float(one['friction']):g}"
+        axes.plot(
+            one["force"].values[used],
+            part,
+            color=colour,
+            linestyle=style.LINE_STYLES[index],
+            linewidth=0.9,
+            label=label,
+        )
+
+
+def _friction_key(axes: Axes) -> tuple[list[Line2D], list[str]]:
+    """One black line for each friction."""
+    names = sorted({str(line.get_label()) for line in axes.get_lines()}, key=float)
+    keys = [Line2D([], [], color=style.BLACK, linewidth=0.9, linestyle=style.LINE_STYLES[k]) for k in range(len(names))]
+    return keys, names
