@@ -66,9 +66,14 @@ CAPTIONS: dict[int, str] = {
 
 #: What further figures show, by stem.
 FURTHER: dict[str, str] = {
+    "five_realizations": "How often the mean response of five slabs has as many peaks as that of twenty, against the "
+    "force over the crossover force; one line for each polydispersity and coefficient of friction.",
     "numerics": "What the paper says about its numerics: the error of floor forces against the kinetic energy at which "
     "a run stops, the kinetic energy of statically finished states put back into the dynamics, and the time to rest "
     "against the damping of a contact.",
+    "packings": "Packings at rest: directions of their contacts without friction for both starts, contacts of a disk "
+    "away from the boundaries (bars: standard deviation), and the part that does not collapse under a force (colours "
+    "as before).",
     "sensitivity": "How much each reading of the paper changes the floor response; the table below has the numbers.",
 }
 
