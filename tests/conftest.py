@@ -2,9 +2,18 @@
 
 import os
 
+from hypothesis import settings
+
 from granular_response import floating_point
 
 floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.pop("DASK_SCHEDULER_ADDRESS", None)  # a sweep in a test runs where the test says
 os.environ.pop("GRANULAR_RESPONSE_CHECKPOINT", None)
+
+# Properties are tried on the same examples every time. GRANULAR_RESPONSE_FUZZ=5000 tries as many new ones of each.
+settings.register_profile("default", derandomize=True, deadline=None, max_examples=100)
+settings.register_profile(
+    "fuzz", deadline=None, max_examples=int(os.environ.get("GRANULAR_RESPONSE_FUZZ", "0")) or 100, print_blob=True
+)
+settings.load_profile("fuzz" if "GRANULAR_RESPONSE_FUZZ" in os.environ else "default")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from granular_response.core.neighbours import close_pairs, make_runs, run_pairs
@@ -45,7 +45,6 @@ def test_one_disk_has_no_pairs():
     assert [len(part) for part in run_pairs(runs)] == [0, 0]
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     pairs=st.sets(st.tuples(st.integers(0, 60), st.integers(1, 6)), max_size=150),
     gap=st.integers(0, 6),

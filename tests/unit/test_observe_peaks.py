@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import signal
 
@@ -101,7 +101,6 @@ def test_small_bumps_beside_a_peak_do_not_count():
     assert peak_count(X, r, relative_prominence=1e-4) == 3
 
 
-@settings(deadline=None)  # machines are shared
 @given(st.integers(0, 2**32 - 1), st.sampled_from([ONE, TWO, THREE, profile(1.0, 1.0, 0.3), profile(0.9, 1, 1)]))
 def test_rounding_noise_changes_nothing(seed, r):
     noise = 1e-13 * np.random.default_rng(seed).standard_normal(r.size)
@@ -111,7 +110,6 @@ def test_rounding_noise_changes_nothing(seed, r):
     np.testing.assert_allclose(noisy.prominence, clean.prominence, atol=1e-12)
 
 
-@settings(deadline=None)  # machines are shared
 @given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=12), st.booleans())
 def test_symmetric_profiles_have_symmetric_peaks(half, centre):
     r = np.array(half[:0:-1] + half if centre else half[::-1] + half)
@@ -123,7 +121,6 @@ def test_symmetric_profiles_have_symmetric_peaks(half, centre):
     np.testing.assert_allclose(peaks.prominence, peaks.prominence[::-1], atol=2e-5)
 
 
-@settings(deadline=None)  # machines are shared
 @given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=25))
 def test_reflected_profiles_have_reflected_peaks(values):
     r = np.array(values)
@@ -133,7 +130,6 @@ def test_reflected_profiles_have_reflected_peaks(values):
     np.testing.assert_allclose(right.prominence, left.prominence[::-1], atol=2e-5)
 
 
-@settings(deadline=None)  # machines are shared
 @given(st.lists(st.integers(-50, 50), min_size=3, max_size=25, unique=True))
 def test_distinct_heights_agree_with_scipy(values):
     r = np.array(values, dtype=float)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from granular_response.scene import PilePacking, SlabPacking
@@ -48,7 +48,6 @@ def test_pile_of_the_paper():
     assert z.min() == 1.0
 
 
-@settings(max_examples=60, deadline=None)
 @given(slabs | piles)
 def test_neighbours_are_those_at_one_lattice_constant(described):
     packing = described.build()
@@ -60,7 +59,6 @@ def test_neighbours_are_those_at_one_lattice_constant(described):
     assert (pairs == expected).all()
 
 
-@settings(max_examples=40, deadline=None)
 @given(slabs | piles)
 def test_box_is_tangent_to_the_lattice(described):
     packing = described.build()

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from granular_response.scene import Scene, SceneError
 
-MANY = settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+MANY = settings(suppress_health_check=[HealthCheck.too_slow])
 
 
 def numbers(low=0.0, high=1e6, *, open_low=False):

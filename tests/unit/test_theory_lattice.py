@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from granular_response.theory import half_plane, lattice
@@ -80,7 +80,6 @@ def test_equal_bonds_are_isotropic(k_n: float, k_t: float) -> None:
         assert m.peak_criterion == pytest.approx(1.0, rel=1e-10)
 
 
-@settings(max_examples=200)
 @given(k1n=stiffness, k2n=stiffness, k1t=stiffness, k2t=stiffness)
 def test_criterion_r_is_minus_the_squared_peak_position(k1n: float, k2n: float, k1t: float, k2t: float) -> None:
     m = lattice.moduli(Springs(k1n, k2n, k1t, k2t))

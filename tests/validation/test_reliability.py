@@ -138,7 +138,7 @@ def test_truncated_and_foreign_files_are_one_line(tmp_path, solution):
     assert "foreign.nc: was not written by granular_response" in one_line(["show", "foreign.nc"], tmp_path)
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(cut=st.floats(0.0, 0.999), place=st.floats(0.0, 0.999), flip=st.integers(1, 255))
 def test_a_damaged_file_is_never_read(tmp_path, solution, cut, place, flip):
     path = tmp_path / "damaged.nc"
@@ -175,14 +175,14 @@ def loaded(path: Path) -> None:
         assert isinstance(found, dict)
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(content=st.binary(max_size=200))
 def test_any_bytes_as_parameters(tmp_path, content):
     (tmp_path / "params.yaml").write_bytes(content)
     loaded(tmp_path / "params.yaml")
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(content=SECTIONS | TREES)
 def test_any_tree_as_parameters(tmp_path, content):
     (tmp_path / "params.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
