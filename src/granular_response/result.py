@@ -16,9 +16,9 @@ import numpy as np
 import xarray as xr
 
 from . import __version__
-from .observe.difference import match_candidates
+from .observe.difference import match_candidates, pair_force_difference, wall_force_difference
 from .observe.floor import floor_disks, floor_force
-from .scene import Scene
+from .scene import Packing, Scene
 from .solve.choice import load_method, rest_method
 from .solve.equilibrium import Certificate
 from .solve.problem import Problem
@@ -40,6 +40,7 @@ _CONTACT_VARIABLES = {
     "spring": f"elongation of the tangential spring {LENGTH}",
     "status": "contact status",
 }
+_FLAGS = {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
 _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 
 
@@ -81,11 +82,7 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
         data[f"{prefix}_{second}" if kind == "pairs" else "wall_index"] = variable((dim,), contacts[0].second, text)
         for name, long_name in _CONTACT_VARIABLES.items():
             values = np.stack([getattr(c, name) for c in contacts])
-            flags = (
-                {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
-                if name == "status"
-                else {}
-            )
+            flags = _FLAGS if name == "status" else {}
             data[f"{prefix}_{name}"] = variable((dimension, dim), values, long_name, **flags)
     data["load_factor"] = variable(
         (dimension,), np.array([s.load_factor for s in states]), "multiplier of the scene's loads"
@@ -111,6 +108,47 @@ def certificates_dataset(states: Sequence[State], dimension: str = "state") -> x
             for name, text in names.items()
         }
     )
+
+
+def added_forces_dataset(
+    rest: Sequence[State], loaded: Sequence[State], packing: Packing, dimension: str
+) -> xr.Dataset:
+    """What loads add at every contact, for pairs of states on one candidate list, along ``dimension``.
+
+    Gravity is subtracted as a vector. With the geometry under load that pictures need, and the certificates.
+    """
+    pairs, walls = rest[0].pairs, rest[0].walls
+    both = list(zip(rest, loaded, strict=True))
+    text = f"contact force that the load adds, on the first disk {FORCE}"
+
+    def status(when: str, states: Sequence[State]) -> xr.Variable:
+        values = np.stack([state.pairs.status for state in states])
+        return variable((dimension, "contact"), values, f"contact status {when}", **_FLAGS)
+
+    return xr.Dataset(
+        {
+            "position": variable(
+                (dimension, "disk", "axis"),
+                np.stack([state.position for state in loaded]),
+                f"disk centre x, z under load {LENGTH}",
+            ),
+            "radius": variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
+            "contact_disk": variable(("contact",), pairs.first, "disk that the contact force acts on"),
+            "contact_partner": variable(("contact",), pairs.second, "other disk"),
+            "contact_added_force": variable(
+                (dimension, "contact", "axis"), np.stack([pair_force_difference(a, b) for a, b in both]), text
+            ),
+            "contact_status_rest": status("at rest", rest),
+            "contact_status": status("under load", loaded),
+            "wall_disk": variable(("wall_contact",), walls.first, "disk that the wall's force acts on"),
+            "wall_index": variable(("wall_contact",), walls.second, "wall: 0 floor, 1 left, 2 right"),
+            "wall_added_force": variable(
+                (dimension, "wall_contact", "axis"), np.stack([wall_force_difference(a, b) for a, b in both]), text
+            ),
+            "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
+        },
+        coords={"axis": variable(("axis",), ["x", "z"], "axis labels")},
+    ).merge(certificates_dataset(loaded, dimension))
 
 
 def to_dataset(solution: Solution) -> xr.Dataset:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.figures import style
-from granular_response.figures.network_drawing import draw_contact_changes, draw_load
+from granular_response.figures.network_drawing import draw_state_changes
 
 #: Forces of the profiles (Fig. 7), of the pictures of contacts (Figs. 8 and 9) and of the large forces (Fig. 16).
 PROFILE_FORCES = {0.2: (4.0, 10.0, 20.0, 30.0, 50.0), 1.0: (4.0, 10.0, 20.0, 30.0, 50.0)}
@@ -147,40 +147,14 @@ def _contacts(states: xr.Dataset, friction: float) -> Figure:
     shown = [force for force in CONTACT_FORCES if force in stored] or stored[1:4].tolist()
     figure, axes = style.figure(len(shown), 1, height=2.15 * len(shown))
     rest = states.isel(state=0)
-    middle = float(rest["position"][int(rest["loaded_disk"]), 0])
-    reach = float(rest["width"]) / 6.0
     handles: dict[str, Any] = {}
     for index, force in enumerate(shown):
         loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
         panel = axes[index, 0]
-        _draw_changes(panel, rest, loaded, (middle - reach, middle + reach), handles)
+        drawn = draw_state_changes(panel, rest, loaded, loaded["contact_status"].values == SLIDING)
+        handles.update({name: line for name, line in drawn.items() if name not in handles})
         style.letter(
             panel, "abcdefgh"[index], place="above", text=rf"$\mu={friction:g}$, $F_\mathrm{{ext}}={force:g}\,mg$"
         )
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)
     return figure
-
-
-def _draw_changes(
-    panel: Axes, rest: xr.Dataset, loaded: xr.Dataset, limits: tuple[float, float], handles: dict[str, Any]
-) -> None:
-    """Contacts between two horizontal ``limits``, and the load; ``handles`` gains the kinds that are new."""
-    position = rest["position"].values
-    first, second = rest["contact_disk"].values, rest["contact_partner"].values
-    x = 0.5 * (position[first, 0] + position[second, 0])
-    shown = (x > limits[0] - 2.0) & (x < limits[1] + 2.0)
-    status = loaded["contact_status"].values[shown]
-    drawn = draw_contact_changes(
-        panel,
-        position,
-        first[shown],
-        second[shown],
-        touching_before=rest["contact_status"].values[shown] != OPEN,
-        touching=status != OPEN,
-        sliding=status == SLIDING,
-    )
-    handles.update({name: line for name, line in drawn.items() if name not in handles})
-    x_load, z_load = position[int(rest["loaded_disk"])]
-    draw_load(panel, (float(x_load), float(z_load) + 0.4), length=3.0)
-    panel.set(xlim=limits, ylim=(0.0, float(position[:, 1].max()) + 4.0))
-    style.no_axes(panel)

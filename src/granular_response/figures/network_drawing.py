@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 from granular_response.figures import style
 
 FloatArray = NDArray[np.float64]
+
+#: Stored status of a contact that does not touch.
+OPEN = 0
 
 #: Inward normals of FLOOR, LEFT_WALL, RIGHT_WALL: as in ``solve.state``, without loading a solver to draw.
 WALL_NORMAL = np.array([[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
@@ -116,6 +120,34 @@ def draw_contact_changes(
         if mask.any():
             look = {**CONTACT_LINES[name], "label": name, **lines}
             drawn[name] = draw_contacts(axes, position, i[mask], j[mask], **look)
+    return drawn
+
+
+def draw_state_changes(
+    axes: Axes, rest: xr.Dataset, loaded: xr.Dataset, sliding: ArrayLike
+) -> dict[str, LineCollection]:
+    """Figs. 8, 9 and 16: the central third of a slab, what a load changes in its contacts, and the load.
+
+    ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts. Returns what
+    :func:`draw_contact_changes` does.
+    """
+    position = rest["position"].values
+    first, second = rest["contact_disk"].values, rest["contact_partner"].values
+    x, z = position[int(rest["loaded_disk"])]
+    reach = float(rest["width"]) / 6.0
+    shown = np.abs(0.5 * (position[first, 0] + position[second, 0]) - x) < reach + 2.0
+    drawn = draw_contact_changes(
+        axes,
+        position,
+        first[shown],
+        second[shown],
+        touching_before=rest["contact_status"].values[shown] != OPEN,
+        touching=loaded["contact_status"].values[shown] != OPEN,
+        sliding=np.asarray(sliding)[shown],
+    )
+    draw_load(axes, (float(x), float(z) + 0.4), length=3.0)
+    axes.set(xlim=(x - reach, x + reach), ylim=(0.0, float(position[:, 1].max()) + 4.0))
+    style.no_axes(axes)
     return drawn
 
 

@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.figures import style
-from granular_response.figures.network_drawing import draw_contact_changes, draw_load
+from granular_response.figures.network_drawing import draw_state_changes
 
-OPEN = 0
 #: A contact is marked when its tangential force is within this fraction of the Coulomb limit.
 MARGIN = 0.05
 #: Part of the slab that profiles show, to both sides of the load (radii).
@@ -103,26 +102,10 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
 
 def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset, handles: dict[str, Any]) -> None:
     """The central third of the contact network, contacts near the Coulomb limit marked."""
-    position = rest["position"].values
-    first, second = rest["contact_disk"].values, rest["contact_partner"].values
-    x_load, z_load = position[int(rest["loaded_disk"])]
-    reach = float(rest["width"]) / 6.0
-    shown = np.abs(0.5 * (position[first, 0] + position[second, 0]) - x_load) < reach + 2.0
     limit = (1.0 - MARGIN) * float(rest["friction_coefficient"]) * loaded["contact_normal_force"].values
-    drawn = draw_contact_changes(
-        panel,
-        position,
-        first[shown],
-        second[shown],
-        touching_before=rest["contact_status"].values[shown] != OPEN,
-        touching=loaded["contact_status"].values[shown] != OPEN,
-        sliding=(np.abs(loaded["contact_tangential_force"].values) >= limit)[shown],
-    )
+    drawn = draw_state_changes(panel, rest, loaded, np.abs(loaded["contact_tangential_force"].values) >= limit)
     names = {"sliding": f"within {MARGIN:.0%} of the Coulomb limit"}
     handles.update({names.get(kind, kind): line for kind, line in drawn.items()})
-    draw_load(panel, (float(x_load), float(z_load) + 0.4), length=3.0)
-    panel.set(xlim=(x_load - reach, x_load + reach), ylim=(0.0, float(position[:, 1].max()) + 4.0))
-    style.no_axes(panel)
 
 
 def _power(value: float) -> str:

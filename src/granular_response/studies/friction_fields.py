@@ -24,11 +24,17 @@ from granular_response.observe import stress as coarse
 from granular_response.observe.difference import (
     force_misalignment,
     pair_force_difference,
-    wall_force_difference,
 )
 from granular_response.observe.network import contact_centre
 from granular_response.observe.profile import ROW_SPACING, force_profile, row_depth
-from granular_response.result import FORCE, LENGTH, certificates_dataset, common_candidates, variable
+from granular_response.result import (
+    FORCE,
+    LENGTH,
+    added_forces_dataset,
+    certificates_dataset,
+    common_candidates,
+    variable,
+)
 from granular_response.scene import Packing, Scene
 from granular_response.solve import State
 from granular_response.solve.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL
@@ -236,44 +242,10 @@ def _scalars(rest: Sequence[State], loaded: Sequence[State], disk: int) -> dict[
 def _forces_dataset(
     packing: Packing, rest: Sequence[State], loaded: Sequence[State], disk: int, force: float
 ) -> xr.Dataset:
-    pairs, walls = rest[0].pairs, rest[0].walls
-    both = list(zip(rest, loaded, strict=True))
-    text = "contact force that the load adds, on the first disk"
-    return xr.Dataset(
-        {
-            "position": variable(
-                ("friction", "disk", "axis"),
-                np.stack([state.position for state in loaded]),
-                f"disk centre x, z under load {LENGTH}",
-            ),
-            "radius": variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
-            "contact_disk": variable(("contact",), pairs.first, "disk that the contact force acts on"),
-            "contact_partner": variable(("contact",), pairs.second, "other disk"),
-            "contact_added_force": variable(
-                ("friction", "contact", "axis"),
-                np.stack([pair_force_difference(a, b) for a, b in both]),
-                f"{text} {FORCE}",
-            ),
-            "contact_status_rest": _status(("friction", "contact"), [a.pairs.status for a in rest], "at rest"),
-            "contact_status": _status(("friction", "contact"), [b.pairs.status for b in loaded], "under load"),
-            "wall_disk": variable(("wall_contact",), walls.first, "disk that the wall's force acts on"),
-            "wall_index": variable(("wall_contact",), walls.second, "wall: 0 floor, 1 left, 2 right"),
-            "wall_added_force": variable(
-                ("friction", "wall_contact", "axis"),
-                np.stack([wall_force_difference(a, b) for a, b in both]),
-                f"{text} {FORCE}",
-            ),
-            "loaded_disk": variable((), disk, "index of the loaded disk"),
-            "force": variable((), force, f"applied force {FORCE}"),
-            "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
-        },
-        coords={"axis": variable(("axis",), ["x", "z"], "axis labels")},
-    ).merge(certificates_dataset(loaded, "friction"))
-
-
-def _status(dims: tuple[str, ...], values: Sequence[NDArray], when: str) -> xr.Variable:
-    flags = {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
-    return variable(dims, np.stack(values), f"contact status {when}", **flags)
+    return added_forces_dataset(rest, loaded, packing, "friction").assign(
+        loaded_disk=variable((), disk, "index of the loaded disk"),
+        force=variable((), force, f"applied force {FORCE}"),
+    )
 
 
 def _stress_dataset(

@@ -19,9 +19,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.observe import stress as coarse
-from granular_response.observe.difference import pair_force_difference, wall_force_difference
+from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.network import contact_centre
-from granular_response.result import FORCE, LENGTH, certificates_dataset, common_candidates, variable
+from granular_response.result import (
+    FORCE,
+    LENGTH,
+    added_forces_dataset,
+    common_candidates,
+    variable,
+)
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, State, loaded_states
 from granular_response.studies.settled import rest_state
@@ -112,48 +118,14 @@ def _load(force: FloatArray, torque: float) -> dict[str, Any]:
 
 
 def _states_dataset(packing: Packing, rest: State, loaded: Sequence[State], disk: int, force: FloatArray) -> xr.Dataset:
-    pairs, walls = rest.pairs, rest.walls
-    dims = ("torque", "contact")
-    flags = {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
     turned = [state.angle[disk] - rest.angle[disk] for state in loaded]
-    return xr.Dataset(
-        {
-            "position": variable(
-                ("torque", "disk", "axis"),
-                np.stack([state.position for state in loaded]),
-                f"disk centre x, z under load {LENGTH}",
-            ),
-            "radius": variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
-            "contact_disk": variable(("contact",), pairs.first, "disk that the contact force acts on"),
-            "contact_partner": variable(("contact",), pairs.second, "other disk"),
-            "contact_added_force": variable(
-                (*dims, "axis"),
-                np.stack([pair_force_difference(rest, state) for state in loaded]),
-                f"contact force that the load adds, on the first disk {FORCE}",
-            ),
-            "contact_status_rest": variable(("contact",), pairs.status, "contact status at rest", **flags),
-            "contact_status": variable(
-                dims,
-                np.stack([state.pairs.status for state in loaded]),
-                "contact status under load",
-                **flags,
-            ),
-            "wall_disk": variable(("wall_contact",), walls.first, "disk that the wall's force acts on"),
-            "wall_index": variable(("wall_contact",), walls.second, "wall: 0 floor, 1 left, 2 right"),
-            "wall_added_force": variable(
-                ("torque", "wall_contact", "axis"),
-                np.stack([wall_force_difference(rest, state) for state in loaded]),
-                f"force of the wall that the load adds {FORCE}",
-            ),
-            "rotation": variable(
-                ("torque",), turned, "rotation of the loaded disk by the load, counter-clockwise, in radians"
-            ),
-            "loaded_disk": variable((), disk, "index of the loaded disk"),
-            "applied_force": variable(("axis",), force, f"applied force x, z {FORCE}"),
-            "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
-        },
-        coords={"axis": variable(("axis",), ["x", "z"], "axis labels")},
-    ).merge(certificates_dataset(loaded, "torque"))
+    return added_forces_dataset([rest] * len(loaded), loaded, packing, "torque").assign(
+        rotation=variable(
+            ("torque",), turned, "rotation of the loaded disk by the load, counter-clockwise, in radians"
+        ),
+        loaded_disk=variable((), disk, "index of the loaded disk"),
+        applied_force=variable(("axis",), force, f"applied force x, z {FORCE}"),
+    )
 
 
 def _stress_dataset(packing: Packing, rest: State, loaded: Sequence[State], w: float, spacing: float) -> xr.Dataset:
