@@ -4,7 +4,7 @@ import pytest
 from small_scenes import scene
 
 from granular_response.scene import SceneError
-from granular_response.solve import DynamicsError, NotSettled, PathError, solve_scene
+from granular_response.solve import DynamicsError, NotSettled, PathError, Problem, path, rest_state, solve_scene
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
 
@@ -61,6 +61,31 @@ def test_the_protocols_steps_bound_a_path_too():
     )
     with pytest.raises((PathError, NotSettled), match=r"within protocol\.maximum_steps = 3000"):
         solve_scene(dragged.updated({"protocol.maximum_steps": 3000, "protocol.stop_kinetic_energy": 1e-5}))
+
+
+@pytest.mark.parametrize("factor", [0.99, 1.0, 1.005, 1.009, 1.05, 1.1, 3.0])
+def test_a_path_whose_every_increment_fails_gives_up_after_a_few(monkeypatch, factor):
+    """However near the target is: an increment a little longer than the shortest one was tried for ever."""
+
+    class Crossed(Exception):
+        pass
+
+    tried = []
+
+    def fails(*_):
+        tried.append(1)
+        assert len(tried) < 50
+        return None
+
+    def crosses(*_):
+        raise Crossed
+
+    problem = Problem.from_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, -path.SHORTEST_STEP]}]))
+    rest = rest_state(problem)
+    monkeypatch.setattr(path, "solve_increment", fails)
+    monkeypatch.setattr(path._Path, "_cross", crosses)
+    with pytest.raises(Crossed):
+        path.follow(problem.with_loads(rest.position), rest, [factor])
 
 
 def test_rest_state_remembers_how_gravity_came():

@@ -178,7 +178,7 @@ class _Path:
         rounds = self.record.work.rounds
         found = solve_increment(self.system, self.known, external_force(self.problem, new), guess, self.record.work)
         if found is None:
-            if increment > 1.01 * self.shortest:
+            if increment > 1.2 * self.shortest:  # the last one before a target is up to 1.1 steps long
                 self.step = max(0.5 * increment, self.shortest)
                 self.rate = None
             else:

@@ -162,7 +162,7 @@ def loaded_states(
     step = resolve_time_step(problem)
     states = follow(
         problem, rest, factors, integrator=protocol.integrator, time_step=step,
-        maximum_steps=protocol.maximum_steps, progress=report,
+        crossing_ramp=protocol.ramp_time, maximum_steps=protocol.maximum_steps, progress=report,
     )  # fmt: skip
     return choice, states
 
