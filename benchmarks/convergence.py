@@ -1,0 +1,69 @@
+"""Dynamics against the quasi-static path: the difference of responses falls like one over the ramp time.
+
+`python benchmarks/convergence.py OUTPUT.json`. For each friction the load ends below and above the force near which
+a simple path follower stops (29.3 for a friction of 0.2, 62.3 for 1). Dynamics starts from the rest state of the
+path, ramps the load linearly, relaxes, and is finished by statics; all ramps of all frictions run in lock-step.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+from timing import floor, scene, write
+
+from granular_response.solve import Dynamics, Problem, Relaxation, Stop, finish, follow, relax_many, rest_state
+
+CASES = {0.2: (15.0, 40.0), 1.0: (30.0, 65.0, 70.0)}
+RAMPS = (20.0, 50.0, 100.0, 200.0, 400.0)
+TIME_STEP = 5e-4
+#: Increments of the path, in disk weights; the finer one shows how well the path itself is known.
+INCREMENTS = (0.25, 0.125)
+
+
+def main(path: str) -> None:
+    pending = []
+    for friction, forces in CASES.items():
+        problem = Problem.from_scene(scene(friction, 1.0))
+        rest = rest_state(problem)
+        problem = problem.with_loads(rest.position)
+        coarse, fine = (follow(problem, rest, forces, longest_step=step) for step in INCREMENTS)
+        for k, force in enumerate(forces):
+            limit = (floor(fine[k], problem) - floor(rest, problem)) / force
+            change = float(np.abs(floor(fine[k], problem) - floor(coarse[k], problem)).max()) / force
+            crossings = len(fine[k].information.get("crossings", ()))
+            for ramp in RAMPS:
+                start = replace(rest, velocity=np.zeros_like(rest.velocity))
+                dynamics = Dynamics(problem, start, "beeman", TIME_STEP)
+                relaxation = Relaxation(dynamics, Stop(1e-14), load=(0.0, force, ramp))
+                pending.append((problem, rest, friction, force, ramp, limit, change, crossings, relaxation))
+    states = relax_many([case[-1] for case in pending])
+    rows = []
+    for (problem, rest, friction, force, ramp, limit, change, crossings, _), state in zip(pending, states, strict=True):
+        settled = finish(problem, state)
+        response = (floor(settled, problem) - floor(rest, problem)) / force
+        rows.append(
+            {
+                "friction": friction,
+                "force": force,
+                "ramp_time": ramp,
+                "difference": float(np.abs(response - limit).max()),
+                "asymmetry": float(np.abs(response - response[::-1]).max()),
+                "path_asymmetry": float(np.abs(limit - limit[::-1]).max()),
+                "path_change": change,
+                "path_crossings": crossings,
+            }
+        )
+        print(rows[-1], flush=True)
+    fits = []
+    for friction, forces in CASES.items():
+        for force in forces:
+            curve = [r for r in rows if (r["friction"], r["force"]) == (friction, force)]
+            slope = np.polyfit(np.log([r["ramp_time"] for r in curve]), np.log([r["difference"] for r in curve]), 1)[0]
+            fits.append({"friction": friction, "force": force, "exponent": float(slope)})
+    write(path, {"runs": rows, "fits": fits})
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

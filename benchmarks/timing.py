@@ -1,0 +1,56 @@
+"""What all benchmarks share: the scene they time, minima of repeats, and whole JSON files."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from granular_response import atomic
+from granular_response.scene import Scene
+from granular_response.solve import Problem
+
+
+def scene(friction: float, force: float | None = None, **protocol: Any) -> Scene:
+    """The paper's slab with one load on the middle of its top row, or none."""
+    loads = [] if force is None else [{"disk": "top-centre", "force": [0.0, -force]}]
+    return Scene.from_dict({"contact": {"friction": friction}, "loads": loads, "protocol": protocol})
+
+
+def floor(state, problem: Problem) -> np.ndarray:
+    """Forces of the floor on the bottom row."""
+    return state.walls.normal_force[: int((problem.packing.row == 0).sum())]
+
+
+def least(action: Callable[[], object], repeats: int) -> float:
+    """Seconds of the fastest of several runs: other work on the machine only ever adds to them."""
+    return min(interleaved([action], repeats))
+
+
+def interleaved(actions: list[Callable[[], object]], repeats: int) -> list[float]:
+    """Least seconds of each of several actions whose repeats take turns, so that they meet the same machine."""
+    seconds = np.empty((repeats, len(actions)))
+    for row in seconds:
+        for k, action in enumerate(actions):
+            start = time.perf_counter()
+            action()
+            row[k] = time.perf_counter() - start
+    return seconds.min(axis=0).tolist()
+
+
+def write(path: str, metrics: dict[str, Any]) -> None:
+    """A JSON file with numbers of six digits: more is noise."""
+
+    def rounded(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: rounded(item) for key, item in value.items()}
+        if isinstance(value, list | tuple):
+            return [rounded(item) for item in value]
+        if isinstance(value, float | np.floating):
+            return float(f"{value:.6g}")
+        return value
+
+    atomic.write_bytes(path, (json.dumps(rounded(metrics), indent=1) + "\n").encode())
