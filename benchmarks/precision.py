@@ -1,7 +1,7 @@
 """Run time against error of the floor response: statics, dynamics with many settings, LAMMPS.
 
-`python benchmarks/precision.py OUTPUT.json`. Two scenes of the paper's slab: friction 0.2 with a load of 15 disk weights,
-and no friction with 4. The error is the largest difference of the normalised response from the quasi-static limit: with
+`python benchmarks/precision.py OUTPUT.json`. Two scenes of the paper's slab: friction 0.2 with a load of 15 disk
+weights, and no friction with 4. The error is the largest difference of the normalised response from the quasi-static limit: with
 friction the path with increments of at most 0.05 disk weights, without it the minimum of the energy. Halving the
 increments changes the reference by `reference_change`. Every time includes the fall under gravity, since a response
 needs it; compilation is not included.

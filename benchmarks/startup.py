@@ -29,9 +29,10 @@ for friction, wall in ((0.0, 0.0), (0.2, 0.0), (0.2, 0.3), (0.0, 0.3)):
         problem = Problem.from_scene(Scene.from_dict({"packing": small, "loads": load, **changes}))
         for name in INTEGRATORS:
             Dynamics(problem, problem.bare_state(), name, 2e-4).advance(1)
-    many = [Relaxation(Dynamics(problem, problem.bare_state(), time_step=2e-4), Stop(maximum_steps=100)) for _ in range(8)]
-    relax_many(many)
-for changes in ({"contact": {"friction": 0.0}}, {"contact": {"friction": 0.2}}, {"packing": {**small, "polydispersity": 0.2}}):
+    many = [Dynamics(problem, problem.bare_state(), time_step=2e-4) for _ in range(8)]
+    relax_many(Relaxation(dynamics, Stop(maximum_steps=100)) for dynamics in many)
+rough = {**small, "polydispersity": 0.2}
+for changes in ({"contact": {"friction": 0.0}}, {"contact": {"friction": 0.2}}, {"packing": rough}):
     solve_scene(Scene.from_dict({"packing": small, "loads": load, **changes}))
 """
 
