@@ -1,10 +1,10 @@
 """Run time against error of the floor response: statics, dynamics with many settings, LAMMPS.
 
 `python benchmarks/precision.py OUTPUT.json`. Two scenes of the paper's slab: friction 0.2 with a load of 15 disk
-weights, and no friction with 4. The error is the largest difference of the normalised response from the quasi-static limit: with
-friction the path with increments of at most 0.05 disk weights, without it the minimum of the energy. Halving the
-increments changes the reference by `reference_change`. Every time includes the fall under gravity, since a response
-needs it; compilation is not included.
+weights, and no friction with 4. The error is the largest difference of the normalised response from the quasi-static
+limit: with friction the path with increments of at most 0.05 disk weights, without it the minimum of the energy.
+Halving the increments changes the reference by `reference_change`. Every time includes the fall under gravity, since a
+response needs it; compilation is not included.
 
 With friction the rest state depends on the fall, and so on rounding and time step a little: LAMMPS falls into another
 one, and keeps a difference however slowly it is loaded. So its error is given from its own limit too, extrapolated
