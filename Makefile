@@ -42,7 +42,9 @@ reproduce: setup ## Run what is not up to date: simulations, figures, claims, re
 	"$(BIN)/dvc" repro
 
 figure: setup ## Draw one figure group: make figure GROUP=pile_dip
-	@test -n "$(GROUP)" || { echo "make figure GROUP=name, see the list in dvc.yaml" >&2; exit 1; }
+	@test -n "$(GROUP)" || { echo "make figure GROUP=name, one of:"; \
+	  "$(BIN)/dvc" stage list --name-only | sed -n 's/^draw@/  /p'; exit 1; } >&2
+	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro draw@$(GROUP)
 
 test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two processes)

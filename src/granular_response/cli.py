@@ -265,6 +265,7 @@ def export(
 @app.command(
     epilog=_examples(
         "granular-response claims",
+        "granular-response claims --list",
         "granular-response claims --readme README.md",
     )
 )
@@ -276,6 +277,7 @@ def claims(
     readme: Annotated[
         Path | None, typer.Option(help="Renew the counts that this file quotes.", show_default=False)
     ] = None,
+    every: Annotated[bool, typer.Option("--list", help="Print every claim with its verdict.")] = False,
 ) -> None:
     """Compare the paper's claims with the stored datasets."""
     from . import claims as judging
@@ -283,6 +285,8 @@ def claims(
     found = judging.write(output, data)
     if readme is not None:
         judging.renew(readme, found)
+    for row in found["table"] if every else ():
+        typer.echo(f"{row['id']:4} {row['verdict']:15} {row['ours'] or row['reason']}")
     typer.echo(f"{output}: {judging.sentence(found)}")
 
 

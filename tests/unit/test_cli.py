@@ -108,6 +108,15 @@ def test_run_and_show(tmp_path):
         assert part in shown.stdout
 
 
+def test_claims_are_listed_on_demand(tmp_path):
+    finished = call("claims", "--list", "--data", tmp_path, "-o", tmp_path / "claims.json")
+    lines = finished.stdout.splitlines()
+    assert finished.returncode == 0 and lines[0].startswith(
+        "F1   not measured    data/friction_linear_range.nc is missing"
+    )
+    assert len(lines) == 46 and lines[-1].endswith("Of 45 claims of the paper: 45 not measured.")
+
+
 def test_a_result_is_continued_and_nothing_else(tmp_path):
     (tmp_path / "scene.yaml").write_text(SCENE)
     assert call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path).returncode == 0
