@@ -110,6 +110,7 @@ def main(path: str) -> None:
     seconds = interleaved([lambda: certify(problem, rest), again], 3)
     whole = interleaved([lambda: rest_state(problem)], 2)[0]
     second = {
+        "friction": 0.2,
         "certificate_seconds": seconds[0],
         "relaxed_again_seconds": seconds[1],
         "rest_state_seconds": whole,

@@ -78,7 +78,7 @@ def main(path: str) -> None:
                     error = error if np.isfinite(error) and error < 1.0 else None
                 errors.append(error)
                 rows.append({"problem": problem, "integrator": name, "time_step": step, "error": error})
-            known = [(s, e) for s, e in zip(steps, errors, strict=True) if e is not None and e < 0.05]
+            known = [(s, e) for s, e in zip(steps, errors, strict=True) if e is not None and e < 0.01]
             last = known[1:5] if problem == "swing" else known
             slope = np.polyfit(*np.log(np.array(last)).T, 1)[0]
             orders.append(

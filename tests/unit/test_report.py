@@ -108,6 +108,8 @@ def root(tmp_path_factory):
     (folder / "benchmarks").mkdir()
     records = {"lammps": "some version", "runs": [{"disks": 908, "microseconds_per_step": 12.5}]}
     (folder / "benchmarks" / "kernel.json").write_text(json.dumps(records))
+    goal = {"what": "Speed of a step", "goal": "at least 4", "measured": "5", "met": True}
+    (folder / "benchmarks" / "summary.json").write_text(json.dumps({"goals": [goal]}))
     (folder / "requirements.lock").write_text("# pinned\nnumpy==2.9.1\nsome-other==1.0\n")
     entries = claims.evaluate(Data({"friction_linear_range": friction_study()}))
     (folder / "figures" / "claims.json").write_text(json.dumps(claims.document(entries)))
@@ -285,9 +287,21 @@ def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
 
 
 def test_benchmark_metrics_become_tables(root):
-    (table,) = benchmarks.tables(root / "benchmarks")
+    (kernel,) = benchmarks.collect(root / "benchmarks")
+    (table,) = kernel.tables
+    assert kernel.title == "Kernel" and kernel.picture is None
     assert table["columns"] == ["disks", "microseconds per step"] and table["rows"] == [["908", "12.5"]]
     assert table["notes"] == ["lammps: some version"]
+
+
+def test_benchmarks_show_goals_and_pictures(root, tmp_path):
+    assert "<td>Speed of a step</td><td>at least 4</td><td>5</td><td>yes</td>" in report.page(root)
+    (tmp_path / "figures").mkdir()
+    (tmp_path / "kernel.json").write_bytes((root / "benchmarks" / "kernel.json").read_bytes())
+    Image.new("RGB", (400, 200), "white").save(tmp_path / "figures" / "kernel.png")
+    (kernel,) = benchmarks.collect(tmp_path)
+    assert kernel.picture is not None and kernel.picture.width == 400
+    assert benchmarks.goals(tmp_path) == []
 
 
 #: Put in front of the page: keeps errors, and says in the end what the browser sees.

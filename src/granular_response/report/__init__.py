@@ -91,7 +91,8 @@ def page(root: Path) -> str:
             explored=states is not None
             and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
             readings=tried,
-            benchmarks=benchmarks.tables(root / "benchmarks"),
+            benchmarks=benchmarks.collect(root / "benchmarks"),
+            goals=benchmarks.goals(root / "benchmarks"),
             groups=groups,
             versions=_versions(root / "requirements.lock"),
             style=_resource("style.css"),

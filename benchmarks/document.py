@@ -1,0 +1,267 @@
+"""`docs/benchmarks.md`, its pictures, and `summary.json` with its goals, from the other JSON files alone.
+
+`python benchmarks/document.py` from anywhere in the repository. A benchmark whose file is missing is named as not
+measured.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pictures
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from pictures import Metrics, name, pick
+from timing import write
+
+from granular_response import atomic
+from granular_response.figures import style
+
+HERE = Path(__file__).resolve().parent
+
+TEXTS = {
+    "precision": (
+        "Run time against error",
+        "The error is the largest difference of the normalised floor response from the quasi-static limit; times "
+        "include the fall under gravity. Open symbols of integrators: without the static finish, at several kinetic "
+        "energies of rest. With friction the rest state itself depends a little on how the packing fell, so LAMMPS "
+        "keeps a difference however slowly it is loaded; its error is given from its own limit too.",
+    ),
+    "convergence": (
+        "Dynamics approaches the path",
+        "Responses after a linear ramp of the load, from the same rest state, compared with the load path: the "
+        "difference falls like one over the ramp time, below and above the loads at which a simple follower stops "
+        "(29.3 for a friction of 0.2, 62.3 for 1).",
+    ),
+    "trajectory": (
+        "Error of trajectories against the time step",
+        "A smooth motion shows the order of each integrator. In the fall of a slab every contact that opens, closes or "
+        "starts to slide breaks the smoothness, and no integrator is of more than first order.",
+    ),
+    "kernel": (
+        "Speed of the kernels",
+        "Slabs that have fallen into their contacts, same time step and dashpots. In lock-step, vector lanes hold the "
+        "same place of several scenes on one candidate network; results are bitwise those of each scene alone. LAMMPS "
+        "runs `pair_style gran/hooke/history` in the same run.",
+    ),
+    "skipping": (
+        "What skipping buys",
+        "The same scene with an unneeded part forced on. Results are the same to the last bit where that is said.",
+    ),
+    "scale": (
+        "Large systems",
+        "Whole processes, `granular-response run` from a scene file to the stored result, on one core. Slabs are four "
+        "times as wide as deep, and stiffness grows with their size so that the order of the slab survives.",
+    ),
+    "startup": ("What a newcomer waits for", "Whole processes. Compiled kernels are kept on disk."),
+    "pipeline": (
+        "Where the time of the pipeline goes",
+        "Every group from nothing, with compiled kernels, on all cores. Wall-clock seconds of each stage with "
+        "its start.",
+    ),
+}
+
+
+def read() -> dict[str, Metrics]:
+    """All stored benchmarks by name."""
+    files = sorted(set(HERE.glob("*.json")) - {HERE / "summary.json"})
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in files}
+
+
+def cell(value: Any) -> str:
+    """Three digits of a number, a word for a truth value."""
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"
+    return str(value)
+
+
+def seconds(value: float) -> str:
+    return f"{value / 60:.1f} min" if value >= 100 else f"{value:.2g} s" if value < 10 else f"{value:.0f} s"
+
+
+def table(rows: list[dict[str, Any]], columns: dict[str, str], title: str = "") -> dict[str, Any]:
+    """A table of some keys of the records, with headings."""
+    cells = [[cell(row.get(key)) for key in columns] for row in rows]
+    return {"title": title, "columns": list(columns.values()), "rows": cells}
+
+
+def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
+    """What of a benchmark is worth reading as numbers."""
+    if benchmark == "precision":
+        return [
+            table(
+                metrics["comparison"],
+                {
+                    "scene": "scene", "target_error": "error", "statics_seconds": "statics [s]",
+                    "dynamics_seconds": "dynamics [s]", "lammps_seconds": "LAMMPS [s]",
+                    "times_faster_than_lammps": "LAMMPS / statics",
+                },
+                "Least time to reach an error:",
+            )
+        ]  # fmt: skip
+    if benchmark == "convergence":
+        rows = metrics["fits"]
+        for row in rows:
+            runs = pick(metrics["runs"], friction=row["friction"], force=row["force"])
+            row["path_change"], row["path_crossings"] = runs[0]["path_change"], runs[0]["path_crossings"]
+        return [
+            table(
+                rows,
+                {
+                    "friction": "friction", "force": "force", "exponent": "difference ∝ (ramp time) to the",
+                    "path_change": "change of the path when increments are halved",
+                    "path_crossings": "dynamics on the path",
+                },
+            )
+        ]  # fmt: skip
+    if benchmark == "trajectory":
+        orders = [{**row, "integrator": name(row["integrator"])} for row in metrics["orders"]]
+        return [table(orders, {"problem": "problem", "integrator": "integrator", "measured_order": "measured order"})]
+    if benchmark == "kernel":
+        return [
+            table(
+                metrics["runs"],
+                {
+                    "disks": "disks", "friction": "friction", "single_microseconds": "one scene [µs/step]",
+                    "lockstep_microseconds": "in lock-step [µs/step]", "lammps_microseconds": "LAMMPS [µs/step]",
+                    "single_over_lammps": "speed over LAMMPS, one scene",
+                    "lockstep_over_lammps": "speed over LAMMPS, lock-step",
+                },
+            ),
+            table(
+                [row for row in metrics["profile"] if row["microseconds"] is not None],
+                {"friction": "friction", "part": "part of a step, 908 disks", "microseconds": "µs", "share": "share"},
+                "Where a step goes:",
+            ),
+            table(
+                metrics["falls"],
+                {
+                    "scenes": "scenes", "seconds_one_by_one": "one by one [s]", "seconds_lockstep": "in lock-step [s]",
+                    "gain": "gain", "same_results": "bitwise the same",
+                },
+                "Slabs of several frictions from the lattice to rest, which need different numbers of steps:",
+            ),
+        ]  # fmt: skip
+    if benchmark == "skipping":
+        columns = {"part": "part", "friction": "friction", "cost": "cost", "same_result": "bitwise the same"}
+        return [table(metrics["runs"], columns)]
+    if benchmark == "scale":
+        columns = {
+            "method": "method", "disks": "disks", "layers": "layers", "seconds": "time [s]",
+            "peak_gibibytes": "peak memory [GiB]", "force_residual": "largest unbalanced force [mg]",
+        }  # fmt: skip
+        return [table(metrics["runs"], columns)]
+    if benchmark == "startup":
+        return [
+            table(metrics["runs"], {"what": "process", "seconds": "time [s]", "processor_seconds": "processor [s]"})
+        ]
+    if benchmark == "pipeline":
+        columns = {
+            "group": "group", "simulate_seconds": "simulations [s]", "simulate_processor_seconds": "processor [s]",
+            "draw_seconds": "figures [s]",
+        }  # fmt: skip
+        return [table(metrics["runs"], columns)]
+    return []
+
+
+def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
+    """Goals that the project set itself, beside what was measured."""
+    rows: list[dict[str, Any]] = []
+
+    def add(benchmark: str, what: str, value: float | None, least: float | None, most: float | None, form: Any) -> None:
+        if benchmark not in found:
+            value = None
+        goal = f"at least {form(least)}" if least is not None else f"at most {form(most)}"
+        if value is None:
+            rows.append({"what": what, "goal": goal, "measured": "not measured", "met": None})
+        else:
+            met = value >= least if least is not None else value <= most  # type: ignore[operator]
+            rows.append({"what": what, "goal": goal, "measured": form(value), "met": bool(met)})
+
+    def times(value: float | None) -> str:
+        return f"{value:,.0f} times" if value is not None and value >= 20 else f"{value:.1f} times"
+
+    kernel = found.get("kernel", {}).get("runs", [])
+    friction = [row for row in kernel if row["friction"] > 0]
+    for key, least, what in (
+        ("single_over_lammps", 4.0, "one scene"), ("lockstep_over_lammps", 10.0, "in lock-step"),
+    ):  # fmt: skip
+        row = next(iter(pick(friction, disks=908)), {})
+        add("kernel", f"Speed over LAMMPS, friction, 908 disks, {what}", row.get(key), least, None, times)
+    row = max(friction, key=lambda row: row["disks"], default={})
+    add("kernel", "The same, 100,000 disks, one scene", row.get("single_over_lammps"), 4.0, None, times)
+    for scene, least, what in (
+        ("friction", 50.0, "friction 0.2, force 15, error 1e-5"),
+        ("frictionless", 1000.0, "no friction, force 4, error 1e-6"),
+    ):
+        row = next(iter(pick(found.get("precision", {}).get("comparison", []), scene=scene)), {})
+        value = row.get("times_faster_than_lammps")
+        add("precision", f"Speed over LAMMPS to a response: {what}", value, least, None, times)
+    runs = found.get("scale", {}).get("runs", [])
+    for method, disks, limit, what in (
+        ("path", 100_000, 600.0, "100,000 disks with friction"),
+        ("minimise", 1_000_000, 1800.0, "1,000,000 disks without"),
+    ):
+        row = next((row for row in runs if row["method"] == method and row["disks"] >= disks), {})
+        add("scale", f"Response of {what}", row.get("seconds"), None, limit, seconds)
+        add("scale", "Its memory", row.get("peak_gibibytes"), None, 20.0, lambda v: f"{v:.2g} GiB")
+    for method, what in (("minimise", "without friction"), ("path", "with friction")):
+        row = next(iter(pick(found.get("scale", {}).get("exponents", []), method=method)), {})
+        value = row.get("exponent_of_seconds")
+        add("scale", f"Time grows as the number of disks to the power, {what}", value, None, 1.5, lambda v: f"{v:.2f}")
+    residuals = [row["force_residual"] for row in runs if row["method"] != "dynamics"]
+    add(
+        "scale", "Unbalanced force of static results", max(residuals, default=None), None, 1e-9, lambda v: f"{v:.1g} mg"
+    )
+    totals = (found.get("pipeline", {}).get("totals") or [{}])[0]
+    value = totals["simulate_seconds"] + totals["draw_seconds"] if totals else None
+    add("pipeline", "All of the paper's groups from nothing, 2 cores", value, None, 600.0, seconds)
+    startup = found.get("startup", {}).get("runs", [])
+    for index, limit, what in (
+        (0, 40.0, "Every kernel compiled and kept"),
+        (2, 2.0, "`granular-response run`, default scene"),
+    ):
+        add("startup", what, startup[index]["seconds"] if startup else None, None, limit, seconds)
+    return rows
+
+
+def text(found: dict[str, Metrics]) -> str:
+    """The page."""
+    parts = []
+    for benchmark, (title, words) in TEXTS.items():
+        metrics = found.get(benchmark)
+        part = {"title": title, "text": words, "picture": None, "tables": []}
+        if metrics is None:
+            part["text"] += " Not measured yet: `make benchmark`."
+        else:
+            part["picture"] = benchmark if benchmark in pictures.DRAWN else None
+            part["tables"] = tables(benchmark, metrics)
+        parts.append(part)
+    environment = Environment(
+        loader=FileSystemLoader(HERE),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+        autoescape=False,
+        keep_trailing_newline=True,
+    )
+    page = environment.get_template("benchmarks.md.j2")
+    return page.render(goals=goals(found), parts=parts, machine=found.get("machine"))
+
+
+def main() -> None:
+    found = read()
+    for benchmark, draw in pictures.DRAWN.items():
+        if benchmark in found:
+            style.save(draw(found[benchmark]), benchmark, HERE / "figures", formats=("png",))
+    write(str(HERE / "summary.json"), {"goals": goals(found)})
+    atomic.write_bytes(HERE.parent / "docs" / "benchmarks.md", text(found).encode())
+
+
+if __name__ == "__main__":
+    main()

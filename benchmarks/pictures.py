@@ -1,0 +1,219 @@
+"""Pictures of the stored benchmarks, one function for each JSON file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from granular_response.figures import style
+
+Metrics = dict[str, Any]
+Rows = list[dict[str, Any]]
+
+#: One colour and marker for each method in all pictures.
+METHODS = {
+    "path": (style.BLUE, "*"),
+    "minimise": (style.BLUE, "*"),
+    "beeman": (style.GREEN, "o"),
+    "verlet": (style.ORANGE, "s"),
+    "gear": (style.PURPLE, "^"),
+    "dynamics": (style.GREEN, "o"),
+    "lammps": (style.VERMILION, "X"),
+}
+NAMES = {"lammps": "LAMMPS", "path": "load path", "minimise": "minimisation", "gear": "Gear", "dynamics": "dynamics"}
+
+
+def pick(rows: Iterable[dict[str, Any]], **values: Any) -> Rows:
+    """The records that have all these values."""
+    return [row for row in rows if all(row.get(key) == value for key, value in values.items())]
+
+
+def name(method: str) -> str:
+    return NAMES.get(method, method.capitalize())
+
+
+def _logarithmic(panel: Axes, **labels: str) -> None:
+    """Two logarithmic axes with labels at 1, 2 and 5 where decades are few, at decades alone otherwise."""
+    panel.set(xscale="log", yscale="log", **labels)
+    for axis, limits in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
+        few = limits[1] < 300 * limits[0]
+        axis.set_minor_formatter(NullFormatter())
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
+        axis.set_major_formatter(FuncFormatter(_power))
+
+
+def _power(value: float, _: int) -> str:
+    """A tick of a logarithmic axis: as it is if short, with a power of ten otherwise."""
+    if 0.01 <= value < 1e3:
+        return f"{value:g}"
+    exponent = int(np.floor(np.log10(value * 1.0001)))
+    digit = round(value / 10**exponent)
+    return f"$10^{{{exponent}}}$" if digit == 1 else f"${digit}\\times 10^{{{exponent}}}$"
+
+
+def _points(panel: Axes, rows: Rows, x: str, y: str, method: str, label: str, *, open_: bool = False, **line) -> None:
+    colour, marker = METHODS[method]
+    rows = [row for row in rows if row.get(x) and row.get(y)]
+    panel.plot(
+        [row[x] for row in rows],
+        [row[y] for row in rows],
+        marker=marker,
+        color=colour,
+        markerfacecolor="white" if open_ else colour,
+        markersize=8 if marker == "*" else 4.5,
+        markeredgewidth=0.8 if open_ else 0.0,
+        label=label,
+        **{"linestyle": "none", **line},
+    )
+
+
+@style.context()
+def precision(metrics: Metrics) -> Figure:
+    """Run time against error of the floor response."""
+    figure, axes = style.figure(1, 2, width="double", height=3.1, sharey=True)
+    for panel, reference in zip(axes[0], metrics["references"], strict=True):
+        runs = pick(metrics["runs"], scene=reference["scene"])
+        for method in dict.fromkeys(row["method"] for row in runs):
+            mine = pick(runs, method=method)
+            if "static_finish" in mine[0]:
+                _points(panel, pick(mine, static_finish=True), "seconds", "error", method, name(method))
+                _points(panel, pick(mine, static_finish=False), "seconds", "error", method, "_", open_=True)
+            else:
+                _points(panel, mine, "seconds", "error", method, name(method))
+        own = [row for row in runs if row.get("error_from_own_limit")]
+        _points(panel, own, "seconds", "error_from_own_limit", "lammps", "LAMMPS, from its own limit", open_=True)
+        panel.axhline(reference["reference_change"], color=style.MUTED, linewidth=0.8, linestyle=":")
+        panel.annotate(
+            "known to here", (1.0, reference["reference_change"]), (-4, 2), xycoords=("axes fraction", "data"),
+            textcoords="offset points", ha="right", fontsize=7, color=style.MUTED,
+        )  # fmt: skip
+        _logarithmic(panel, xlabel="run time [s]")
+        panel.set_title(f"$\\mu$ = {reference['friction']:g}, $F$ = {reference['force']:g} $mg$", fontsize=9)
+    axes[0, 0].set_ylabel("largest error of the response")
+    handles = {}
+    for panel in axes[0]:
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=4)
+    return figure
+
+
+@style.context()
+def kernel(metrics: Metrics) -> Figure:
+    """Disk-steps per second against the number of disks."""
+    figure, axes = style.figure(1, 2, width="double", height=2.6, sharey=True)
+    kinds = {"single": ("one scene", "path", "o"), "lockstep": ("scenes in lock-step", "beeman", "s")}
+    for panel, friction in zip(axes[0], sorted({row["friction"] for row in metrics["runs"]}), strict=True):
+        runs = pick(metrics["runs"], friction=friction)
+        disks = np.array([row["disks"] for row in runs])
+        for key, (label, method, marker) in kinds.items():
+            rate = [row[f"{key}_disk_steps_per_second"] for row in runs]
+            panel.plot(disks, rate, marker=marker, linestyle="-", color=METHODS[method][0], label=label)
+        theirs = [row for row in runs if row["lammps_microseconds"]]
+        if theirs:
+            rate = [1e6 * row["disks"] / row["lammps_microseconds"] for row in theirs]
+            panel.plot([row["disks"] for row in theirs], rate, "X-", color=METHODS["lammps"][0], label="LAMMPS")
+        _logarithmic(panel, xlabel="disks")
+        panel.set_title("without friction" if friction == 0 else f"friction {friction:g}", fontsize=9)
+    axes[0, 0].set_ylabel("disk-steps per second, one core")
+    axes[0, 0].legend()
+    return figure
+
+
+@style.context()
+def trajectory(metrics: Metrics) -> Figure:
+    """Error of trajectories against the time step, with the order of each integrator."""
+    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    titles = {"swing": "a disk swings on the floor", "fall": "a slab with friction falls"}
+    for panel, (problem, title) in zip(axes[0], titles.items(), strict=True):
+        for method in ("beeman", "verlet", "gear"):
+            runs = sorted(pick(metrics["runs"], problem=problem, integrator=method), key=lambda row: row["time_step"])
+            (fit,) = pick(metrics["orders"], problem=problem, integrator=method) or [None]
+            label = name(method) + (f", order {fit['measured_order']:.1f}" if fit else "")
+            _points(panel, runs, "time_step", "error", method, label, linestyle="-")
+        _logarithmic(panel, xlabel=r"time step [$\sqrt{R/g}$]")
+        panel.set_title(title, fontsize=9)
+        panel.legend()
+    axes[0, 0].set_ylabel("largest error of positions [$R$]")
+    return figure
+
+
+@style.context()
+def convergence(metrics: Metrics) -> Figure:
+    """Difference of dynamics from the quasi-static path against the ramp time."""
+    figure, axes = style.figure(1, 1, width="single", height=2.8)
+    panel = axes[0, 0]
+    cases = list(dict.fromkeys((row["friction"], row["force"]) for row in metrics["runs"]))
+    for k, (friction, force) in enumerate(cases):
+        runs = pick(metrics["runs"], friction=friction, force=force)
+        ramps = np.array([row["ramp_time"] for row in runs])
+        label = f"$\\mu$ = {friction:g}, $F$ = {force:g} $mg$"
+        panel.plot(ramps, [row["difference"] for row in runs], label=label, **style.marked_line(k))
+    ends = np.array([20.0, 400.0])
+    panel.plot(ends, 2e-5 * ends[0] / ends, color=style.MUTED, linestyle="--", linewidth=0.8)
+    panel.annotate("1 / ramp time", (60, 4.6e-6), fontsize=7, color=style.MUTED, ha="right")
+    _logarithmic(panel, xlabel=r"ramp time [$\sqrt{R/g}$]", ylabel="difference from the path")
+    panel.legend(fontsize=7)
+    return figure
+
+
+@style.context()
+def skipping(metrics: Metrics) -> Figure:
+    """How much longer a step takes when an unneeded part is forced on."""
+    figure, axes = style.figure(1, 1, width="double", height=2.3)
+    panel = axes[0, 0]
+    again = [{**row, "part": "a second relaxation of a state at rest"} for row in metrics["second_relaxation"]]
+    rows = []
+    for row in [*metrics["runs"], *again]:
+        friction = f"friction {row['friction']:g}" if row["friction"] else "no friction"
+        rows.append((f"{row['part']}\n({friction})", row["cost"]))
+    place = np.arange(len(rows))[::-1]
+    panel.barh(place, [cost for _, cost in rows], color=style.SKY, height=0.6)
+    for y, (_, cost) in zip(place, rows, strict=True):
+        panel.annotate(f"{cost:.2f}", (cost, y), (3, 0), textcoords="offset points", va="center", fontsize=8)
+    panel.axvline(1.0, color=style.BLACK, linewidth=0.8, linestyle="-")
+    panel.set_yticks(place, [text for text, _ in rows], fontsize=7)
+    panel.set_xlim(0.0, 1.12 * max(cost for _, cost in rows))
+    panel.tick_params(axis="y", length=0)
+    panel.set_xlabel("time with the part forced on / time without it")
+    return figure
+
+
+@style.context()
+def scale(metrics: Metrics) -> Figure:
+    """Time and memory of whole runs against the number of disks."""
+    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    labels = {
+        "minimise": "no friction, minimisation",
+        "path": "friction 0.2, load path",
+        "dynamics": "friction 0.2, dynamics",
+    }
+    colours = {"minimise": style.SKY, "path": style.BLUE, "dynamics": style.GREEN}
+    for method in dict.fromkeys(row["method"] for row in metrics["runs"]):
+        runs = pick(metrics["runs"], method=method)
+        disks = [row["disks"] for row in runs]
+        (fit,) = pick(metrics["exponents"], method=method) or [None]
+        for panel, key in zip(axes[0], ("seconds", "peak_gibibytes"), strict=True):
+            power = f" $\\propto N^{{{fit[f'exponent_of_{key}']:.2f}}}$" if fit else ""
+            label = labels[method] + power if key == "seconds" else power.strip()
+            marker = {"minimise": "s", "path": "o", "dynamics": "^"}[method]
+            panel.plot(disks, [row[key] for row in runs], marker + "-", color=colours[method], label=label)
+    for panel, text in zip(axes[0], ("run time, one core [s]", "peak memory [GiB]"), strict=True):
+        _logarithmic(panel, xlabel="disks", ylabel=text)
+        panel.legend(fontsize=7)
+    return figure
+
+
+DRAWN: dict[str, Callable[[Metrics], Figure]] = {
+    "precision": precision,
+    "kernel": kernel,
+    "trajectory": trajectory,
+    "convergence": convergence,
+    "skipping": skipping,
+    "scale": scale,
+}
