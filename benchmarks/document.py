@@ -1,4 +1,6 @@
-"""`docs/benchmarks.md`, its pictures, and `summary.json` with its goals, from the other JSON files alone.
+"""`docs/benchmarks.md`, its pictures, `summary.json` with its goals, and the lines of the README that quote them.
+
+All of it comes from the other JSON files alone.
 
 `python benchmarks/document.py` from anywhere in the repository. A benchmark whose file is missing is named as not
 measured.
@@ -15,7 +17,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from pictures import Metrics, name, pick
 from timing import write
 
-from granular_response import atomic
+from granular_response import atomic, generated
 from granular_response.figures import style
 
 HERE = Path(__file__).resolve().parent
@@ -254,6 +256,25 @@ def text(found: dict[str, Metrics]) -> str:
     return page.render(goals=goals(found), parts=parts, machine=found.get("machine"))
 
 
+#: Goals that the README quotes.
+QUOTED = (
+    "Speed over LAMMPS, friction, 908 disks, one scene",
+    "Speed over LAMMPS to a response: friction 0.2, force 15, error 1e-5",
+    "Speed over LAMMPS to a response: no friction, force 4, error 1e-6",
+    "Response of 100,000 disks with friction",
+    "Response of 1,000,000 disks without",
+    "All of the paper's groups from nothing, 2 cores",
+)
+
+
+def quoted(found: dict[str, Metrics]) -> str:
+    """The lines of the README."""
+    rows = {row["what"]: row for row in goals(found)}
+    lines = ["| | measured |", "|---|---|"]
+    lines += [f"| {what} | {rows[what]['measured']} |" for what in QUOTED]
+    return "\n".join(lines)
+
+
 def main() -> None:
     found = read()
     for benchmark, draw in pictures.DRAWN.items():
@@ -261,6 +282,7 @@ def main() -> None:
             style.save(draw(found[benchmark]), benchmark, HERE / "figures", formats=("png",))
     write(str(HERE / "summary.json"), {"goals": goals(found)})
     atomic.write_bytes(HERE.parent / "docs" / "benchmarks.md", text(found).encode())
+    generated.renew(HERE.parent / "README.md", "speed", quoted(found))
 
 
 if __name__ == "__main__":
