@@ -34,7 +34,8 @@ def all_walls(dynamics: Dynamics) -> None:
     gap = wall_gap(c.reference[disk], problem.packing.radius[disk], wall, problem.packing.width)
     dynamics.candidates = replace(c, wall_disk=disk, wall=wall, wall_gap=gap)
     model = list(dynamics.model)
-    model[14], model[15], model[16] = disk, wall_normals(wall), gap
+    dynamics.wall_normal = wall_normals(wall)
+    model[14], model[15], model[16] = disk, dynamics.wall_normal, gap
     dynamics.model = tuple(model)
 
 

@@ -151,3 +151,18 @@ def test_ramps_of_gravity_and_load():
     velocity = dynamics.state().velocity[0]
     assert velocity == pytest.approx([2.0 * (2.0 + 3.0), -(0.5 + 1.0)], abs=2e-3)
     assert dynamics.load[1] == dynamics.state().load_factor == 3.0
+
+
+def test_closed_contacts_are_the_overlapping_ones():
+    problem = Problem.from_scene(scene(packing__polydispersity=0.3))
+    dynamics = Dynamics(problem, problem.bare_state(), "verlet", 2e-4)
+    seen = set()
+    for _ in range(10):
+        dynamics.advance(300)
+        c, x, radius = dynamics.candidates, dynamics.position, problem.packing.radius
+        distance = np.hypot(*(x[c.first] - x[c.second]).T)
+        gap = np.choose(c.wall, [x[c.wall_disk, 1], x[c.wall_disk, 0], problem.packing.width - x[c.wall_disk, 0]])
+        closed = np.concatenate([distance < radius[c.first] + radius[c.second], gap < radius[c.wall_disk]])
+        assert np.array_equal(dynamics.touching(), closed)
+        seen.add(int(closed.sum()))
+    assert len(seen) > 1  # contacts open and close meanwhile

@@ -122,3 +122,20 @@ def run_pairs(runs):
     which = np.repeat(np.arange(len(runs)), runs[:, 2])
     along = np.arange(runs[-1, 2] + runs[-1, 3]) - runs[which, 3]
     return runs[which, 0] + along, runs[which, 1] + along
+
+
+@nb.njit(cache=True, error_model="numpy")
+def mark_closed(x, reference, radius, first, second, wall_disk, wall_normal, wall_gap, closed):
+    """Fill ``closed``: which listed pairs overlap, then which listed wall contacts do.
+
+    ``x``, ``reference`` (n, 2): centres now and when the list was made; ``wall_gap``: gaps at that time.
+    """
+    pairs = len(first)
+    for k in range(pairs):
+        i, j = first[k], second[k]
+        dx, dz, reach = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1], radius[i] + radius[j]
+        closed[k] = dx * dx + dz * dz < reach * reach
+    for k in range(len(wall_disk)):
+        i = wall_disk[k]
+        shift = wall_normal[k, 0] * (x[i, 0] - reference[i, 0]) + wall_normal[k, 1] * (x[i, 1] - reference[i, 1])
+        closed[pairs + k] = wall_gap[k] + shift < 0.0

@@ -16,6 +16,7 @@ import numpy as np
 from ..core.forces import accelerations
 from ..core.integrators import INTEGRATORS
 from ..core.integrators.record import moved_beyond
+from ..core.neighbours import mark_closed
 from .problem import Candidates, Problem, carry_springs, wall_normals
 from .state import Contacts, FloatArray, State
 
@@ -93,12 +94,13 @@ class Dynamics:
             self.spring[c.slot] = carry_springs(problem.n, state.pairs, c.first, c.second)
         if problem.wall_friction:
             self.wall_spring = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
+        self.wall_normal = wall_normals(c.wall)
         buffer = np.zeros((3 if problem.pair_friction else 2, c.slots))
         self.model = (
             problem.n, problem.weight, problem.inverse_mass, problem.packing.radius, self.rim,
             problem.load, problem.load_disk,
             c.runs, c.separation[0], c.separation[1], c.reach, self.spring, buffer, problem.pair_law,
-            c.wall_disk, wall_normals(c.wall), c.wall_gap, self.wall_spring, problem.wall_law, problem.rule,
+            c.wall_disk, self.wall_normal, c.wall_gap, self.wall_spring, problem.wall_law, problem.rule,
         )  # fmt: skip
 
     def _fill_history(self) -> None:
@@ -200,13 +202,11 @@ class Dynamics:
 
     def touching(self):
         """Which listed contacts (pairs, then walls) are closed now."""
-        problem, c = self.problem, self.candidates
-        x = self.position
-        d = x[c.first] - x[c.second]
-        radius = problem.packing.radius
-        pairs = d[:, 0] ** 2 + d[:, 1] ** 2 < (radius[c.first] + radius[c.second]) ** 2
-        shift = np.einsum("ci,ci->c", wall_normals(c.wall), (x - c.reference)[c.wall_disk])
-        return np.concatenate([pairs, c.wall_gap + shift < 0])
+        c = self.candidates
+        closed = np.empty(len(c.first) + len(c.wall_disk), dtype=bool)
+        radius, normal = self.problem.packing.radius, self.wall_normal
+        mark_closed(self.position, c.reference, radius, c.first, c.second, c.wall_disk, normal, c.wall_gap, closed)
+        return closed
 
     def contact_count(self):
         """(n,) number of closed contacts of each disk."""
