@@ -25,6 +25,11 @@ LONGEST_STEP = 0.2
 POOR = 0.25
 #: Least damping where the stiffness of the springs alone makes a step (units of the normal stiffness).
 SPRINGS_ALONE = 1e-6
+#: Where factorisations are dear, in packings of more disks than this, a saddle is left as soon as one is near: when the
+#: stiffness is not positive though little damped and no force out of balance exceeds that many disk weights.
+LARGE, NEAR_SADDLE = 20_000, 0.1
+#: First length along an unstable direction, times the normal stiffness.
+SHORTEST_ESCAPE = 1e-3
 #: Factors of the damping after a poor and after a good step.
 MORE, LESS = 10.0, 0.1
 
@@ -75,14 +80,23 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
             if escapes == 20:
                 raise EquilibriumError("the minimisation keeps returning to a saddle of the energy")
             escapes += 1
-            q = q + 1e-4 * system.unstable_direction(trial)
-            trial = system.trial(known, q)
+            if problem.n > LARGE:
+                q, trial = _down_from_saddle(system, known, external, q, trial)
+            else:
+                q = q + 1e-4 * system.unstable_direction(trial)
+                trial = system.trial(known, q)
             value = energy(system, trial, external)
             damping = 1e-4 * k
             iterations += 1
             continue
         lu = system.definite_factor(trial, damping + REGULARISATION * k)
         iterations += 1
+        if lu is None and problem.n > LARGE and size < NEAR_SADDLE and damping < 1e-7 * k and escapes < 20:
+            escapes += 1
+            q, trial = _down_from_saddle(system, known, external, q, trial)
+            value = energy(system, trial, external)
+            damping = 1e-7 * k
+            continue
         if lu is None:
             lu = system.definite_factor(system.without_prestress(trial), max(damping, SPRINGS_ALONE * k))
         if lu is None:
@@ -101,7 +115,12 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
         gained = value - new_value
         new_size = float(np.abs(new.contact_force + external).max())
         rounding = 1e-11 * (abs(value) + 1.0)
-        if predicted > rounding:
+        if predicted <= rounding and problem.n > LARGE:  # slopes keep their digits where energies have lost them
+            full = step
+            step, new = _shorter(system, known, external, q, step, float(step @ r), new)
+            new_value = energy(system, new, external)
+            ratio = 1.0 if step is full else POOR
+        elif predicted > rounding:
             ratio = gained / predicted
         else:
             ratio = 1.0 if new_size < 2.0 * size or new_size < tolerance else 0.0
@@ -133,7 +152,7 @@ def _shorter(system: StaticSystem, known, external, q, step, slope, full: Trial)
     part, trial = 1.0, full
     for k in range(8):
         if at_high >= 0.0:
-            break
+            return step, trial
         secant = low + (high - low) * at_low / (at_low - at_high)
         part = secant if k % 2 == 0 else 0.5 * (low + high)
         part = min(max(part, low + 0.05 * (high - low)), high - 0.05 * (high - low))
@@ -146,3 +165,20 @@ def _shorter(system: StaticSystem, known, external, q, step, slope, full: Trial)
         else:
             high, at_high = part, here
     return part * step, trial
+
+
+def _down_from_saddle(system: StaticSystem, known, external, q, trial: Trial) -> tuple[FloatArray, Trial]:
+    """Go from near a saddle along its unstable direction, in doubled lengths as long as energy falls."""
+    direction = system.unstable_direction(trial)
+    best = (q, trial)
+    for sense in (1.0, -1.0):
+        length = SHORTEST_ESCAPE / system.problem.pair_law[0] * sense
+        while abs(length) < LONGEST_STEP:
+            there = system.trial(known, q + length * direction)
+            if sense * float((there.contact_force + external) @ direction) <= 0.0:
+                break
+            best = (q + length * direction, there)
+            length *= 2.0
+        if best[1] is not trial:
+            break
+    return best

@@ -13,6 +13,7 @@ from .choice import Choice, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
 from .equilibrium import EquilibriumError, certify, finish
+from .nested import rest_start
 from .path import follow
 from .problem import Problem
 from .state import State
@@ -113,13 +114,12 @@ def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
         # no tangential spring is stretched: an equilibrium with friction too
         return finish(problem, problem.with_static_forces(smooth))
     choice = rest_method(problem)
-    bare = problem.bare_state()
     if choice.method == "minimise":
-        return minimise(problem, bare)
+        return minimise(problem, rest_start(problem))
     preparation = problem.scene.preparation
     slow = preparation.gravity == "slow"
     gravity = (0.0, 1.0, preparation.ramp_time) if slow else (1.0, 1.0, 0.0)
-    return _relaxed(problem, bare, "gravity", progress, gravity=gravity, load=(0.0, 0.0, 0.0))
+    return _relaxed(problem, problem.bare_state(), "gravity", progress, gravity=gravity, load=(0.0, 0.0, 0.0))
 
 
 def loaded_states(

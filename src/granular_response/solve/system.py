@@ -303,9 +303,19 @@ class StaticSystem:
 
     def unstable_direction(self, trial: Trial) -> FloatArray:
         """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1."""
-        matrix = _symmetric_part(self.tangent(trial))
-        start = np.random.default_rng(0).standard_normal(self.dof)
-        _, vectors = eigsh(matrix, k=1, sigma=-1e-2 * self.problem.pair_law[0], which="LM", v0=start)
+        k = self.problem.pair_law[0]
+        # the nearer the origin of the search to the eigenvalue, the fewer solves; from below it finds the lowest
+        for origin in (1e-6 * k, 1e-5 * k, 1e-4 * k, 1e-3 * k, 1e-2 * k):
+            factor = self.definite_factor(trial, origin)
+            if factor is not None:
+                break
+        else:
+            factor, _ = self.symmetric_factor(trial, origin)
+        _, vectors = eigsh(
+            _symmetric_part(self.tangent(trial)), k=1, sigma=-origin, which="LM",
+            v0=np.random.default_rng(0).standard_normal(self.dof),
+            OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
+        )  # fmt: skip
         vector = self.deinterleave(vectors[:, 0])
         return vector / vector[np.argmax(np.abs(vector))]
 

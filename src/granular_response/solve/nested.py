@@ -1,0 +1,90 @@
+"""A start near the rest state of a large slab: that of a slab of half the size, and so on down.
+
+A slab of half as many layers and columns whose contacts are a quarter as stiff sinks by the same lengths under
+gravity, place by place, and in the limit of many layers the same contacts open. So nearly all of the search for the
+contacts that bear is done on slabs that cost little.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..scene.lattice import SlabPacking
+from ..scene.packing import Packing
+from .energy import minimise
+from .equilibrium import EquilibriumError
+from .problem import Problem
+from .state import FloatArray, State
+
+#: Disks from which on a smaller slab is asked first.
+LARGE = 20_000
+
+
+def rest_start(problem: Problem) -> State:
+    """A state from which the rest state of a packing without friction is found in few iterations.
+
+    For slabs of more than ``LARGE`` equal disks that touch; else, or where the smaller slab has no rest state, the
+    packing as built.
+    """
+    bare = problem.bare_state()
+    packing, lattice = problem.packing, problem.scene.packing
+    touching = packing.lattice_constant == 2.0 * packing.radius[0]
+    if not (isinstance(lattice, SlabPacking) and packing.ordered and touching and problem.n > LARGE):
+        return bare
+    half = lattice.model_copy(update={"layers": lattice.layers // 2, "disks_per_row": (lattice.disks_per_row + 1) // 2})
+    softer = (half.layers / lattice.layers) ** 2
+    smaller = replace(
+        problem,
+        scene=problem.scene.model_copy(update={"packing": half}),
+        packing=half.build(),
+        pair_law=(softer * problem.pair_law[0], *problem.pair_law[1:]),
+        wall_law=(softer * problem.wall_law[0], *problem.wall_law[1:]),
+    )
+    try:
+        rest = minimise(smaller, rest_start(smaller))
+    except EquilibriumError:
+        return bare
+    displacement = prolonged(rest.position - smaller.packing.position, smaller.packing, packing)
+    return problem.with_static_forces(replace(bare, position=bare.position + displacement))
+
+
+def prolonged(displacement: FloatArray, coarse: Packing, fine: Packing) -> FloatArray:
+    """(fine.n, 2) displacements (coarse.n, 2) of one slab at the places of another, linear in both directions.
+
+    Places are parts of width and height. The floor does not sink, the side walls do not give way.
+    """
+    rows = len(coarse.row_count)
+    begin = np.concatenate([[0], np.cumsum(coarse.row_count)])
+    columns = np.linspace(0.0, 1.0, 2 * int(coarse.row_count[0]) + 1)
+    field = np.zeros((rows + 1, len(columns), 2))
+    for row in range(rows):
+        disks = slice(begin[row], begin[row + 1])
+        x = coarse.position[disks, 0] / coarse.width
+        along, across = displacement[disks].T
+        field[row + 1, :, 0] = _interpolated(columns, np.r_[0.0, x, 1.0], np.r_[0.0, along, 0.0])
+        field[row + 1, :, 1] = _interpolated(columns, x, across)
+    height = np.concatenate([[0.0], coarse.position[begin[:-1], 1] / rows])
+    slope = (field[2, :, 0] - field[1, :, 0]) / (height[2] - height[1])
+    field[0, :, 0] = field[1, :, 0] - slope * height[1]
+    wanted_x = fine.position[:, 0] / fine.width
+    wanted_z = fine.position[:, 1] / len(fine.row_count)
+    j, u = _between(wanted_x, columns)
+    i, v = _between(wanted_z, height)
+    u, v = u[:, None], v[:, None]
+    lower = (1.0 - u) * field[i, j] + u * field[i, j + 1]
+    upper = (1.0 - u) * field[i + 1, j] + u * field[i + 1, j + 1]
+    return (1.0 - v) * lower + v * upper
+
+
+def _between(x: FloatArray, nodes: FloatArray) -> tuple[np.ndarray, FloatArray]:
+    """The interval of ``nodes`` that holds each ``x``, or is next to it, and the place in its units."""
+    k = np.clip(np.searchsorted(nodes, x) - 1, 0, len(nodes) - 2)
+    return k, (x - nodes[k]) / (nodes[k + 1] - nodes[k])
+
+
+def _interpolated(x: FloatArray, nodes: FloatArray, values: FloatArray) -> FloatArray:
+    """Linear interpolation, and extrapolation beyond the first and the last node."""
+    k, part = _between(x, nodes)
+    return (1.0 - part) * values[k] + part * values[k + 1]
