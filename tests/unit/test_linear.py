@@ -28,6 +28,23 @@ def test_banded_lu(n, b):
     assert x == pytest.approx(np.linalg.solve(dense, np.arange(1.0, n + 1.0)), rel=1e-12)
 
 
+@pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 4), (23, 5), (24, 7), (10, 9)])
+def test_four_rows_at_once_give_the_bits_of_one_by_one(n, b):
+    dense = banded(n, b, 5)
+    stored = np.zeros((n, 2 * b + 1))
+    for i in range(n):
+        for j in range(max(0, i - b), min(n, i + b + 1)):
+            stored[i, j - i + b] = dense[i, j]
+    band.factorise(stored, b)
+    for k in range(n):
+        for i in range(k + 1, min(n, k + b + 1)):
+            dense[i, k] *= 1.0 / dense[k, k]
+            dense[i, k + 1 : k + b + 1] -= dense[i, k] * dense[k, k + 1 : k + b + 1]
+    for i in range(n):
+        for j in range(max(0, i - b), min(n, i + b + 1)):
+            assert stored[i, j - i + b] == dense[i, j]
+
+
 def test_zero_pivot_falls_back_to_row_exchanges():
     dense = banded(30, 3, 1)
     dense[0, 0] = 0.0
