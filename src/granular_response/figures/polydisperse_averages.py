@@ -172,7 +172,7 @@ def _linear_range(data: xr.Dataset) -> Figure:
             ends, data.isel(path=here), style.marked_line(index), f"$\\delta = {delta:g}$" if delta else "lattice"
         )
     ends.set(yscale="log", xlabel="$\\mu$", ylabel="end of the linear range, $F_{\\mathrm{ext}}/mg$")
-    ends.legend(loc="lower right")
+    ends.legend(loc="lower center", bbox_to_anchor=(0.45, 0.0))
     style.letter(ends, "abc"[len(deltas)], place="above")
     return figure
 
@@ -240,7 +240,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
     axes.set_xlim(-45.0, 45.0)
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.3 * (high - low))  # room for letter and legend
+    axes.set_ylim(low, high + 0.55 * (high - low))  # room for letter and legend
     axes.legend(loc="upper right", fontsize=7, handlelength=1.6, title="$F_{\\mathrm{ext}}/mg$", title_fontsize=7)
 
 
