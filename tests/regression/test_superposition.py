@@ -127,8 +127,8 @@ def test_no_force_has_no_relative_error() -> None:
 
 def test_figures(datasets) -> None:
     drawn = figures.draw(datasets)
-    assert list(drawn) == ["fig23_superposition", "fig24_superposition_large", "fig24_superposition_error"]
-    panels = drawn["fig24_superposition_large"].axes
+    assert list(drawn) == ["fig23_superposition", "fig24_superposition", "fig24b_superposition_error"]
+    panels = drawn["fig24_superposition"].axes
     lines = {line.get_label(): line.get_ydata() for line in panels[1].lines}
     shown = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=1.0)
     np.testing.assert_array_equal(lines["(Left+Right)"], shown.sel(part="both"))

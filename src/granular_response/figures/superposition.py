@@ -15,7 +15,7 @@ from granular_response.figures import style
 FloatArray = NDArray[np.float64]
 
 #: Forces of the two figures, and the realization that both show.
-FORCES = {"fig23_superposition": 0.2, "fig24_superposition_large": 1.0}
+FORCES = {"fig23_superposition": 0.2, "fig24_superposition": 1.0}
 REALIZATION = 0
 
 #: Part of the box that is shown, in mean radii.
@@ -24,9 +24,9 @@ HALF_WIDTH = 48.0
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig23_superposition``, ``fig24_superposition_large`` and ``fig24_superposition_error``."""
+    """``fig23_superposition``, ``fig24_superposition`` and ``fig24b_superposition_error``."""
     figures = {stem: _responses(datasets["responses"], force) for stem, force in FORCES.items()}
-    figures["fig24_superposition_error"] = _errors(datasets)
+    figures["fig24b_superposition_error"] = _errors(datasets)
     return figures
 
 
@@ -105,7 +105,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
         columnspacing=0.8,
     )
     floor.set_ylabel("difference of both and sum, relative")
-    last = FORCES["fig24_superposition_large"]
+    last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
     for k in range(len(distances)):
         _mean_with_error(deep, errors["gap"].values, profiles[:, k], k, colours[k], "")
