@@ -153,7 +153,10 @@ def convergence(metrics: Metrics) -> Figure:
         runs = pick(metrics["runs"], friction=friction, force=force)
         ramps = np.array([row["ramp_time"] for row in runs])
         label = f"$\\mu$ = {friction:g}, $F$ = {force:g} $mg$"
-        panel.plot(ramps, [row["difference"] for row in runs], label=label, **style.marked_line(k))
+        panel.plot(ramps, [row["symmetric_difference"] for row in runs], label=label, **style.marked_line(k))
+        whole = np.array([row["difference"] for row in runs])
+        if (whole > 1.2 * np.array([row["symmetric_difference"] for row in runs])).any():
+            panel.plot(ramps, whole, color=style.COLOURS[k], linestyle=":", linewidth=1.0)
     ends = np.array([20.0, 400.0])
     panel.plot(ends, 2e-5 * ends[0] / ends, color=style.MUTED, linestyle="--", linewidth=0.8)
     panel.annotate("1 / ramp time", (60, 4.6e-6), fontsize=7, color=style.MUTED, ha="right")
