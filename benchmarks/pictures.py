@@ -146,7 +146,7 @@ def trajectory(metrics: Metrics) -> Figure:
 @style.context()
 def convergence(metrics: Metrics) -> Figure:
     """Difference of dynamics from the quasi-static path against the ramp time."""
-    figure, axes = style.figure(1, 1, width="single", height=2.8)
+    figure, axes = style.figure(1, 1, width=5.2, height=2.9)
     panel = axes[0, 0]
     cases = list(dict.fromkeys((row["friction"], row["force"]) for row in metrics["runs"]))
     for k, (friction, force) in enumerate(cases):
@@ -161,7 +161,7 @@ def convergence(metrics: Metrics) -> Figure:
     panel.plot(ends, 2e-5 * ends[0] / ends, color=style.MUTED, linestyle="--", linewidth=0.8)
     panel.annotate("1 / ramp time", (60, 4.6e-6), fontsize=7, color=style.MUTED, ha="right")
     _logarithmic(panel, xlabel=r"ramp time [$\sqrt{R/g}$]", ylabel="difference from the path")
-    panel.legend(fontsize=7)
+    figure.legend(loc="outside right upper")
     return figure
 
 
