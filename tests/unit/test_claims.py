@@ -524,7 +524,7 @@ def test_the_readme_quotes_the_stored_table():
 
 def test_the_stages_read_every_group_of_the_pipeline():
     stages = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
-    groups = set(stages["simulate"]["foreach"]) | set(stages["derive"]["foreach"])
+    groups = {group for kind in ("simulate", "derive", "stress") for group in stages[kind]["foreach"]}
     declared = {Path(d).stem for d in stages["claims"]["deps"] if d.startswith("data/")}
     assert declared == groups & set(claims.GROUPS)
     drawn = {Path(d).name for d in stages["report"]["deps"] if d.startswith("figures/")}

@@ -17,6 +17,7 @@ PARAMETERS = yaml.safe_load((ROOT / "params.yaml").read_text())
 STARTS = {
     "simulate": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
     "derive": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
+    "stress": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
     "draw": ["granular_response.pipeline.drawing", "granular_response.figures.{}"],
     "claims": ["granular_response.claims"],
     "report": ["granular_response.report"],
@@ -40,6 +41,8 @@ def fill(value, group):
 
 
 STAGES = list(stages())
+#: Kinds of stages that store the datasets of a group.
+SIMULATING = ("simulate", "derive", "stress")
 
 
 def file_of(module: str) -> Path | None:
@@ -148,7 +151,7 @@ def test_dependencies_and_parameters_exist(kind, group, definition):
 
 @pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
 def test_stages_have_the_agreed_form(kind, group, definition):
-    if kind in ("simulate", "derive"):
+    if kind in SIMULATING:
         assert definition["cmd"] == f"granular-response simulate {group}"
         assert definition["outs"] == [f"data/{group}.nc"]
         assert definition["params"] == ["common", group]
@@ -160,8 +163,8 @@ def test_stages_have_the_agreed_form(kind, group, definition):
 
 
 def test_every_group_has_both_stages():
-    simulated, derived = PIPELINE["simulate"]["foreach"], PIPELINE["derive"]["foreach"]
-    assert sorted(simulated + derived) == sorted(PIPELINE["draw"]["foreach"])
+    simulated = [group for kind in SIMULATING for group in PIPELINE[kind]["foreach"]]
+    assert sorted(simulated) == sorted(PIPELINE["draw"]["foreach"])
 
 
 def test_what_is_derived_comes_after_the_data_that_it_reads():
@@ -174,8 +177,8 @@ def test_every_group_module_is_in_the_pipeline(package, kind):
     for path in (SOURCE / "granular_response" / package).glob("*.py"):
         body = ast.parse(path.read_text()).body
         if any(isinstance(node, ast.FunctionDef) and node.name == kind for node in body):
-            listed = PIPELINE[kind]["foreach"] + (PIPELINE["derive"]["foreach"] if kind == "simulate" else [])
-            assert path.stem in listed
+            kinds = SIMULATING if kind == "simulate" else (kind,)
+            assert path.stem in [group for kind in kinds for group in PIPELINE[kind]["foreach"]]
 
 
 def test_dvc_reads_the_pipeline():

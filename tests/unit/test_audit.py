@@ -1,0 +1,118 @@
+"""The check of a state from its positions alone: what is right passes, whatever is tampered with is found."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scenes import scene
+
+from granular_response.solve import Solution, solve_scene
+from granular_response.solve.state import OPEN, SLIDING, Contacts
+from granular_response.studies.trials.random_scenes import check, contradiction, rounding_of
+
+
+@pytest.fixture(scope="module")
+def solution() -> Solution:
+    load = [{"disk": "top-centre", "force": [0.5, -4.0], "torque": 0.3}]
+    return solve_scene(scene(contact__friction=0.2, wall__friction=0.1, loads=load))
+
+
+def with_entry(contacts: Contacts, which: int, **values: float) -> Contacts:
+    """Contacts with one entry of some arrays replaced."""
+    changed = {}
+    for name, value in values.items():
+        changed[name] = getattr(contacts, name).copy()
+        changed[name][which] = value
+    return replace(contacts, **changed)
+
+
+def without(contacts: Contacts, which: int) -> Contacts:
+    names = ("first", "second", "overlap", "normal_force", "tangential_force", "spring", "status")
+    return replace(contacts, **{name: np.delete(getattr(contacts, name), which) for name in names})
+
+
+def complaint(solution: Solution, state) -> str:
+    return contradiction(state, check(solution, state), rounding_of(solution))
+
+
+def test_solved_states_pass(solution):
+    for state in (solution.rest, *solution.loaded):
+        found = check(solution, state)
+        assert found.force_residual < 1e-9
+        assert found.torque_residual < 1e-9
+        assert found.coulomb_excess < 1e-9
+        assert found.force_mismatch < rounding_of(solution)
+        assert found.unlisted == found.stale_springs == found.escaped == 0
+        assert complaint(solution, state) == ""
+    assert (solution.loaded[0].pairs.status == SLIDING).any()  # or Coulomb's limit would not have been tried
+
+
+def test_a_moved_disk_is_found(solution):
+    (state,) = solution.loaded
+    position = state.position.copy()
+    position[5, 0] += 1e-6
+    found = check(solution, replace(state, position=position))
+    assert found.force_residual > 1e-4
+    assert found.force_mismatch > 1e-4
+    assert "force_residual is" in complaint(solution, replace(state, position=position))
+
+
+@pytest.mark.parametrize("side", ["pairs", "walls"])
+def test_a_contact_that_is_not_listed_is_found(solution, side):
+    (state,) = solution.loaded
+    contacts = getattr(state, side)
+    known = np.flatnonzero(contacts.touching & (contacts.spring != 0))
+    which = int(known[np.argmax(contacts.normal_force[known])])
+    tampered = replace(state, **{side: without(contacts, which)})
+    assert check(solution, tampered).unlisted == 1
+    assert complaint(solution, tampered)
+
+
+@pytest.mark.parametrize("side", ["pairs", "walls"])
+@pytest.mark.parametrize("name", ["normal_force", "tangential_force"])
+def test_a_wrong_recorded_force_is_found(solution, side, name):
+    (state,) = solution.loaded
+    contacts = getattr(state, side)
+    which = int(np.argmax(contacts.normal_force))
+    tampered = replace(state, **{side: with_entry(contacts, which, **{name: getattr(contacts, name)[which] + 1e-3})})
+    assert check(solution, tampered).force_mismatch == pytest.approx(1e-3, rel=1e-6)
+    assert "a recorded contact force is off by 0.001" in complaint(solution, tampered)
+
+
+def test_friction_beyond_the_limit_is_found(solution):
+    (state,) = solution.loaded
+    which = int(np.flatnonzero(state.pairs.status == SLIDING)[0])
+    tampered = replace(state, pairs=with_entry(state.pairs, which, spring=1.001 * state.pairs.spring[which]))
+    assert check(solution, tampered).coulomb_excess > 1e-6
+    assert complaint(solution, tampered)
+
+
+def test_a_spring_of_an_open_contact_and_a_lost_disk_are_found(solution):
+    (state,) = solution.loaded
+    which = int(np.flatnonzero(state.pairs.status == OPEN)[0])
+    tampered = replace(state, pairs=with_entry(state.pairs, which, spring=1e-5))
+    assert check(solution, tampered).stale_springs == 1
+    assert complaint(solution, tampered) == "1 stale springs"
+    position = state.position.copy()
+    position[0] = (5.0, -3.0)
+    assert check(solution, replace(state, position=position)).escaped == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("force_residual", 1e-3), ("torque_residual", 1e-3), ("coulomb_excess", 1e-3)]
+)
+def test_a_certificate_that_says_something_else_is_found(solution, name, value):
+    (state,) = solution.loaded
+    certificate = replace(state.information["certificate"], **{name: value})
+    tampered = replace(state, information=state.information | {"certificate": certificate})
+    assert complaint(solution, tampered).startswith(f"{name} is")
+
+
+def test_a_state_without_a_certificate_is_found(solution):
+    (state,) = solution.loaded
+    assert complaint(solution, replace(state, information={})) == "a state without a certificate"
+
+
+def test_a_load_that_is_not_the_scenes_is_found(solution):
+    (state,) = solution.loaded
+    assert check(solution, replace(state, load_factor=0.999)).force_residual > 1e-3

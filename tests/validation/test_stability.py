@@ -1,0 +1,256 @@
+"""Stress tests: time steps, energy, rolling, and random scenes whose results are checked from positions alone."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from granular_response.figures import stability as figures
+from granular_response.scene import Scene, SceneError
+from granular_response.solve import NotSettled
+from granular_response.studies import stability
+from granular_response.studies.trials import closed_forms, random_scenes, time_steps
+from granular_response.studies.trials.rounding import disturb
+from granular_response.studies.trials.time_steps import SETTLES, StepTrial, scene_of
+
+PARAMETERS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["stability"]
+SEED = PARAMETERS["seed"]
+INTEGRATORS = ["beeman", "verlet", "gear"]
+SMALL = {"packing": {"kind": "slab", "layers": 4, "disks_per_row": 7}, "loads": []}
+
+# Time steps
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"contact.normal_stiffness": 1e6},
+        {"contact.stiffness_ratio": 0.0},
+        {"contact.stiffness_ratio": 2.0},
+        {"contact.damping_ratio": 0.0},
+        {"contact.friction": 100.0, "wall.friction": 100.0},
+        {"packing.polydispersity": 0.5},
+        {"wall.normal_stiffness": 6e4},
+        {"loads": [{"disk": "top-centre", "force": [0.0, -50.0]}]},
+    ],
+    ids=lambda changes: ", ".join(changes) or "as it is",
+)
+def test_the_predicted_time_step_is_neither_too_long_nor_much_too_short(integrator, changes):
+    """What is settled stays so at 0.95 of the limit, and not at twice the limit."""
+    scene = scene_of(SMALL, {"protocol.integrator": integrator, **changes})
+    limit, outcomes = StepTrial(scene, (0.95, 2.0), 4000, SEED).run()
+    assert limit > 0
+    assert outcomes[0] == SETTLES
+    assert outcomes[1] in (time_steps.CYCLES, time_steps.BLOWS_UP)
+
+
+# Energy
+
+
+def colliding(mu: float, damping: float, rule: str = "cut") -> Scene:
+    return Scene().updated(
+        {
+            "contact.friction": mu,
+            "wall.friction": mu,
+            "contact.damping_ratio": damping,
+            "protocol.friction_law": rule,
+            "loads": [],
+        }
+    )
+
+
+@pytest.mark.parametrize("pair", [False, True], ids=["floor", "disk"])
+@pytest.mark.parametrize("damping", [0.0, 0.5])
+@pytest.mark.parametrize("mu", [0.05, 0.5, 2.0, 100.0])
+def test_no_collision_gains_energy(mu, damping, pair):
+    """At any incidence from grazing to head-on and with any spin, but for the error of the integration."""
+    ratios = [
+        closed_forms.collision(colliding(mu, damping), angle, spin, 1e-4, pair=pair)
+        for angle in (0.5, 2.0, 10.0, 25.0, 45.0, 65.0, 85.0, 90.0)
+        for spin in (-3.0, 0.0, 1.0)
+    ]
+    assert max(ratios) < (1.0 + 3e-5 if damping == 0 else 1.0)
+    assert min(ratios) < 0.95  # some slide or are damped, so the test is one of friction and of dashpots
+
+
+def test_what_a_frictionless_bounce_gains_is_an_error_of_the_integration():
+    smooth = colliding(0.0, 0.0)
+    gains = [abs(closed_forms.collision(smooth, 60.0, 0.0, step, pair=False) - 1.0) for step in (4e-4, 1e-4)]
+    assert gains[1] < gains[0] / 4.0
+    assert gains[1] < 3e-5
+
+
+def test_the_papers_equation_for_the_spring_taken_literally_does_gain_energy():
+    """It freezes a spring beyond the limit and leaves its force: that is why it is not the default."""
+    assert closed_forms.collision(colliding(1.0, 0.0, "literal"), 85.0, 3.0, 1e-4, pair=False) > 1.3
+    assert closed_forms.collision(colliding(1.0, 0.0), 85.0, 3.0, 1e-4, pair=False) < 1.0 + 3e-5
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_undamped_energy_stays_and_friction_only_takes_it(integrator):
+    base = Scene.from_dict(SMALL)
+    part, kick = PARAMETERS["drift"]["part_of_limit"], PARAMETERS["drift"]["kick"]
+
+    def change(friction: float, part: float, system: str = "slab") -> np.ndarray:
+        scene = base.updated({"contact.friction": friction})
+        return stability.DriftTask(scene, system, integrator, part, 5.0, kick, SEED).run()[1]
+
+    for system in ("slab", "bouncing disk"):
+        coarse, fine = (np.abs(change(0.0, p, system)).max() for p in (2.0 * part, 0.5 * part))
+        assert coarse < 0.02
+        assert fine < 0.3 * coarse
+    sliding = change(0.2, part)
+    assert np.diff(sliding).max() < 1e-4
+    assert sliding[-1] < -0.9
+
+
+@pytest.mark.parametrize(("speed", "spin"), [(1.0, 0.0), (0.0, -3.0), (-1.0, 5.0), (1.0, -1.0)])
+@pytest.mark.parametrize("mu", [0.1, 0.5])
+def test_sliding_turns_into_rolling_as_in_closed_form(mu, speed, spin):
+    """Friction mu g until velocity and rim speed agree: 2/3 of the first velocity for a disk without spin."""
+    time = 1.5 * max(abs(speed + spin), 1.0) / (3.0 * mu)
+    scene = Scene().updated({"wall.friction": mu, "loads": []})
+    t, velocity, rim = closed_forms.sliding_to_rolling(scene, speed, spin, 1e-4, time)
+    exact_velocity, exact_rim = closed_forms.rolling_speed(t, mu, speed, spin)
+    # where sliding ends the spring is still stretched by mu g, and rings with the frequency sqrt(3 k_T)
+    wall = scene.resolved_wall
+    ringing = mu / np.sqrt(3.0 * wall.stiffness_ratio * wall.normal_stiffness)
+    np.testing.assert_allclose(velocity, exact_velocity, rtol=0, atol=ringing)
+    np.testing.assert_allclose(rim, exact_rim, rtol=0, atol=2.0 * ringing)
+    assert velocity[-1] == pytest.approx((2.0 * speed - spin) / 3.0, abs=1e-3)
+
+
+# Results
+
+
+def test_random_scenes_are_certified_or_say_clearly_what_is_wrong():
+    """The study has 2,000; `wrong` is the one outcome that must never be."""
+    trials = [random_scenes.run(20_000, SEED, index) for index in range(1290, 1350)]
+    assert [(t.message, k) for k, t in enumerate(trials) if t.outcome == "wrong"] == []
+    assert sum(t.outcome == "certified" for t in trials) > 20
+    assert len({t.outcome for t in trials}) > 3
+    for trial in trials:
+        assert trial.outcome in random_scenes.OUTCOMES
+        if trial.outcome == "certified":
+            assert trial.states > 0
+            assert trial.force_residual < 1e-8
+            assert trial.message == ""
+        elif trial.states == 0:
+            assert trial.message
+            assert "\n" not in trial.message
+
+
+DESCRIPTION = {
+    "packing": {"kind": "slab", "layers": 3, "disks_per_row": 4},
+    "contact": {"friction": 0.3},
+    "wall": {"friction": 0.2},
+    "protocol": {"method": "auto", "integrator": "beeman", "time_step": "auto"},
+}
+
+
+def test_a_scene_with_a_right_answer_is_certified(tmp_path):
+    assert random_scenes.attempt(DESCRIPTION, [1.0], str(tmp_path)).outcome == "certified"
+
+
+@pytest.mark.parametrize(
+    ("tamper", "said"),
+    [
+        (lambda state: replace(state, position=state.position * (1.0 - 1e-7)), "force_residual is"),
+        (lambda state: replace(state, information={}), "a state without a certificate"),
+        (lambda state: replace(state, load_factor=2.0), "force_residual is"),
+    ],
+    ids=["moved", "no certificate", "another load"],
+)
+def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch, tamper, said):
+    solve = random_scenes.solve_scene
+
+    def wrong(scene, **keywords):
+        solution = solve(scene, **keywords)
+        return replace(solution, loaded=[tamper(state) for state in solution.loaded])
+
+    monkeypatch.setattr(random_scenes, "solve_scene", wrong)
+    trial = random_scenes.attempt(DESCRIPTION, [1.0], str(tmp_path))
+    assert trial.outcome == "wrong"
+    assert said in trial.message
+
+
+@pytest.mark.parametrize(
+    ("error", "outcome"),
+    [
+        (NotSettled("not at rest"), "not settled"),
+        (SceneError("contact.friction = -1: must be 0 or more"), "scene refused"),
+        (NotSettled("two\nlines"), "wrong"),
+        (NotSettled(""), "wrong"),
+        (FloatingPointError("overflow"), "wrong"),
+        (IndexError("out of bounds"), "wrong"),
+    ],
+    ids=repr,
+)
+def test_errors_that_a_user_would_not_understand_count_as_wrong(tmp_path, monkeypatch, error, outcome):
+    def fails(scene, **keywords):
+        raise error
+
+    monkeypatch.setattr(random_scenes, "solve_scene", fails)
+    assert random_scenes.attempt(DESCRIPTION, [1.0], str(tmp_path)).outcome == outcome
+
+
+def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
+    scene = Scene.from_dict(SMALL).updated(
+        {"loads": [{"disk": "top-centre", "force": [0.0, -3.0]}], "contact.friction": 0.0, "protocol.time_step": "auto"}
+    )
+    for found in disturb(scene, 1e-12, [1, 2]):
+        assert found.rest_change < 1e-11
+        assert found.response_change < 1e-8
+        assert found.negative_modes == 0
+
+
+# The study
+
+REDUCED = {
+    "seed": SEED,
+    "time_steps": {
+        "scene": SMALL,
+        "integrators": ["verlet", "gear"],
+        "steps": 800,
+        "ratios": [0.9, 2.0],
+        "axes": {name: values[:2] for name, values in PARAMETERS["time_steps"]["axes"].items()},
+    },
+    "drift": PARAMETERS["drift"] | {"scene": SMALL, "time": 0.5, "friction_time": 0.5},
+    "collisions": PARAMETERS["collisions"] | {"angles": [30.0, 60.0], "spins": [0.0], "frictions": [0.2]},
+    "rolling": PARAMETERS["rolling"],
+    "rounding": PARAMETERS["rounding"]
+    | {"kicks": 1, "cases": {"ordered, no friction": {"contact.friction": 0.0, "loads.0.force": [0.0, -5.0]}}},
+    "random_scenes": {"number": 5, "chunk": 2, "maximum_steps": 3000},
+}
+
+
+def test_the_study_and_its_figures():
+    datasets = stability.simulate(REDUCED, workers=1)
+    assert set(datasets) == {f"time_step_{name}" for name in stability.AXES} | {
+        "drift", "collisions", "rolling", "rounding", "random_scenes",
+    }  # fmt: skip
+    for dataset in datasets.values():
+        for entry in dataset.variables.values():
+            assert entry.attrs["long_name"]
+    assert datasets["time_step_friction"]["outcome"].dims == ("integrator", "friction", "ratio")
+    assert datasets["time_step_load"]["load"].values.tolist() == [0.0, 5.0]
+    assert datasets["random_scenes"].sizes["scene"] == 5
+    assert datasets["random_scenes"].attrs["wrong"] == ""
+    drawn = figures.draw(datasets)
+    assert set(drawn) == {"stability_steps", "stability_motion", "stability_scenes"}
+    assert figures.RANDOM == random_scenes.OUTCOMES
+    assert tuple(name for name, _ in figures.OUTCOMES) == time_steps.OUTCOMES
+
+
+def test_a_random_scene_is_the_same_whenever_it_is_drawn():
+    for index in range(20):
+        generators = [np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=(index,))) for _ in range(2)]
+        (one, table), (other, again) = (random_scenes.draw(generator, 1000) for generator in generators)
+        assert one == other
+        assert (table is None) == (again is None)
+        if table is not None:
+            np.testing.assert_array_equal(table, again)
