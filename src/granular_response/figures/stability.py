@@ -163,7 +163,7 @@ def _rolling(panel: Axes, study: xr.Dataset) -> None:
 
 
 def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
-    figure, axes = style.figure(1, 3, width="double", height=2.6, width_ratios=[1.1, 1, 1])
+    figure, axes = style.figure(1, 3, width="double", height=3.2, width_ratios=[1.1, 1, 1])
     outcomes, residuals, rounding = axes[0]
     study = datasets["random_scenes"]
     code = study["outcome"].values
@@ -189,7 +189,8 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
         rounding.plot(disturbed["response_change"].isel(kick=k), rows, "o", color=style.BLUE)
     rounding.axvline(float(disturbed["displacement"]), color=style.MUTED, linewidth=0.8, linestyle="--")
     rounding.set_xscale("log")
-    rounding.set_yticks(rows, [str(case).replace(", ", ",\n", 1) for case in disturbed["case"].values], fontsize=7)
+    names = [str(case).replace(", ", ",\n", 1) for case in disturbed["case"].values]
+    rounding.set_yticks(rows, names, fontsize=7, linespacing=0.9)
     rounding.set_ylim(-0.7, len(rows) - 0.3)
     rounding.set_xlabel("change of the response")
     style.letters(axes, place="above")

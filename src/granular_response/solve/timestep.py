@@ -16,7 +16,7 @@ moment of inertia 1/2 (radius 1), so that a tangential spring of stiffness k_T t
 * *the smallest disk* alone among heavier ones of radius 1, as many as fit around it.
 
 The study ``stability`` measures the limit of kicked packings against this one: they settle at 0.95 of it, and cycle
-or blow up between 1.05 and 1.5 times the limit.
+or blow up between 1.05 and 1.7 times the limit.
 """
 
 from __future__ import annotations
