@@ -50,7 +50,8 @@ class ResultError(ValueError):
 
 def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
     """A variable with the attributes that every stored one has."""
-    return xr.Variable(dims, values, {"long_name": long_name, "units": "1", **attributes})
+    # values that are a numpy array are taken as they are: xarray need not find out whether they are Dask's
+    return xr.Variable(dims, np.asarray(values), {"long_name": long_name, "units": "1", **attributes}, fastpath=True)
 
 
 def common_candidates(states: Sequence[State], radius, width: float) -> list[State]:
@@ -87,7 +88,7 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
     data["load_factor"] = variable(
         (dimension,), np.array([s.load_factor for s in states]), "multiplier of the scene's loads"
     )
-    return xr.Dataset(data, coords={"axis": ("axis", ["x", "z"])})
+    return xr.Dataset(data, coords={"axis": variable("axis", ["x", "z"], "axis labels")})
 
 
 def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
@@ -194,7 +195,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     data = data.assign_coords(
         floor_disk=variable(("floor_disk",), disks, "index of the floor disk"),
         x=variable(("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"),
-        component=("component", ["force_x", "force_z", "torque"]),
+        component=variable("component", ["force_x", "force_z", "torque"], "component labels"),
     )
     for name in ("axis", "component"):
         data[name].attrs.update(long_name=f"{name} labels", units="1")
