@@ -103,14 +103,13 @@ def run(
         described = described.updated({"protocol.method": method})
     store.check_writable(output)
 
-    from .result import to_dataset
+    from .result import to_labelled
     from .solve import solve_scene
 
     with TerminalProgress() as progress:
         solution = solve_scene(described, progress=progress)
-    dataset = to_dataset(solution)
-    store.write(output, dataset, {"wall_clock_seconds": time.perf_counter() - started})
-    typer.echo(f"{output}: {len(dataset.disk)} disks, {time.perf_counter() - started:.1f} s")
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
+    typer.echo(f"{output}: {solution.problem.n} disks, {time.perf_counter() - started:.1f} s")
 
 
 @app.command(
@@ -142,7 +141,7 @@ def continue_(
     stored = store.read(result).get("")
     store.check_writable(output)
 
-    from .result import ResultError, solution_from, to_dataset
+    from .result import ResultError, solution_from, to_labelled
     from .scene import SceneError
     from .solve import continue_solution
 
@@ -154,8 +153,7 @@ def continue_(
             solution = continue_solution(solution, to, progress=progress)
     except (ResultError, SceneError) as error:
         raise ResultError(f"{result}: {error}") from error
-    dataset = to_dataset(solution)
-    store.write(output, dataset, {"wall_clock_seconds": time.perf_counter() - started})
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     factors = ", ".join(f"{factor:g}" for factor in solution.load_factors)
     typer.echo(f"{output}: load factors {factors}, {time.perf_counter() - started:.1f} s")
 

@@ -10,12 +10,12 @@ import json
 import os
 from collections.abc import Sequence
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from . import __version__
+from .labelled import Labelled, Values
 from .observe.difference import match_candidates, pair_force_difference, wall_force_difference
 from .observe.floor import floor_disks, floor_force
 from .scene import Packing, Scene
@@ -24,6 +24,9 @@ from .solve.equilibrium import Certificate
 from .solve.problem import Problem
 from .solve.solution import Solution
 from .solve.state import Contacts, State
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
 
@@ -48,10 +51,18 @@ class ResultError(ValueError):
     """A dataset that is not a result, or not one that can be continued. The message is one line."""
 
 
+def described(dims, values, long_name: str, **attributes) -> Values:
+    """Values with the attributes that every stored variable has."""
+    dimensions = (dims,) if isinstance(dims, str) else tuple(dims)
+    return Values(dimensions, np.asarray(values), {"long_name": long_name, "units": "1", **attributes})
+
+
 def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
-    """A variable with the attributes that every stored one has."""
-    # values that are a numpy array are taken as they are: xarray need not find out whether they are Dask's
-    return xr.Variable(dims, np.asarray(values), {"long_name": long_name, "units": "1", **attributes}, fastpath=True)
+    """The same as a variable of xarray."""
+    import xarray as xr
+
+    # numpy's arrays are taken as they are: xarray need not find out whether they are Dask's
+    return xr.Variable(*described(dims, values, long_name, **attributes), fastpath=True)
 
 
 def common_candidates(states: Sequence[State], radius, width: float) -> list[State]:
@@ -71,28 +82,36 @@ def common_candidates(states: Sequence[State], radius, width: float) -> list[Sta
 
 def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
     """States of one packing and one candidate list, stacked along ``dimension``."""
-    data: dict[str, xr.Variable] = {}
+    return Labelled(_states(states, dimension), frozenset({"axis"})).dataset()
+
+
+def _states(states: Sequence[State], dimension: str) -> dict[str, Values]:
+    data: dict[str, Values] = {}
     for name, (dims, long_name) in _STATE_VARIABLES.items():
-        data[name] = variable((dimension, *dims), np.stack([getattr(s, name) for s in states]), long_name)
+        data[name] = described((dimension, *dims), np.stack([getattr(s, name) for s in states]), long_name)
     for kind, (dim, prefix) in _KINDS.items():
         contacts: list[Contacts] = [getattr(s, kind) for s in states]
         second = "partner" if kind == "pairs" else "wall"
         first_name = f"{prefix}_disk"
-        data[first_name] = variable((dim,), contacts[0].first, "disk that the contact force acts on")
+        data[first_name] = described((dim,), contacts[0].first, "disk that the contact force acts on")
         text = "other disk" if kind == "pairs" else "wall: 0 floor, 1 left, 2 right"
-        data[f"{prefix}_{second}" if kind == "pairs" else "wall_index"] = variable((dim,), contacts[0].second, text)
+        data[f"{prefix}_{second}" if kind == "pairs" else "wall_index"] = described((dim,), contacts[0].second, text)
         for name, long_name in _CONTACT_VARIABLES.items():
             values = np.stack([getattr(c, name) for c in contacts])
             flags = _FLAGS if name == "status" else {}
-            data[f"{prefix}_{name}"] = variable((dimension, dim), values, long_name, **flags)
-    data["load_factor"] = variable(
+            data[f"{prefix}_{name}"] = described((dimension, dim), values, long_name, **flags)
+    data["load_factor"] = described(
         (dimension,), np.array([s.load_factor for s in states]), "multiplier of the scene's loads"
     )
-    return xr.Dataset(data, coords={"axis": variable("axis", ["x", "z"], "axis labels")})
+    return {**data, "axis": described("axis", ["x", "z"], "axis labels")}
 
 
 def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
     """The certificates of states along ``dimension``."""
+    return Labelled(_certificates(states, dimension)).dataset()
+
+
+def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
     names = {
         "force_residual": f"largest unbalanced force on a disk {FORCE}",
         "torque_residual": "largest unbalanced torque on a disk in mean weight times mean radius",
@@ -103,12 +122,10 @@ def certificates_dataset(states: Sequence[State], dimension: str = "state") -> x
         "loose_disks": "disks with fewer than two contacts",
     }
     certificates: list[Certificate] = [s.information["certificate"] for s in states]
-    return xr.Dataset(
-        {
-            f"certificate_{name}": variable((dimension,), np.array([getattr(c, name) for c in certificates]), text)
-            for name, text in names.items()
-        }
-    )
+    return {
+        f"certificate_{name}": described((dimension,), np.array([getattr(c, name) for c in certificates]), text)
+        for name, text in names.items()
+    }
 
 
 def added_forces_dataset(
@@ -118,6 +135,8 @@ def added_forces_dataset(
 
     Gravity is subtracted as a vector. With the geometry under load that pictures need, and the certificates.
     """
+    import xarray as xr
+
     pairs, walls = rest[0].pairs, rest[0].walls
     both = list(zip(rest, loaded, strict=True))
     text = f"contact force that the load adds, on the first disk {FORCE}"
@@ -153,7 +172,12 @@ def added_forces_dataset(
 
 
 def to_dataset(solution: Solution) -> xr.Dataset:
-    """The labelled dataset of a solved scene.
+    """The labelled dataset of a solved scene, as :func:`to_labelled` describes it."""
+    return to_labelled(solution).dataset()
+
+
+def to_labelled(solution: Solution) -> Labelled:
+    """The labelled data of a solved scene.
 
     Dimension ``state``: at rest first, then one entry for each load factor. ``floor_force`` and
     ``floor_response`` have a dimension ``load`` only when there is more than one load factor.
@@ -170,41 +194,40 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
     several = len(loaded) > 1
     dims = ("load", "floor_disk") if several else ("floor_disk",)
-    data = states_dataset(states)
-    data = data.assign(
-        floor_force_rest=variable(("floor_disk",), at_rest, f"vertical floor force at rest {FORCE}"),
-        floor_force=variable(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
-        floor_response=variable(
+    data = {
+        **_states(states, "state"),
+        "floor_force_rest": described(("floor_disk",), at_rest, f"vertical floor force at rest {FORCE}"),
+        "floor_force": described(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
+        "floor_response": described(
             dims,
             response if several else response[0],
             "vertical floor force that the load adds, per total magnitude of the applied forces",
         ),
-        radius=variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
-        mass=variable(("disk",), packing.mass, "disk mass in mean disk masses"),
-        row=variable(("disk",), packing.row, "row on the lattice from the bottom, -1 without lattice"),
-        loaded_disk=variable(("load_point",), problem.load_disk, "disks that carry the loads"),
-        applied_load=variable(
+        "radius": described(("disk",), packing.radius, f"disk radius {LENGTH}"),
+        "mass": described(("disk",), packing.mass, "disk mass in mean disk masses"),
+        "row": described(("disk",), packing.row, "row on the lattice from the bottom, -1 without lattice"),
+        "loaded_disk": described(("load_point",), problem.load_disk, "disks that carry the loads"),
+        "applied_load": described(
             ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
         ),
-        total_force=variable(
+        "total_force": described(
             ("load",) if several else (),
             applied if several else applied[0],
             f"total magnitude of the applied forces {FORCE}",
         ),
-    ).merge(certificates_dataset(states))
-    data = data.assign_coords(
-        floor_disk=variable(("floor_disk",), disks, "index of the floor disk"),
-        x=variable(("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"),
-        component=variable("component", ["force_x", "force_z", "torque"], "component labels"),
-    )
-    for name in ("axis", "component"):
-        data[name].attrs.update(long_name=f"{name} labels", units="1")
+        **_certificates(states, "state"),
+        "floor_disk": described(("floor_disk",), disks, "index of the floor disk"),
+        "x": described(
+            ("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"
+        ),
+        "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
+    }
     methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
     reasons = {
         "rest": solution.rest_choice.reason,
         "load": getattr(solution.load_choice, "reason", "no loads"),
     }
-    data.attrs = {
+    attributes = {
         "title": "quasi-static response of a granular packing",
         "package": "granular_response",
         "package_version": __version__,
@@ -217,7 +240,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "settled": int(all(s.information.get("settled", True) for s in states)),
         "units": "reduced: mean disk radius, mean disk mass, g",
     }
-    return data
+    return Labelled(data, frozenset({"axis", "floor_disk", "x", "component"}), attributes)
 
 
 def state_from(dataset: xr.Dataset, index: int = -1) -> State:

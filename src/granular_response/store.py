@@ -15,14 +15,16 @@ import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import netCDF4
 import numpy as np
-import xarray as xr
-from xarray.backends import NetCDF4DataStore
 
 from . import __version__, atomic, hdf5_image
+from .labelled import Labelled, labelled
+
+if TYPE_CHECKING:  # whoever writes without reading does not wait for it
+    import xarray as xr
 
 #: Root attribute by which a file of ours is known; its number grows when the layout changes.
 FORMAT = "granular_response 1"
@@ -42,7 +44,7 @@ def _error(path: str | os.PathLike[str], problem: str) -> StoreError:
 
 def write(
     path: str | os.PathLike[str],
-    datasets: xr.Dataset | Mapping[str, xr.Dataset],
+    datasets: xr.Dataset | Labelled | Mapping[str, xr.Dataset],
     attributes: Mapping[str, Any] | None = None,
 ) -> None:
     """Write datasets to one netCDF-4 file, compressed and with checksums.
@@ -52,8 +54,8 @@ def write(
     path
         The file to make or to replace. Missing folders are made.
     datasets
-        One dataset, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""`` is the root).
-        Every variable and coordinate has the attributes ``long_name`` and ``units``.
+        One dataset, of xarray or as its parts, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""``
+        is the root) to datasets. Every variable and coordinate has the attributes ``long_name`` and ``units``.
     attributes
         Attributes of the file as a whole. ``format`` and ``package_version`` are added.
 
@@ -64,11 +66,14 @@ def write(
         was there before is then as it was.
     """
     path = Path(path)
-    groups = {"": datasets} if isinstance(datasets, xr.Dataset) else dict(datasets)
-    for name, dataset in groups.items():
-        _check(path, name, dataset)
-    root = groups.pop("", xr.Dataset())
-    root = root.assign_attrs({**(attributes or {}), "format": FORMAT, "package_version": __version__})
+    single = isinstance(datasets, Labelled) or hasattr(datasets, "data_vars")
+    given: Mapping[str, Any] = {"": datasets} if single else datasets  # type: ignore[assignment]
+    groups = {name: labelled(dataset) for name, dataset in given.items()}
+    for name, parts in groups.items():
+        _check(path, name, parts)
+    root = groups.pop("", Labelled())
+    marks = {"format": FORMAT, "package_version": __version__}
+    root = Labelled(root.variables, root.coordinates, {**root.attributes, **(attributes or {}), **marks})
     groups = {"": root, **groups}
     data = _image(path, groups)
     data += _SEAL + hashlib.sha256(data).digest()
@@ -114,25 +119,25 @@ def read_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     return {name: v.item() if isinstance(v, np.generic) else v for name, v in attributes.items()}
 
 
-def _check(path: Path, group: str, dataset: xr.Dataset) -> None:
+def _check(path: Path, group: str, parts: Labelled) -> None:
     """Names and labels of one group."""
     if group and not _GROUP.fullmatch(group):
         raise _error(path, f"group name {group!r}: must be letters, digits, '_', '.', '+' or '-'")
-    for name, variable in dataset.variables.items():
+    for name, variable in parts.variables.items():
         where = f"variable {group + '/' if group else ''}{name}"
         for label in ("long_name", "units"):
-            value = variable.attrs.get(label)
+            value = variable.attributes.get(label)
             if not isinstance(value, str) or not value.strip():
                 raise _error(path, f"{where} needs the attribute {label} (units: '1' in reduced units)")
 
 
-def _image(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
+def _image(path: Path, groups: Mapping[str, Labelled]) -> bytes:
     """The file as bytes."""
     file = netCDF4.Dataset(path.name, mode="w", format="NETCDF4", memory=1)
     try:
-        for name, dataset in groups.items():
+        for name, parts in groups.items():
             try:
-                _dump(dataset, file.createGroup(name) if name else file)
+                _dump(parts, file.createGroup(name) if name else file)
             except (RuntimeError, TypeError, ValueError, NotImplementedError) as error:
                 raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
     finally:
@@ -140,28 +145,21 @@ def _image(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
     return hdf5_image.plain_bytes(image)
 
 
-def _dump(dataset: xr.Dataset, group: netCDF4.Dataset) -> None:
-    """Write a dataset as xarray encodes it.
-
-    xarray's own writer gives the same bytes, but looks at every array with the help of Dask where that is installed,
-    and to load it takes longer than to write a result.
-    """
-    variables, attributes = xr.conventions.cf_encoder(*xr.conventions.encode_dataset_coordinates(_plain(dataset)))
-    for name, value in attributes.items():
-        _set_attribute(group, str(name), value)
+def _dump(parts: Labelled, group: netCDF4.Dataset) -> None:
+    """Write a dataset as xarray would, by the CF conventions: the same bytes."""
+    for name, value in parts.encoded_attributes().items():
+        _set_attribute(group, name, value)
+    variables = parts.encoded_variables()
     for variable in variables.values():
-        for dimension, size in zip(variable.dims, variable.shape, strict=True):
+        for dimension, size in zip(variable.dimensions, variable.values.shape, strict=True):
             if dimension not in group.dimensions:
                 group.createDimension(dimension, size)
     for name, variable in variables.items():
-        values = np.asarray(variable.values)
-        if values.dtype.kind not in "iufU":
-            raise TypeError(f"variable {name} has values of type {values.dtype}")
+        values, labels = variable.values, dict(variable.attributes)
         numbers = values.dtype.kind != "U"
         packed = numbers and bool(values.ndim and values.size)
-        labels = dict(variable.attrs)
         written = group.createVariable(
-            name, values.dtype.newbyteorder("=") if numbers else str, variable.dims,
+            name, values.dtype.newbyteorder("=") if numbers else str, variable.dimensions,
             fill_value=labels.pop("_FillValue", None), zlib=packed, complevel=4, shuffle=True, fletcher32=packed,
         )  # fmt: skip
         written.setncatts(labels)
@@ -176,27 +174,14 @@ def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
         group.setncattr(name, value)
 
 
-def _plain(dataset: xr.Dataset) -> xr.Dataset:
-    """Without the traces of a file that it came from, and with truth values that an attribute can hold."""
-
-    def plain(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
-        return {key: int(v) if isinstance(v, (bool, np.bool_)) else v for key, v in attributes.items()}
-
-    dataset = dataset.drop_encoding().copy()
-    dataset.attrs = plain(dataset.attrs)
-    for variable in dataset.variables.values():
-        variable.attrs = plain(variable.attrs)
-    return dataset
-
-
-def _verify(path: Path, data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
+def _verify(path: Path, data: bytes, groups: Mapping[str, Labelled]) -> None:
     """Decode every variable of every group once before the file counts."""
     try:
         with netCDF4.Dataset(path.name, mode="r", memory=data) as file:
-            for name, dataset in groups.items():
+            for name, parts in groups.items():
                 group = file[name] if name else file
-                for key, variable in dataset.variables.items():
-                    if group[str(key)][...].shape != variable.shape:
+                for key, variable in parts.variables.items():
+                    if group[key][...].shape != variable.values.shape:
                         raise _error(path, f"variable {name}/{key} reads back with another shape")
     except (OSError, RuntimeError, IndexError, KeyError) as error:
         raise _error(path, f"does not read back: {error}") from error
@@ -247,6 +232,9 @@ def _walk(file: netCDF4.Dataset, prefix: str = "") -> list[tuple[str, netCDF4.Da
 
 
 def _load(group: netCDF4.Dataset) -> xr.Dataset:
+    import xarray as xr
+    from xarray.backends import NetCDF4DataStore
+
     store = NetCDF4DataStore(group)
     # seconds stay numbers: decoding them to time spans would lose digits
     dataset = xr.open_dataset(store, decode_times=False, decode_timedelta=False).load()

@@ -33,6 +33,7 @@ ALLOWED = {
     "floating_point": set(),
     "generated": set(),
     "hdf5_image": set(),
+    "labelled": {"numpy", "xarray"},
     "claims": {"numpy", "xarray"},
     "report": {"PIL", "jinja2", "numpy", "xarray"},
     "export": {"gsd", "numpy", "pyevtk", "xarray"},
