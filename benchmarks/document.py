@@ -172,7 +172,14 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
             "group": "group", "simulate_seconds": "simulations [s]", "simulate_processor_seconds": "processor [s]",
             "draw_seconds": "figures [s]",
         }  # fmt: skip
-        return [table(metrics["runs"], columns)]
+        sums = {
+            "cores": "cores", "simulate_seconds": "simulations [s]", "draw_seconds": "figures [s]",
+            "processor_seconds": "processor [s]",
+        }  # fmt: skip
+        return [
+            table(metrics["runs"], columns),
+            table(metrics["totals"], sums, "Sum of the groups that draw the paper's figures or check its claims:"),
+        ]
     return []
 
 

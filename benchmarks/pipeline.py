@@ -1,8 +1,8 @@
 """Where the time of the pipeline goes: every figure group from nothing, with kernels compiled.
 
-`python benchmarks/pipeline.py OUTPUT.json`, from the root of the repository or from here. Each group's simulations and
-drawings run as the pipeline runs them, into a scratch folder, with all cores; rest states are shared from group to
-group as there. `stability` is not one of the paper's groups, so it is not in the sum.
+`python benchmarks/pipeline.py OUTPUT.json [FOLDER]`, from anywhere. Each group's simulations and drawings run as the
+pipeline runs them, into a scratch folder (or an empty one that is kept), with all cores; rest states are shared from
+group to group as there. Groups that neither draw a figure of the paper nor check a claim are not in the sum.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import os
 import sys
 import tempfile
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import yaml
@@ -18,21 +19,21 @@ from startup import run
 from timing import write
 
 ROOT = Path(__file__).resolve().parents[1]
-EXTENSIONS = ("stability",)
+EXTENSIONS = ("slab_comparison", "sensitivity", "stability")
 
 
 def groups() -> list[str]:
     """Figure groups in the order in which they can run."""
     stages = yaml.safe_load((ROOT / "dvc.yaml").read_text(encoding="utf-8"))["stages"]
-    return [*stages["simulate"]["foreach"], *stages["derive"]["foreach"]]
+    return [group for kind in ("simulate", "derive", "stress") for group in stages[kind]["foreach"]]
 
 
-def main(path: str) -> None:
+def main(path: str, folder: str | None = None) -> None:
     output = Path(path).resolve()
     command = [sys.executable, "-m", "granular_response"]
     rows = []
-    with tempfile.TemporaryDirectory() as scratch:
-        (Path(scratch) / "data").mkdir()
+    with nullcontext(folder) if folder else tempfile.TemporaryDirectory() as scratch:
+        (Path(scratch) / "data").mkdir(parents=True)
         (Path(scratch) / "params.yaml").write_bytes((ROOT / "params.yaml").read_bytes())
         os.chdir(scratch)
         begin = time.perf_counter()
@@ -55,4 +56,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:3])
