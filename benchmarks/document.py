@@ -58,6 +58,12 @@ TEXTS = {
         "Whole processes, `granular-response run` from a scene file to the stored result, on one core. Slabs are four "
         "times as wide as deep, and stiffness grows with their size so that the order of the slab survives.",
     ),
+    "depth": (
+        "The teardrop in deep slabs",
+        "Without friction, the region of contacts that the load opens (Fig. 5), in slabs up to sixteen times as deep "
+        "as the paper's. Stiffness grows with the size of the slab, so that gravity compresses all of them equally "
+        "little; open symbols: the region has reached the floor.",
+    ),
     "startup": ("What a newcomer waits for", "Whole processes. Compiled kernels are kept on disk."),
     "pipeline": (
         "Where the time of the pipeline goes",
@@ -163,6 +169,12 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
             "peak_gibibytes": "peak memory [GiB]", "force_residual": "largest unbalanced force [mg]",
         }  # fmt: skip
         return [table(metrics["runs"], columns)]
+    if benchmark == "depth":
+        columns = {
+            "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
+            "exponent_of_depth": "depth grows as the force to the power", "exponent_of_width": "width",
+        }  # fmt: skip
+        return [table(metrics["growth"], columns)]
     if benchmark == "startup":
         return [
             table(metrics["runs"], {"what": "process", "seconds": "time [s]", "processor_seconds": "processor [s]"})

@@ -212,6 +212,31 @@ def scale(metrics: Metrics) -> Figure:
     return figure
 
 
+@style.context()
+def depth(metrics: Metrics) -> Figure:
+    """Depth and width of the teardrop against the force, a curve for each slab; open where it reaches the floor."""
+    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    slabs = list(dict.fromkeys(row["layers"] for row in metrics["runs"]))
+    for place, (layers, colour) in enumerate(zip(slabs, style.ordered_colours(len(slabs)), strict=True)):
+        runs = [row for row in pick(metrics["runs"], layers=layers) if row["depth"] > 0.0]
+        drawn = style.marked_line(place, colour=colour)
+        for panel, key in zip(axes[0], ("depth", "width"), strict=True):
+            panel.plot([row["force"] for row in runs], [row[key] for row in runs], **drawn, label=f"{layers}")
+            ends = pick(runs, reaches_floor=1)
+            panel.plot(
+                [row["force"] for row in ends],
+                [row[key] for row in ends],
+                linestyle="none",
+                marker=drawn["marker"],
+                markerfacecolor="white",
+                markeredgecolor=colour,
+            )
+    for panel, key in zip(axes[0], ("depth", "width"), strict=True):
+        _logarithmic(panel, xlabel="$F_{\\mathrm{ext}}/mg$", ylabel=f"{key} of the region $/R$")
+    axes[0, 0].legend(title="layers", loc="lower right")
+    return figure
+
+
 DRAWN: dict[str, Callable[[Metrics], Figure]] = {
     "precision": precision,
     "kernel": kernel,
@@ -219,4 +244,5 @@ DRAWN: dict[str, Callable[[Metrics], Figure]] = {
     "convergence": convergence,
     "skipping": skipping,
     "scale": scale,
+    "depth": depth,
 }

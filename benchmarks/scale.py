@@ -1,0 +1,116 @@
+"""Time and memory of whole `granular-response run` processes against the number of disks.
+
+`python benchmarks/scale.py OUTPUT.json [MOST_DISKS]` solves ordered slabs four times as wide as deep, from nothing to a
+stored result: without friction by minimisation, with friction 0.2 by statics alone (a rest state prepared without
+friction, then the load path), and for comparison by explicit dynamics, whose cost grows as the square of the number of
+disks. Stiffness grows with layers times disks per row, so that every slab keeps its order under gravity. Slabs of more
+than MOST_DISKS keep the rows that OUTPUT.json has for them. Kernels are compiled beforehand; one core.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from timing import write
+
+from granular_response import store
+from granular_response.scene import Scene
+
+#: layers and disks in the bottom row
+SLABS = [(15, 61), (30, 121), (60, 241), (120, 481), (160, 641), (240, 961), (500, 2001)]
+#: friction, force in disk weights, and layers of the largest slab that is tried
+METHODS: dict[str, dict[str, float]] = {
+    "minimise": {"friction": 0.0, "force": 5.0, "layers": 500},
+    "path": {"friction": 0.2, "force": 15.0, "layers": 160},
+    "dynamics": {"friction": 0.2, "force": 15.0, "layers": 30},
+}
+ASPECT_STIFFNESS = 3000.0 / (15 * 61)
+
+
+def scene(layers: int, per_row: int, method: str, friction: float, force: float) -> Scene:
+    """The slab for one run."""
+    return Scene.from_dict(
+        {
+            "packing": {"kind": "slab", "layers": layers, "disks_per_row": per_row},
+            "contact": {"normal_stiffness": ASPECT_STIFFNESS * layers * per_row, "friction": friction},
+            "loads": [{"disk": {"row": "top"}, "force": [0.0, -force]}],
+            "preparation": {"gravity": "at-once" if method == "dynamics" else "frictionless"},
+            "protocol": {"method": "dynamics" if method == "dynamics" else "auto", "time_step": "auto"},
+        }
+    )
+
+
+def measure(layers: int, per_row: int, method: str, friction: float, force: float) -> dict:
+    """One process: its wall-clock and CPU seconds, its peak memory, and the certificate of what it stored."""
+    described = scene(layers, per_row, method, friction, force)
+    with tempfile.TemporaryDirectory() as folder:
+        file, result = Path(folder, "scene.yaml"), Path(folder, "result.nc")
+        file.write_text(described.to_yaml(), encoding="utf-8")
+        command = [sys.executable, "-m", "granular_response", "run", str(file), "-o", str(result)]
+        start = time.perf_counter()
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        _, status, usage = os.wait4(process.pid, 0)
+        seconds = time.perf_counter() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            raise RuntimeError(f"{method} on {layers} layers ended with code {process.returncode}")
+        data = store.read(result)[""]
+        size = result.stat().st_size
+    return {
+        "method": method,
+        "layers": layers,
+        "disks": int(data.sizes["disk"]),
+        "friction": friction,
+        "force": force,
+        "normal_stiffness": described.contact.normal_stiffness,
+        "seconds": seconds,
+        "cpu_seconds": usage.ru_utime + usage.ru_stime,
+        "peak_gibibytes": usage.ru_maxrss / 2**20,
+        "result_mebibytes": size / 2**20,
+        "force_residual": float(data["certificate_force_residual"].max()),
+        "negative_modes": int(data["certificate_negative_modes"].max()),
+        "sum_of_response": float(data["floor_response"].sum()),
+    }
+
+
+def exponents(rows: list[dict]) -> list[dict]:
+    """Slopes of log time and log memory against log N, over slabs of more than 3000 disks."""
+    found = []
+    for method in dict.fromkeys(row["method"] for row in rows):
+        of = [row for row in rows if row["method"] == method]
+        large = [row for row in of if row["disks"] > 3000] if method != "dynamics" else of
+        if len(large) > 1:
+            n = np.log([row["disks"] for row in large])
+            entry = {"method": method, "from_disks": large[0]["disks"], "to_disks": large[-1]["disks"]}
+            for key in ("seconds", "cpu_seconds", "peak_gibibytes"):
+                entry[f"exponent_of_{key}"] = float(np.polyfit(n, np.log([row[key] for row in large]), 1)[0])
+            found.append(entry)
+    return found
+
+
+def main(path: str, most: int = 10**9) -> None:
+    earlier = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
+    for method, settings in METHODS.items():  # compiles
+        measure(8, 25, method, settings["friction"], 1.0)
+    rows = []
+    for method, settings in METHODS.items():
+        for layers, per_row in SLABS:
+            if layers > settings["layers"]:
+                continue
+            if layers * per_row > most:
+                rows += [row for row in earlier if (row["method"], row["layers"]) == (method, layers)]
+                continue
+            rows.append(measure(layers, per_row, method, settings["friction"], settings["force"]))
+            print(rows[-1], flush=True)
+    write(path, {"cores": 1, "exponents": exponents(rows), "runs": rows})
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], *map(int, sys.argv[2:3]))
