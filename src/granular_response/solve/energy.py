@@ -120,10 +120,9 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
             # moment; to stop at each of them would take many steps.
             ratio = 1.0
             if new_size > 10.0 * size and new_size > tolerance:
-                full = step
                 step, new = _shorter(system, known, external, q, step, float(step @ r), new)
                 new_value = energy(system, new, external)
-                ratio = 1.0 if step is full else POOR
+                ratio = float(np.abs(step).max()) / length
         elif predicted > rounding:
             ratio = gained / predicted
         else:
