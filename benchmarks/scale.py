@@ -99,9 +99,9 @@ def main(path: str, most: int = 10**9) -> None:
     earlier = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
     for method, settings in METHODS.items():  # compiles
         measure(8, 25, method, settings["friction"], 1.0)
-    rows = []
-    for method, settings in METHODS.items():
-        for layers, per_row in SLABS:
+    rows: list[dict] = []
+    for layers, per_row in SLABS:
+        for method, settings in METHODS.items():
             if layers > settings["layers"]:
                 continue
             if layers * per_row > most:
@@ -109,6 +109,8 @@ def main(path: str, most: int = 10**9) -> None:
                 continue
             rows.append(measure(layers, per_row, method, settings["friction"], settings["force"]))
             print(rows[-1], flush=True)
+            # after every run: the last ones take long
+            write(path, {"cores": 1, "exponents": exponents(rows), "runs": rows})
     write(path, {"cores": 1, "exponents": exponents(rows), "runs": rows})
 
 
