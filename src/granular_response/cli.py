@@ -22,12 +22,15 @@ PACKAGE = (
     f"version {__version__}"
 )
 BIBTEX = f"""\
-@article{{goldenberg-goldhirsch,
+@misc{{goldenberg-goldhirsch,
   author = {{Goldenberg, C. and Goldhirsch, I.}},
   title  = {{Effects of Friction and Disorder on the Quasi-Static Response of Granular Solids
             to a Localized Force}},
+  year   = {{2007}},
+  month  = nov,
   eprint = {{0711.4243}},
-  archiveprefix = {{arXiv}}
+  archiveprefix = {{arXiv}},
+  url    = {{https://arxiv.org/abs/0711.4243}}
 }}
 
 @software{{granular-response,
@@ -239,6 +242,28 @@ def show(
     console = Console(highlight=False)
     for part in summarise(file):
         console.print(part, soft_wrap=isinstance(part, Text))
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response keys",
+        "granular-response keys protocol",
+        "granular-response keys --page docs/scene-reference.md",
+    )
+)
+def keys(
+    part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.", show_default=False)] = "",
+    page: Annotated[
+        Path | None, typer.Option(help="Renew the tables in this file in place of printing.", show_default=False)
+    ] = None,
+) -> None:
+    """Print the keys of a scene file: default, what is allowed, unit and meaning."""
+    from . import scene_reference
+
+    if page is None:
+        typer.echo(scene_reference.plain(part))
+    else:
+        scene_reference.renew(page)
 
 
 @app.command(

@@ -22,7 +22,7 @@ from granular_response.pipeline import drawing, simulation
 from granular_response.scene import SceneError
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ["run", "continue", "simulate", "draw", "show", "export", "claims", "report", "cite", "version"]
+COMMANDS = ["run", "continue", "simulate", "draw", "show", "keys", "export", "claims", "report", "cite", "version"]
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
 contact: {friction: 0.0}
@@ -161,6 +161,8 @@ def test_run_by_another_method(tmp_path):
         (["simulate", "theory"], ["params.yaml: cannot be read"]),
         (["draw", "nonsense"], ["nonsense: no such figure group to draw"]),
         (["draw", "theory"], ["data/theory.nc: no such file"]),
+        (["keys", "magic"], ["no key of a scene begins with magic", "protocol"]),
+        (["keys", "--page", "scene.yaml"], ["scene.yaml", "keys: begin"]),
     ],
 )
 def test_expected_errors_are_one_line_and_code_2(tmp_path, arguments, parts):

@@ -27,6 +27,7 @@ ALLOWED = {
     "sweep": {"numpy", "distributed"},
     "pipeline": set(),
     "cli": {"typer", "rich"},
+    "scene_reference": set(),
     "summary": {"numpy", "rich", "xarray"},
     "terminal": {"rich"},
     "atomic": set(),
