@@ -1,11 +1,17 @@
-"""Documents name modules and files that exist."""
+"""Documents name modules, files, keys and messages that exist."""
 
 from __future__ import annotations
 
+import ast
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
+from test_layering import PARTS, outside_imports
+
+from granular_response import generated, scene_reference
+from granular_response.scene import LaboratoryUnits, Scene, SceneError
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -20,3 +26,128 @@ def test_named_modules_and_links_exist(page):
     links = re.findall(r"\]\((?!https?:|#|mailto:)([^)#]+)", text)
     missing += [link for link in links if not (page.parent / link).exists()]
     assert not missing
+
+
+def table_of_imports() -> dict[str, set[str]]:
+    """What docs/architecture.md allows each part to import; "any part" means all of them."""
+    rows = re.findall(r"^\| (`.*?) \| .*? \| (.*?) \|$", (ROOT / "docs" / "architecture.md").read_text(), re.MULTILINE)
+    parts = {name: set() for names, _ in rows for name in re.findall(r"`(\w+)/?`", names)}
+    for names, allowed in rows:
+        for name in re.findall(r"`(\w+)/?`", names):
+            parts[name] = set(re.findall(r"\w+", allowed)) | (set(parts) if "any part" in allowed else set())
+    return parts
+
+
+def inside_imports(part: Path) -> set[str]:
+    """Other parts of the package that a part imports, wherever in its files."""
+    own = {path.stem for path in PARTS}
+    found: set[str] = set()
+    for path in sorted(part.rglob("*.py")) if part.is_dir() else [part]:
+        depth = len(path.relative_to(ROOT / "src" / "granular_response").parts)
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.ImportFrom):
+                continue
+            module = (node.module or "").split(".") if node.module else []
+            if node.level == 0:
+                if module[0] != "granular_response":
+                    continue
+                module = module[1:]
+            elif node.level < depth:
+                continue  # within the part
+            found |= {module[0]} if module else {alias.name for alias in node.names}
+    return found & own - {part.stem}
+
+
+def test_every_part_is_in_the_table_of_imports():
+    assert set(table_of_imports()) == {part.stem for part in PARTS}
+    store = next(part for part in PARTS if part.stem == "store")
+    assert {"atomic", "labelled"} <= inside_imports(store)
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.stem)
+def test_the_table_of_imports_agrees_with_the_code(part):
+    names = {"PIL": "pillow", "pydantic_core": "pydantic"}
+    imported = {names.get(name, name) for name in outside_imports(part)} | inside_imports(part)
+    assert imported <= table_of_imports()[part.stem]
+
+
+@cache
+def texts_of_the_sources() -> str:
+    """Every string of the package, one a line; where a formatted one has a value there is a NUL."""
+    found = []
+    for path in sorted((ROOT / "src").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.JoinedStr):
+                found.append("".join(p.value if isinstance(p, ast.Constant) else "\0" for p in node.values))
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                found.append(" ".join(node.value.splitlines()))
+    return "\n".join(found)
+
+
+def quoted_messages() -> list[str]:
+    text = (ROOT / "docs" / "own-scenes.md").read_text(encoding="utf-8")
+    section = text.partition("## When it does not work")[2].partition("\n## ")[0]
+    return [" ".join(message.split()) for message in re.findall(r"^\* \*([^*]+)\*", section, re.MULTILINE)]
+
+
+@pytest.mark.parametrize("message", quoted_messages())
+def test_quoted_messages_are_those_of_the_code(message):
+    parts = [re.escape(part.strip()) for part in message.split("...") if part.strip()]
+    assert parts and re.search("[^\n]*".join(parts), texts_of_the_sources())
+
+
+def test_several_messages_are_quoted():
+    assert len(quoted_messages()) >= 5
+
+
+def test_the_reference_of_the_scene_keys_is_current():
+    page = (ROOT / "docs" / "scene-reference.md").read_text(encoding="utf-8")
+    fresh = generated.replace(page, scene_reference.BLOCK, scene_reference.lines())
+    assert fresh == page, "granular-response keys --page docs/scene-reference.md"
+
+
+def paths_of(data: object, place: str = "") -> set[str]:
+    """All paths of a scene as a dict, with [] for the items of a list of mappings."""
+    if isinstance(data, dict):
+        return {path for name, value in data.items() for path in paths_of(value, f"{place}.{name}".lstrip("."))}
+    if isinstance(data, list) and data and isinstance(data[0], dict):
+        return {path for value in data for path in paths_of(value, f"{place}[]")}
+    return {place}
+
+
+def test_the_reference_has_every_key_of_every_kind_of_scene():
+    known = {key.path for key in scene_reference.every()}
+    packings = ({"kind": "slab"}, {"kind": "pile"}, {"kind": "file", "path": "disks.csv", "width": 9.0})
+    loads = [{"disk": {"row": "top"}, "force": [0.0, -1.0]}, {"disk": 3, "force": [0.0, -1.0]}]
+    scenes = [Scene.from_dict({"packing": packing, "loads": loads}) for packing in packings]
+    assert set().union(*(paths_of(scene.to_dict()) for scene in scenes)) == known
+
+
+def test_the_reference_says_what_the_scene_allows():
+    keys = {key.path: key for key in scene_reference.every()}
+    with pytest.raises(SceneError) as caught:
+        Scene.from_dict({"contact": {"friction": -1}})
+    assert str(caught.value).endswith(f"must be {keys['contact.friction'].allowed}")
+    assert keys["wall.normal_stiffness"].allowed.endswith(", or null")
+    assert Scene.from_text(f"contact: {{normal_stiffness: {keys['contact.normal_stiffness'].default}}}") == Scene()
+    assert not keys["loads[].force"].default and not keys["packing.kind"].default
+    assert keys["loads[].force"].unit == "disk weight"
+
+
+def test_units_are_given_for_keys_that_exist():
+    names = {key.path.rpartition(".")[2] for key in scene_reference.every()}
+    assert set(scene_reference.UNITS) <= names
+
+
+def test_laboratory_units_are_as_the_page_says():
+    text = (ROOT / "docs" / "own-scenes.md").read_text(encoding="utf-8")
+    code = re.search(r"## Laboratory units.*?```python\n(.*?)```", text, re.DOTALL)
+    assert code
+    names: dict = {}
+    for line in code[1].splitlines():
+        expression, _, said = line.partition("  # ")
+        if not said:
+            exec(line, names)
+        else:
+            assert eval(expression, names) == pytest.approx(float(said.split()[0]), rel=5e-3), line
+    assert isinstance(names["units"], LaboratoryUnits)
