@@ -48,6 +48,7 @@ figure: setup ## Draw one figure group: make figure GROUP=pile_dip
 	"$(BIN)/dvc" repro draw@$(GROUP)
 
 test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two processes)
+	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/python" -m pytest -n $(JOBS)
 
 fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
