@@ -29,7 +29,8 @@ STOP = Stop(1e-4, maximum_steps=1500)
 
 def dynamics(integrator="beeman", *, layers=3, disks_per_row=28, force=(0.3, -2.0), **changes) -> Dynamics:
     """A slab that falls into its contacts while a disk of its top row is pushed and turned."""
-    loads = [{"disk": {"row": "top", "offset": 0}, "force": list(force), "torque": 0.2}]
+    smooth = changes.get("contact__friction") == 0.0 and not changes.get("wall__friction")
+    loads = [{"disk": {"row": "top", "offset": 0}, "force": list(force), "torque": 0.0 if smooth else 0.2}]
     problem = Problem.from_scene(scene(layers, disks_per_row, loads=loads, **changes))
     bare = problem.bare_state()
     return Dynamics(problem.with_loads(bare.position), bare, integrator, 2e-4)
@@ -157,3 +158,17 @@ def test_arrays_begin_at_a_cache_line():
     for n in range(1, 20):
         array = aligned_zeros(n, 3, WIDTH)
         assert array.ctypes.data % 64 == 0 and array.flags.c_contiguous and not array.any()
+
+
+def test_scenes_that_leave_their_lists_fast_go_their_own_way():
+    """Large overlaps at the start throw disks farther in a hundred steps than any list reaches."""
+
+    def several() -> list[Relaxation]:
+        fast = {"packing__polydispersity": 0.5, "packing__lattice_constant": 2.0}
+        return relaxations("verlet", stop=Stop(1e-9, maximum_steps=600), **fast)
+
+    together = relax_many(several())
+    alone = [relaxation.run() for relaxation in several()]
+    for one, other in zip(together, alone, strict=True):
+        assert_same(one, other)
+    assert all(state.information["rebuilds"] for state in alone)

@@ -14,6 +14,8 @@ Arrays have a row of lanes for each quantity of each entry; :func:`advance` desc
 
 from __future__ import annotations
 
+import math
+
 import numba as nb
 
 from .integrators import beeman, gear, verlet
@@ -214,9 +216,26 @@ def _advance_disk(
         _advance_component(motion, row + 2, c, ft * load(disk, DISK * i + 3), dt, kind, radius, more)
 
 
+@nb.njit(cache=True, error_model="numpy")
+def moved_beyond(motion, c, limit, horizon, found):
+    """Per lane: whether a disk may be farther than ``limit`` from its reference position within ``horizon``.
+
+    ``motion`` as of ``advance``; ``limit``, ``horizon``, ``found`` : (lanes,). As ``integrators.record.moved_beyond``.
+    """
+    rows = FIELDS * c
+    for lane in range(limit.size):
+        found[lane] = False
+        for i in range(motion.shape[0] // rows):
+            x, z = motion[rows * i, lane], motion[rows * i + 1, lane]
+            vx, vz = motion[rows * i + 2 * c, lane], motion[rows * i + 2 * c + 1, lane]
+            if math.sqrt(x * x + z * z) + horizon[lane] * math.sqrt(vx * vx + vz * vz) > limit[lane]:
+                found[lane] = True
+                break
+
+
 @nb.njit(cache=True, error_model="numpy", nogil=True)
 def advance(
-    steps, kind, rule, pair_friction, wall_friction, rotations, clock,
+    steps, done, kind, rule, pair_friction, wall_friction, rotations, clock,
     motion, disk, contact, force, wall, loads, laws,
     pair_start, pair_first, pair_second, term_start, term, wall_start, wall_normal, load_start,
 ):  # fmt: skip
@@ -224,6 +243,7 @@ def advance(
 
     Parameters
     ----------
+    done : steps made since the clock was set.
     kind : integrator, see ``KINDS``; ``rule`` : CUT or LITERAL; ``pair_friction``, ``wall_friction`` : bool;
         ``rotations`` : None without them, which leaves them out at compile time.
     clock : (8, lanes) time now, time step, and the linear ramps of gravity and load: from, to, duration. The time
@@ -256,7 +276,7 @@ def advance(
         if rotations is not None:
             _predict_component(motion, rows * i + 2, c, dt, kind, load(disk, DISK * i + 1))
     for step in range(steps):
-        now = time + float(step + 1) * dt
+        now = time + float(done + step + 1) * dt
         gravity = _ramp(now, load(clock, 2), load(clock, 3), load(clock, 4))
         load_factor = _ramp(now, load(clock, 5), load(clock, 6), load(clock, 7))
         for chunk in range(0, n, CHUNK):

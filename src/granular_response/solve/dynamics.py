@@ -15,7 +15,6 @@ import numpy as np
 
 from ..core.forces import accelerations
 from ..core.integrators import INTEGRATORS
-from ..core.integrators.record import moved_beyond
 from ..core.neighbours import mark_closed
 from .problem import Candidates, Problem, carry_springs, wall_normals
 from .state import Contacts, FloatArray, State
@@ -139,11 +138,6 @@ class Dynamics:
                     raise DynamicsError(self._blow_up())
                 self._relist()
                 listed = True
-
-    def needs_new_list(self, steps: int) -> bool:
-        """Whether disks may leave the validity of the candidate list within so many steps."""
-        limit = self.candidates.limit
-        return bool(limit < np.inf and moved_beyond(self.q, self.v, self.problem.n, limit, steps * self.time_step))
 
     def _relist(self) -> None:
         """List candidates again around the present positions, keeping every spring."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import lockstep as kernel
+from ..core.integrators.record import LOOK_EVERY
 from ..core.lanes import WIDTH
 from .dynamics import CHECK_EVERY, Dynamics, Relaxation
 from .problem import wall_normals
@@ -128,8 +129,9 @@ class Lanes:
 
     def report(self, lane: int, dynamics: Dynamics, steps: int) -> None:
         """Tell a lane's scene its positions and velocities after ``steps`` more steps."""
-        dynamics.q[:] = self.q[lane].ravel()
-        dynamics.v[:] = self.v[lane].ravel()
+        f = self.network.freedoms
+        dynamics.q[:] = self.motion[:, :f, lane].T.ravel()
+        dynamics.v[:] = self.motion[:, 2 * f : 3 * f, lane].T.ravel()
         dynamics.steps += steps
         dynamics.time += steps * dynamics.time_step
         self.clock[0, 0, lane] = dynamics.time
@@ -159,21 +161,25 @@ class Lanes:
             np.add.at(self.loads[:, :, lane], np.searchsorted(disks, disk), load)
         self.load_start = _starts(disks, self.network.n)
 
-    def advance(self, steps: int) -> None:
-        """Advance every lane by ``steps`` time steps."""
+    def may_leave_lists(self, limit: FloatArray) -> NDArray[np.bool_]:
+        """(lanes,) whether a disk may be beyond ``limit`` (lanes,), its list's reach, at the next look."""
+        found = np.zeros(WIDTH, bool)
+        horizon = self.clock[0, 1] * LOOK_EVERY
+        kernel.moved_beyond(self.motion.reshape(-1, WIDTH), self.network.freedoms, limit, horizon, found)
+        return found
+
+    def advance(self, steps: int, done: int = 0) -> None:
+        """Advance every lane by ``steps`` time steps, ``done`` steps after the last report."""
         net = self.network
         flat = (
             array.reshape(-1, WIDTH)
             for array in (self.motion, self.disk, self.contact, self.force, self.wall, self.loads, self.laws)
         )
         kernel.advance(
-            steps, net.kind, *net.physics, net.rotations, self.clock.reshape(-1, WIDTH), *flat,
+            steps, done, net.kind, *net.physics, net.rotations, self.clock.reshape(-1, WIDTH), *flat,
             net.pair_start, net.pair_first, net.pair_second, net.term_start, net.term, net.wall_start, net.wall_normal,
             self.load_start,
         )  # fmt: skip
-        f = net.freedoms
-        self.q = np.ascontiguousarray(self.motion[:, :f].transpose(2, 1, 0))
-        self.v = np.ascontiguousarray(self.motion[:, 2 * f : 3 * f].transpose(2, 1, 0))
 
 
 def relax_many(relaxations: Iterable[Relaxation]) -> list[State]:
@@ -217,11 +223,24 @@ def _run_together(network: Network, relaxations: Sequence[Relaxation]) -> None:
         idle = set(range(WIDTH)) - set(running)
         for lane in idle:
             lanes.copy(lane, min(running))
-        lanes.advance(CHECK_EVERY)
+        limit = np.full(WIDTH, np.inf)
+        for lane, relaxation in running.items():
+            limit[lane] = relaxation.dynamics.candidates.limit
+        stride = LOOK_EVERY if (limit < np.inf).any() else CHECK_EVERY
+        for done in range(0, CHECK_EVERY, stride):
+            if stride < CHECK_EVERY:  # the looks of a scene alone, at the same steps
+                for lane in np.flatnonzero(lanes.may_leave_lists(limit)).tolist():
+                    relaxation = running.pop(lane)
+                    limit[lane] = np.inf
+                    lanes.report(lane, relaxation.dynamics, done)
+                    lanes.give_back(lane, relaxation.dynamics)
+                    relaxation.dynamics.advance(CHECK_EVERY - done)
+                    relaxation.look()
+            lanes.advance(min(stride, CHECK_EVERY - done), done)
         for lane, relaxation in list(running.items()):
             lanes.report(lane, relaxation.dynamics, CHECK_EVERY)
             relaxation.look()
-            if relaxation.ended or relaxation.dynamics.needs_new_list(CHECK_EVERY):
+            if relaxation.ended:
                 lanes.give_back(lane, running.pop(lane).dynamics)
     for lane, relaxation in running.items():
         assert lanes is not None
