@@ -72,3 +72,10 @@ def test_lattice_is_three_runs():
     assert sorted((runs[:, 1] - runs[:, 0]).tolist()) == [1, 60, 61]
     assert len(slot) == len(pairs)
     assert int(runs[:, 2].sum()) < 1.03 * len(pairs)
+
+
+@pytest.mark.parametrize("far", [1e6, 1e300])
+def test_disks_far_apart_need_no_more_room(far):
+    position = np.array([[0.0, 1.0], [1.9, 1.0], [0.9 * far, far], [0.9 * far, 0.0]])
+    first, second = close_pairs(position, np.ones(4), 0.5)
+    assert list(zip(first.tolist(), second.tolist(), strict=True)) == [(0, 1)]

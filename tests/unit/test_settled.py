@@ -99,9 +99,19 @@ def test_a_damaged_state_is_computed_again(monkeypatch, tmp_path, computed):
 
 def test_states_of_other_solvers_go(monkeypatch, tmp_path):
     monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path))
-    old = tmp_path / "of_other_sources"
+    old = tmp_path / ("a" * 32)
     old.mkdir()
     (old / "state.pickle").write_bytes(b"")
     settled.rest_state(Problem.from_scene(SCENE))
     assert not old.exists()
     assert len(list(tmp_path.rglob("*.pickle"))) == 1
+
+
+def test_only_shelves_of_other_sources_are_cleared(tmp_path, monkeypatch):
+    monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path))
+    old, thesis, odd = tmp_path / ("0" * 32), tmp_path / "thesis", tmp_path / ("1" * 32)
+    for folder, file in ((old, "state.pickle"), (thesis, "chapter1.tex"), (odd, "chapter2.tex")):
+        folder.mkdir()
+        (folder / file).write_text("kept")
+    settled.rest_state(Problem.from_scene(SCENE))
+    assert not old.exists() and (thesis / "chapter1.tex").exists() and (odd / "chapter2.tex").exists()

@@ -9,6 +9,8 @@ import numpy as np
 SHORTEST_RUN = 24
 #: Close pairs per disk for which room is made at first.
 USUAL_PAIRS = 6
+#: Cells per disk, and cells in a row or column, before cells are made larger than the reach of a disk.
+MOST_CELLS, MOST_IN_A_ROW = 64, 100_000
 #: Missing pairs bridged to keep a run together; they cost less than a new run.
 LONGEST_GAP = 3
 
@@ -50,6 +52,9 @@ def close_pairs(position, radius, skin):
     x = np.ascontiguousarray(position[:, 0])
     z = np.ascontiguousarray(position[:, 1])
     cell = 2.0 * float(radius.max()) + skin
+    cells = float(np.ptp(x) / cell + 1.0) * float(np.ptp(z) / cell + 1.0)
+    cell *= max(1.0, (cells / (MOST_CELLS * len(radius))) ** 0.5)  # disks far apart: fewer cells, and larger ones
+    cell = max(cell, float(np.ptp(x)) / MOST_IN_A_ROW, float(np.ptp(z)) / MOST_IN_A_ROW)
     column = ((x - x.min()) / cell).astype(np.int64)
     row = ((z - z.min()) / cell).astype(np.int64)
     columns, rows = int(column.max()) + 1, int(row.max()) + 1

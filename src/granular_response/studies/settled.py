@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
+import re
 import shutil
 from functools import cache
 from importlib import metadata
@@ -25,6 +26,9 @@ from granular_response.sweep import digest
 
 #: Names the folder of kept rest states.
 FOLDER_VARIABLE = "GRANULAR_RESPONSE_REST_STATES"
+
+
+_SHELF = re.compile("[0-9a-f]{32}")
 
 
 def rest_state(problem: Problem) -> State:
@@ -76,7 +80,8 @@ def _shelf(folder: Path) -> Path:
     shelf = folder / _sources()
     if folder.is_dir() and not shelf.is_dir():
         for old in folder.iterdir():
-            if old != shelf:  # another process may have made it by now
+            # another process may have made the shelf by now; what was not made here is not touched
+            if old != shelf and _SHELF.fullmatch(old.name) and all(file.suffix == ".pickle" for file in old.glob("*")):
                 shutil.rmtree(old, ignore_errors=True)
     return shelf
 
