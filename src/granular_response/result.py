@@ -21,6 +21,7 @@ from .observe.floor import floor_disks, floor_force
 from .scene import Packing, Scene
 from .solve.choice import load_method, rest_method
 from .solve.equilibrium import Certificate
+from .solve.path import Crossing
 from .solve.problem import Problem
 from .solve.solution import Solution
 from .solve.state import Contacts, State
@@ -128,6 +129,23 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
     }
 
 
+def _crossings(loaded: Sequence[State]) -> dict[str, Values]:
+    """Stretches of load that dynamics crossed on the way, none where there were none."""
+    found = list(dict.fromkeys(crossing for state in loaded for crossing in state.information.get("crossings", ())))
+    if not found:
+        return {}
+    texts = {
+        "start": "load factor at which statics ended",
+        "end": "load factor at which statics went on",
+        "displacement": f"largest displacement of a disk on the way {LENGTH}",
+        "reason": "why dynamics crossed",
+    }
+    return {
+        f"crossing_{name}": described(("crossing",), np.array([getattr(c, name) for c in found]), text)
+        for name, text in texts.items()
+    }
+
+
 def added_forces_dataset(
     rest: Sequence[State], loaded: Sequence[State], packing: Packing, dimension: str
 ) -> xr.Dataset:
@@ -216,6 +234,7 @@ def to_labelled(solution: Solution) -> Labelled:
             f"total magnitude of the applied forces {FORCE}",
         ),
         **_certificates(states, "state"),
+        **_crossings(loaded),
         "floor_disk": described(("floor_disk",), disks, "index of the floor disk"),
         "x": described(
             ("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"
@@ -294,6 +313,9 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     if not np.array_equal(problem.packing.radius, dataset["radius"].values):
         raise ResultError("the table of disks has changed since the result was made")
     loaded = [state_from(dataset, k) for k in range(1, dataset.sizes["state"])]
+    if loaded and "crossing_start" in dataset:
+        columns = [dataset[f"crossing_{field.name}"].values.tolist() for field in fields(Crossing)]
+        loaded[0].information["crossings"] = [Crossing(*values) for values in zip(*columns, strict=True)]
     return Solution(
         scene=scene,
         problem=problem,

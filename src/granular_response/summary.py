@@ -57,10 +57,23 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
         if name in result.attrs:
             rows.append((name, "yes" if result.attrs[name] else "no"))
     yield _table(rows)
+    if "crossing_start" in result:
+        yield Text("\nstretches of load that dynamics crossed", style="bold")
+        yield _crossings(result)
     yield Text("\ncertificate", style="bold")
     yield _certificate(result)
     yield Text("\nfloor response", style="bold")
     yield _response(result)
+
+
+def _crossings(result: xr.Dataset) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for title in ("from load factor", "to", "largest displacement", "why"):
+        table.add_column(title, justify="left" if title == "why" else "right")
+    for k in range(result.sizes["crossing"]):
+        start, end, moved = (float(result[f"crossing_{name}"][k]) for name in ("start", "end", "displacement"))
+        table.add_row(f"{start:.6g}", f"{end:.6g}", f"{moved:.3g}", str(result["crossing_reason"].values[k]))
+    return table
 
 
 def _certificate(result: xr.Dataset) -> Table:
@@ -87,7 +100,7 @@ def _response(result: xr.Dataset) -> Table:
             table.add_row("none", *["-"] * 4)
             continue
         peak = np.nanmax(response)
-        places = ", ".join(f"{place:.3g}" for place in x[np.isclose(response, peak, rtol=1e-6, atol=0)])
+        places = ", ".join(f"{round(place, 9) + 0.0:.3g}" for place in x[np.isclose(response, peak, rtol=1e-6, atol=0)])
         middle = response[np.argmin(np.abs(x))]
         table.add_row(f"{force:g}", f"{response.sum():.9f}", f"{middle:.5f}", f"{peak:.5f}", places)
     return table

@@ -1,22 +1,22 @@
 """Solutions as datasets and back."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from small_scenes import scene
 
 from granular_response import store
-from granular_response.result import scene_of, state_from, to_dataset
+from granular_response.result import scene_of, solution_from, state_from, to_dataset
 from granular_response.solve import solve_scene
+from granular_response.solve.path import Crossing
 from granular_response.solve.state import Contacts
-
-LOAD = [{"disk": "top-centre", "force": [0.5, -3.0], "torque": 0.2}]
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.3], ids=["frictionless", "frictional"])
 def solution(request):
-    return solve_scene(scene(contact__friction=request.param, loads=LOAD), load_factors=(0.5, 1.0))
+    load = {"disk": "top-centre", "force": [0.5, -3.0], "torque": 0.2 if request.param else 0.0}
+    return solve_scene(scene(contact__friction=request.param, loads=[load]), load_factors=(0.5, 1.0))
 
 
 def equal(a, b) -> bool:
@@ -66,3 +66,21 @@ def test_floor_response_of_each_load(solution):
 def test_a_dataset_without_states_is_refused(solution):
     with pytest.raises(ValueError, match="holds no states"):
         state_from(to_dataset(solution).drop_vars("contact_spring"))
+
+
+def test_stretches_that_dynamics_crossed_are_stored(solution, tmp_path):
+    assert not any(name.startswith("crossing") for name in to_dataset(solution).variables)
+    crossings = [Crossing(0.2, 0.25, "unstable", 0.5), Crossing(0.7, 0.8, "no equilibrium", 1.5)]
+    # the record of a path grows: later states repeat what earlier ones tell
+    loaded = tuple(
+        replace(state, information={**state.information, "crossings": crossings[: k + 1]})
+        for k, state in enumerate(solution.loaded)
+    )
+    crossed = replace(solution, loaded=loaded)
+    store.write(tmp_path / "result.nc", to_dataset(crossed))
+    dataset = store.read(tmp_path / "result.nc")[""]
+    assert dataset["crossing_start"].values.tolist() == [0.2, 0.7]
+    assert dataset["crossing_reason"].values.tolist() == ["unstable", "no equilibrium"]
+    again = solution_from(dataset)
+    assert again.loaded[0].information["crossings"] == crossings
+    assert to_dataset(again).identical(to_dataset(crossed))

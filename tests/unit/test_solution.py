@@ -4,7 +4,16 @@ import pytest
 from small_scenes import scene
 
 from granular_response.scene import SceneError
-from granular_response.solve import DynamicsError, NotSettled, PathError, Problem, path, rest_state, solve_scene
+from granular_response.solve import (
+    DynamicsError,
+    EquilibriumError,
+    NotSettled,
+    PathError,
+    Problem,
+    path,
+    rest_state,
+    solve_scene,
+)
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
 
@@ -105,3 +114,42 @@ def test_friction_that_comes_after_gravity_leaves_no_tangential_force():
     for state in (solution.rest, *solution.loaded):
         assert state.information["certificate"].stable
         assert state.information["certificate"].force_residual < 1e-9
+
+
+@pytest.mark.parametrize("factors", [(float("nan"),), (float("inf"),), (1.0, 1.0), (-1.0,), (2.0, 1.0)])
+def test_load_factors_are_finite_and_grow(factors):
+    with pytest.raises(SceneError, match=r"load factors .*: must be finite and grow, from above 0"):
+        solve_scene(scene(contact__friction=0.0, loads=LOAD), load_factors=factors)
+
+
+def test_disks_that_pass_through_each_other_are_refused():
+    crushed = scene(contact__friction=0.0, contact__normal_stiffness=100.0, loads=LOAD)
+    with pytest.raises(EquilibriumError, match=r"overlap by .* mean radii at load factor 200"):
+        solve_scene(crushed, load_factors=(200.0,))
+
+
+def test_a_fall_that_is_cut_short_is_no_rest_state():
+    falling = scene(contact__friction=0.0, packing__polydispersity=0.1, protocol__maximum_steps=200, loads=[])
+    with pytest.raises(NotSettled, match=r"did not come to rest under gravity within protocol.maximum_steps = 200"):
+        solve_scene(falling)
+
+
+def test_the_literal_friction_law_is_left_to_dynamics():
+    literal = scene(protocol__friction_law="literal", protocol__stop_kinetic_energy=1e-6, loads=LOAD)
+    solution = solve_scene(literal)
+    assert solution.rest_choice.method == solution.load_choice.method == "dynamics"
+    assert "friction_law" in solution.load_choice.reason
+    with pytest.raises(SceneError, match=r"protocol.method = path: must be dynamics or auto, protocol.friction_law"):
+        solve_scene(literal.updated({"protocol.method": "path"}))
+
+
+def test_a_path_asks_for_a_stable_time_step_only_where_it_takes_one():
+    stiff = scene(
+        contact__normal_stiffness=1e5, preparation__gravity="frictionless", protocol__time_step=5e-4, loads=LOAD
+    )
+    assert solve_scene(stiff).loaded[0].information["crossings"] == []
+
+
+def test_a_torque_needs_friction():
+    with pytest.raises(SceneError, match=r"loads\[0\].torque = 2.0: must be 0 without friction"):
+        scene(contact__friction=0.0, loads=[{"disk": 0, "force": [0.0, 0.0], "torque": 2.0}])

@@ -26,7 +26,8 @@ for integrator in ("beeman", "gear"):
     dynamics = Dynamics(problem, problem.bare_state(), integrator, 4e-4)
     dynamics.advance(STEPS)
     result += [dynamics.q, dynamics.v, dynamics.spring, dynamics.wall_spring]
-smooth = Problem.from_scene(Scene.from_dict({**base, "contact": {"friction": 0.0}, "wall": {"friction": 0.0}}))
+frictionless = {**base, "contact": {"friction": 0.0}, "wall": {"friction": 0.0}, "loads": []}
+smooth = Problem.from_scene(Scene.from_dict(frictionless))
 result.append(minimise(smooth, smooth.bare_state()).position.ravel())
 if FULL:
     solution = solve_scene(Scene.from_dict({**base, "packing": {**base["packing"], "disks_per_row": 12, "layers": 4}}))

@@ -255,7 +255,7 @@ def test_a_continued_result_is_the_uninterrupted_one(tmp_path, changes):
 
 def test_only_growing_loads_and_the_same_packing_can_be_continued(tmp_path, solution):
     for factors in ([1.0], [2.0, 1.5], [0.5]):
-        with pytest.raises(SceneError, match="must grow, from above 1"):
+        with pytest.raises(SceneError, match="must be finite and grow, from above 1"):
             continue_solution(solution, factors)
     unloaded = solve_scene(Scene.from_dict(SCENE).updated({"loads": []}))
     with pytest.raises(SceneError, match="loads: none in this scene"):

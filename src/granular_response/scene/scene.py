@@ -74,6 +74,18 @@ class Scene(Description):
         return self
 
     @model_validator(mode="after")
+    def _check_torques(self) -> Scene:
+        if self.contact.friction == 0 and self.resolved_wall.friction == 0:
+            for place, load in enumerate(self.loads):
+                if load.torque != 0:
+                    raise Problem(
+                        "must be 0 without friction (contact.friction, wall.friction), which alone can balance it",
+                        key=("loads", place, "torque"),
+                        value=load.torque,
+                    )
+        return self
+
+    @model_validator(mode="after")
     def _check_loaded_disks(self) -> Scene:
         if isinstance(self.packing, LatticePacking):
             count = self.packing.row_count()

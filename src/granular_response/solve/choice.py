@@ -16,6 +16,19 @@ class Choice:
     reason: str
 
 
+#: Why statics is no method for the literal friction law.
+_LITERAL = "protocol.friction_law literal is a law of motion that statics does not have"
+
+
+def _literal(problem: Problem) -> bool:
+    return problem.rotations and problem.scene.protocol.friction_law == "literal"
+
+
+def finishes_statically(problem: Problem) -> bool:
+    """Whether dynamics hands over to the static finish."""
+    return problem.scene.protocol.static_finish and not _literal(problem)
+
+
 def rest_method(problem: Problem) -> Choice:
     """How to find the state at rest under gravity.
 
@@ -34,6 +47,8 @@ def rest_method(problem: Problem) -> Choice:
         )
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
+    if _literal(problem):
+        return Choice("dynamics", _LITERAL)
     if problem.rotations and problem.scene.preparation.gravity == "frictionless":
         if problem.packing.ordered:
             return Choice("minimise", "prepared without friction, and no disorder: rest is the minimum of the energy")
@@ -46,10 +61,20 @@ def rest_method(problem: Problem) -> Choice:
 
 
 def load_method(problem: Problem) -> Choice:
-    """How to find the states under load."""
+    """How to find the states under load.
+
+    Raises
+    ------
+    SceneError
+        When ``path`` is asked for a scene with the literal friction law.
+    """
     asked = problem.scene.protocol.method
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
+    if _literal(problem):
+        if asked == "path":
+            raise SceneError(f"protocol.method = path: must be dynamics or auto, {_LITERAL}")
+        return Choice("dynamics", _LITERAL)
     if asked == "path":
         return Choice("path", "protocol.method is path")
     if problem.rotations:
@@ -64,7 +89,7 @@ def stop_energy(problem: Problem) -> float:
     ``method: dynamics``, or without a static finish, the protocol is taken at its word.
     """
     protocol = problem.scene.protocol
-    if protocol.method == "dynamics" or not protocol.static_finish:
+    if protocol.method == "dynamics" or not finishes_statically(problem):
         return protocol.stop_kinetic_energy
     if not problem.rotations:
         return max(protocol.stop_kinetic_energy, 1e-6)

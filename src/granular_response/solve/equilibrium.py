@@ -182,6 +182,29 @@ def certify(problem: Problem, state: State, *, modes: int = -1) -> Certificate:
     )
 
 
+def check_overlaps(problem: Problem, state: State) -> None:
+    """Refuse a state whose contacts mean nothing any more.
+
+    Raises
+    ------
+    EquilibriumError
+        When two disks overlap by the smaller radius or more, or a disk and a wall by the radius.
+    """
+    radius = problem.packing.radius
+    for contacts, size, other in (
+        (state.pairs, np.minimum(radius[state.pairs.first], radius[state.pairs.second]), "disk {}"),
+        (state.walls, radius[state.walls.first], "wall {} (0 floor, 1 left, 2 right)"),
+    ):
+        beyond = np.flatnonzero(contacts.overlap >= size)
+        if len(beyond):
+            k = beyond[np.argmax((contacts.overlap / size)[beyond])]
+            raise EquilibriumError(
+                f"disk {contacts.first[k]} and {other.format(contacts.second[k])} overlap by "
+                f"{contacts.overlap[k]:.3g} mean radii at load factor {state.load_factor:g}, as much as a radius: "
+                "take a smaller load or a larger contact.normal_stiffness"
+            )
+
+
 def finish(problem: Problem, state: State, *, load_factor: float | None = None) -> State:
     """Bring a nearly settled state to rest by Newton iterations (Sec. III.C), with its certificate.
 

@@ -25,6 +25,7 @@ from .increment import Work, solve_increment
 from .problem import Problem
 from .state import State
 from .system import Configuration, StaticSystem, Trial
+from .timestep import resolve_time_step
 
 #: Longest load increment in mean disk weights, times the square root of the number of disks: the deeper a packing,
 #: the more load it takes to change as many contacts. With it the response of the paper's slab is within 1e-5 of the
@@ -74,7 +75,7 @@ def follow(
     factors: Sequence[float],
     *,
     integrator: str = "beeman",
-    time_step: float = 5e-4,
+    time_step: float | None = None,
     longest_step: float | None = None,
     crossing_ramp: float = 20.0,
     maximum_steps: int = 2_000_000,
@@ -89,6 +90,7 @@ def follow(
     rest : certified state at load factor ``rest.load_factor``; a path may start from any of the states it returned,
         also from a file, and then goes on to the last bit as if it had not been cut.
     factors : increasing multipliers of the loads.
+    time_step : where dynamics takes over, in sqrt(R/g); that of the protocol if not given, looked at only when needed.
     longest_step : bound on an increment, in mean disk weights; chosen by the size of the packing if not given.
     crossing_ramp : duration of the load ramp where dynamics takes over, in sqrt(R/g).
     maximum_steps : most time steps in which dynamics must come to rest there.
@@ -107,7 +109,7 @@ class _DynamicsOptions:
     """How dynamics goes where it takes over."""
 
     integrator: str
-    time_step: float
+    time_step: float | None
     ramp: float
     maximum_steps: int
 
@@ -225,7 +227,7 @@ class _Path:
         nudge = NUDGE * self.system.unstable_direction(self.trial)[: 2 * n].reshape(2, n).T
         nudged = self.problem.with_static_forces(replace(state, position=state.position + nudge))
         options = self.dynamics
-        dynamics = Dynamics(self.problem, nudged, options.integrator, options.time_step)
+        dynamics = Dynamics(self.problem, nudged, options.integrator, self._time_step())
         self.record.stability_trials += 1
         stop = Stop(1e-11, maximum_steps=min(200_000, options.maximum_steps))
         settled = relax(dynamics, stop, load=(self.factor, self.factor, 0.0))
@@ -253,8 +255,9 @@ class _Path:
         """Dynamics from the last equilibrium to one at load factor ``new``."""
         options = self.dynamics
         here = self._state()
-        dynamics = Dynamics(self.problem, here, options.integrator, options.time_step)
-        load = (self.factor, new, options.ramp)
+        dynamics = Dynamics(self.problem, here, options.integrator, self._time_step())
+        start = self.factor
+        load = (start, new, options.ramp)
         energy = 1e-9
         settled = here
         for _ in range(4):
@@ -262,24 +265,30 @@ class _Path:
             if not settled.information["settled"]:
                 energy_left = settled.information["kinetic_energy"]
                 raise PathError(
-                    f"no equilibrium beyond load factor {self.factor:g}: the packing does not come to rest within "
+                    f"no equilibrium beyond load factor {start:g}: the packing does not come to rest within "
                     f"protocol.maximum_steps = {options.maximum_steps} (kinetic energy {energy_left:.1e} per disk)"
                 )
             load = (new, new, 0.0)
             energy *= 1e-2
             try:
                 settled = finish(self.problem, settled, load_factor=new)
-                break
             except EquilibriumError as error:
-                failure = error
+                failure = str(error)
+                continue
+            self.factor = new
+            self._begin(settled)
+            if settled.information["certificate"].stable or not self._leaves():
+                break
+            failure = "the equilibrium found is unstable"
         else:
-            raise PathError(f"no equilibrium beyond load factor {self.factor:g}: {failure}")
+            raise PathError(f"no equilibrium beyond load factor {start:g}: {failure}")
         moved = float(np.abs(settled.position - here.position).max())
-        self.record.crossings.append(Crossing(float(self.factor), float(new), reason, moved))
-        self.factor = new
+        self.record.crossings.append(Crossing(float(start), float(new), reason, moved))
         self.mark = (new, self.record.work.factorisations)
         self.step = self.longest
-        self._begin(settled)
+
+    def _time_step(self) -> float:
+        return resolve_time_step(self.problem) if self.dynamics.time_step is None else self.dynamics.time_step
 
     def _state(self) -> State:
         state = self.system.state(self.trial, self.factor)

@@ -9,12 +9,12 @@ from itertools import pairwise
 import numpy as np
 
 from ..scene import Scene, SceneError
-from .choice import Choice, load_method, rest_method, stop_energy
+from .choice import Choice, finishes_statically, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
-from .equilibrium import EquilibriumError, certify, finish
+from .equilibrium import EquilibriumError, certify, check_overlaps, finish
 from .nested import rest_start
-from .path import follow
+from .path import Crossing, follow
 from .problem import Problem
 from .state import State
 from .system import StaticSystem
@@ -22,6 +22,9 @@ from .timestep import resolve_time_step
 
 #: How often the static finish is tried, and the time of dynamics between two tries.
 ATTEMPTS, MORE_TIME = 8, 20.0
+
+#: Kinetic energy over the stop energy up to which a state that has not settled is tried all the same.
+NEARLY = 10.0
 
 #: Called as ``progress(done, total, what)``.
 Progress = Callable[[float, float, str], None]
@@ -68,13 +71,17 @@ def solve_scene(scene: Scene, *, load_factors: Sequence[float] = (1.0,), progres
     SceneError, NotSettled, DynamicsError, EquilibriumError, PathError
         Each with one line that says what to change.
     """
+    _check_growing([0.0, *load_factors])
     problem = Problem.from_scene(scene)
     rest = rest_state(problem, progress=progress)
     problem = problem.with_loads(rest.position)
     rest_choice = rest_method(problem)
     if not scene.loads:
+        check_overlaps(problem, rest)
         return Solution(scene, problem, rest, (), (), rest_choice, None)
     choice, states = loaded_states(problem, rest, load_factors, progress=progress)
+    for state in (rest, *states):
+        check_overlaps(problem, state)
     return Solution(scene, problem, rest, tuple(states), tuple(map(float, load_factors)), rest_choice, choice)
 
 
@@ -95,16 +102,24 @@ def continue_solution(
     if not solution.loaded:
         raise SceneError("loads: none in this scene, so there is nothing to raise")
     factors = [float(factor) for factor in load_factors]
-    if any(after <= before for before, after in pairwise([solution.load_factors[-1], *factors])):
-        raise SceneError(f"load factors {factors}: must grow, from above {solution.load_factors[-1]:g}")
+    _check_growing([solution.load_factors[-1], *factors])
     again = solution.load_choice is not None and solution.load_choice.method == "dynamics"
     start = solution.rest if again else solution.loaded[-1]
     _, states = loaded_states(solution.problem, start, factors, progress=progress)
+    for state in states:
+        check_overlaps(solution.problem, state)
     return replace(
         solution,
         loaded=(*solution.loaded, *states),
         load_factors=(*solution.load_factors, *factors),
     )
+
+
+def _check_growing(factors: Sequence[float]) -> None:
+    """The first one stands for what is there already."""
+    if not all(np.isfinite(factors)) or any(after <= before for before, after in pairwise(factors)):
+        listed = ", ".join(f"{factor:g}" for factor in factors[1:])
+        raise SceneError(f"load factors {listed}: must be finite and grow, from above {factors[0]:g}")
 
 
 def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
@@ -147,8 +162,12 @@ def loaded_states(
                 state = minimise(problem, state, load_factor=factor)
             except EquilibriumError:
                 # the packing collapses or rearranges here: its motion decides where it comes to rest
-                ramp = (state.load_factor, factor, protocol.ramp_time)
-                state = _relaxed(problem, state, "load", progress, gravity=(1.0, 1.0, 0.0), load=ramp)
+                before = state
+                ramp = (before.load_factor, factor, protocol.ramp_time)
+                state = _relaxed(problem, before, "load", progress, gravity=(1.0, 1.0, 0.0), load=ramp)
+                moved = float(np.hypot(*(state.position - before.position).T).max())
+                crossing = Crossing(before.load_factor, factor, "no equilibrium nearby", moved)
+                state = replace(state, information={**state.information, "crossings": [crossing]})
             states.append(state)
             if progress is not None:
                 progress(done, len(factors), "load")
@@ -159,10 +178,9 @@ def loaded_states(
         if progress is not None:
             progress(abs(factor), largest, "load")
 
-    step = resolve_time_step(problem)
     states = follow(
-        problem, rest, factors, integrator=protocol.integrator, time_step=step,
-        crossing_ramp=protocol.ramp_time, maximum_steps=protocol.maximum_steps, progress=report,
+        problem, rest, factors, integrator=protocol.integrator, crossing_ramp=protocol.ramp_time,
+        maximum_steps=protocol.maximum_steps, progress=report,
     )  # fmt: skip
     return choice, states
 
@@ -185,9 +203,13 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
 
     settled = relax(dynamics, stop, gravity=gravity, load=load, progress=report)
     settled.information["method"] = "dynamics"
-    if not protocol.static_finish:
+    if not finishes_statically(problem):
+        if protocol.static_finish and not settled.information["settled"]:
+            raise NotSettled(_not_settled(problem, settled, stage))
         certificate = certify(problem, settled)
         return replace(settled, information={**settled.information, "certificate": certificate})
+    if not settled.information["settled"] and settled.information["kinetic_energy"] > NEARLY * stop.kinetic_energy:
+        raise NotSettled(_not_settled(problem, settled, stage))
     failure: Exception | None = None
     for attempt in range(ATTEMPTS):
         try:
@@ -207,9 +229,13 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
         dynamics.set_ramps(load=(load[1], load[1], 0.0))
         dynamics.advance(round(MORE_TIME / dynamics.time_step))
         settled = replace(dynamics.state(), information={**settled.information, "more_relaxations": attempt + 1})
-    raise NotSettled(
-        f"the packing did not come to rest under {stage} within protocol.maximum_steps = {protocol.maximum_steps} "
-        f"(kinetic energy {settled.information['kinetic_energy']:.1e} per disk): {failure}"
+    raise NotSettled(f"{_not_settled(problem, settled, stage)}: {failure}")
+
+
+def _not_settled(problem: Problem, settled: State, stage: str) -> str:
+    return (
+        f"the packing did not come to rest under {stage} within protocol.maximum_steps = "
+        f"{problem.scene.protocol.maximum_steps} (kinetic energy {settled.information['kinetic_energy']:.1e} per disk)"
     )
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Solution, State, solve_scene
+from granular_response.solve.choice import finishes_statically
 from granular_response.studies.trials.audit import Audit, ContactRule, audit
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
@@ -97,7 +98,8 @@ def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, 
         "tensile_dashpot": bool(g.random() < 0.8),
         "maximum_steps": maximum_steps,
     }
-    preparation = {"gravity": "slow" if g.random() < 0.1 else "at-once", "ramp_time": 5.0}
+    gravity = str(g.choice(["at-once", "slow", "frictionless"], p=[0.8, 0.1, 0.1]))
+    preparation = {"gravity": gravity, "ramp_time": 5.0}
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
 
@@ -176,7 +178,7 @@ def attempt(description: dict[str, Any], factors: list[float], folder: str) -> T
             certificate = state.information["certificate"]
             if not certificate.stable or found.force_residual > BALANCE + rounding_of(solution):
                 outcome = "uncertified"
-        if outcome == "uncertified" and scene.protocol.static_finish:
+        if outcome == "uncertified" and finishes_statically(solution.problem):
             outcome, message = "wrong", "a state that is not certified"
 
     def worst(name: str) -> float:
