@@ -107,10 +107,15 @@ def run(
     store.check_writable(output)
 
     from .result import to_labelled
-    from .solve import solve_scene
+    from .solve import SOLVE_ERRORS, solve_scene
 
-    with TerminalProgress() as progress:
-        solution = solve_scene(described, progress=progress)
+    try:
+        with TerminalProgress() as progress:
+            solution = solve_scene(described, progress=progress)
+    except SOLVE_ERRORS as error:
+        if not str(error).startswith(str(scene)):
+            error.args = (f"{scene}: {error}", *error.args[1:])
+        raise
     store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     typer.echo(f"{output}: {solution.problem.n} disks, {time.perf_counter() - started:.1f} s")
 
@@ -300,12 +305,12 @@ def claims(
     readme: Annotated[
         Path | None, typer.Option(help="Renew the counts that this file quotes.", show_default=False)
     ] = None,
-    every: Annotated[bool, typer.Option("--list", help="Print every claim with its verdict.")] = False,
+    every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
 ) -> None:
     """Compare the paper's claims with the stored datasets."""
     from . import claims as judging
 
-    found = judging.write(output, data)
+    found = judging.read(output) if every else judging.write(output, data)
     if readme is not None:
         judging.renew(readme, found)
     for row in found["table"] if every else ():
@@ -352,6 +357,7 @@ def print_version() -> None:
 def _expected_errors() -> tuple[type[BaseException], ...]:
     """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
     names = {
+        "claims": ["ClaimsError"],
         "export": ["ExportError"],
         "generated": ["GeneratedError"],
         "pipeline": ["GroupError"],
@@ -379,6 +385,9 @@ def main() -> None:
         expected = _expected_errors()
         cause = error.__cause__
         programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
+        if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
+            typer.echo(f"granular-response: {error.filename}: {error.strerror}", err=True)
+            sys.exit(2)
         if not isinstance(error, expected) or programming:
             raise
         typer.echo(f"granular-response: {error}", err=True)

@@ -235,7 +235,7 @@ def _over_dask(function: Callable, items: Sequence[Any], todo: Sequence[int], ad
     try:
         client = Client(address, timeout=10, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
-        raise SweepError(f"no Dask scheduler answers at {address}: {error}") from error
+        raise SweepError(f"no Dask scheduler answers at {address}: {' '.join(str(error).split())}") from None
     with client:
         _compare_settings(client)
         futures = {client.submit(function, items[index], pure=False): index for index in todo}

@@ -233,10 +233,19 @@ def averages_study():
         count_at_rest=(("case", "step"), np.full((4, 3), 20)),
         force=(("case", "step"), np.array([[1.0, 15.0, 30.0]] * 4)),
     )
+    place = np.linspace(-40.0, 40.0, 41)
+    dims = ("case", "realization", "step", "slot")
+    ensembles = xr.Dataset(
+        {
+            "x": (("case", "realization", "slot"), np.broadcast_to(place, (4, 2, 41)).copy()),
+            "floor_response": (dims, np.repeat(mean[0][:, None, :, ::2], 2, axis=1)),
+        }
+    )
     paths = {"polydispersity": ("path", [0.01] * 3), "friction": ("path", [0.0, 0.2, 1.0])}
     packings = {"polydispersity": ("case", [0.0, 0.01]), "friction": ("case", [0.0, 0.0])}
     return {
         "averages": averages,
+        "ensembles": ensembles,
         "linear_range": dataset(
             paths, linear_until=("path", [0.1, 0.5, 1.0]), nonlinear_from=("path", [0.2, 0.6, 1.1])
         ),
@@ -263,7 +272,12 @@ def phases_study():
             force=(("width", "case"), force[None]),
             kind=(("width", "case"), np.where(force == 30.0, 2, 0)[None]),
             interval=(("width", "case", "level"), interval[None]),
-        )
+        ),
+        "shapes": dataset(
+            {"polydispersity": ("case", disorders.ravel()), "width": [6.0]},
+            applied_force=(("case", "step"), force[:, None] * np.array([0.25, 1.0, 4.0])),
+            few_agree=(("width", "case", "step"), np.broadcast_to([1.0, 0.4, 1.0], (1, 12, 3)).copy()),
+        ),
     }
 
 
@@ -418,9 +432,17 @@ PERTURBED = [
     (
         "D4",
         scaled("polydisperse_averages", "averages", "mean", np.where(np.arange(81) < 41, 1.0, [[0], [1], [1]])),
-        "not reproduced",
+        "differs",
     ),
-    ("D5", put("polydisperse_averages", "averages", "mean_of_few", profile(-0.1)), "not reproduced"),
+    (
+        "D4",
+        scaled(
+            "polydisperse_averages", "ensembles", "floor_response", np.where(np.arange(41) < 21, 1, [[0], [1], [1]])
+        ),
+        "differs",
+    ),
+    ("D5", put("polydisperse_averages", "averages", "mean_of_few", profile(-0.1)), "differs"),
+    ("D5", put("phase_diagram", "shapes", "few_agree", 0.5), "differs"),
     ("D7", scaled("polydisperse_averages", "packings", "coordination_number_bulk", 1.2), "not reproduced"),
     ("D3", overlapping, "differs"),
     ("D3", scaled("phase_diagram", "crossovers", "interval", np.geomspace(1.0, 1e-6, 12)[:, None]), "differs"),

@@ -108,13 +108,61 @@ def test_run_and_show(tmp_path):
         assert part in shown.stdout
 
 
-def test_claims_are_listed_on_demand(tmp_path):
-    finished = call("claims", "--list", "--data", tmp_path, "-o", tmp_path / "claims.json")
+def test_stored_claims_are_listed_and_not_judged_anew():
+    table = ROOT / "figures" / "claims.json"
+    before = table.read_bytes()
+    finished = call("claims", "--list", folder=ROOT)
     lines = finished.stdout.splitlines()
-    assert finished.returncode == 0 and lines[0].startswith(
-        "F1   not measured    data/friction_linear_range.nc is missing"
-    )
-    assert len(lines) == 46 and lines[-1].endswith("Of 45 claims of the paper: 45 not measured.")
+    assert finished.returncode == 0 and table.read_bytes() == before
+    assert len(lines) == 46 and re.match(r"F1   [a-z ]+ +\S", lines[0]) and "Of 45 claims of the paper" in lines[-1]
+
+
+def test_claims_without_datasets_leave_the_table_alone(tmp_path):
+    (tmp_path / "figures").mkdir()
+    (tmp_path / "figures" / "claims.json").write_text("as it was")
+    finished = call("claims", folder=tmp_path)
+    assert (finished.returncode, finished.stderr.count("\n")) == (
+        2,
+        1,
+    ) and "holds none of the datasets" in finished.stderr
+    assert (tmp_path / "figures" / "claims.json").read_text() == "as it was"
+    listed = call("claims", "--list", "-o", "none.json", folder=tmp_path)
+    assert listed.returncode == 2 and "none.json: No such file or directory" in listed.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("claims", "--data", ROOT / "data", "-o", "folder"), ("report", "--root", ROOT, "-o", "folder")],
+    ids=["claims", "report"],
+)
+def test_an_output_that_is_a_folder_is_one_line(tmp_path, arguments):
+    (tmp_path / "folder").mkdir()
+    finished = call(*arguments, folder=tmp_path)
+    assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
+
+
+def test_datasets_of_another_group_are_not_drawn(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    assert call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path).returncode == 0
+    finished = call("draw", "pile_dip", "--data", "result.nc", folder=tmp_path)
+    assert finished.returncode == 2 and "must be those of pile_dip" in finished.stderr
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("stress_spacing:", "stress_spacng:"), "section pile_dip: key 'stress_spacing' is missing; there are"),
+        (("dip_height: 4.0", "dip_height: high"), "section pile_dip: "),
+    ],
+)
+def test_damaged_parameters_are_one_line(tmp_path, change, said):
+    (tmp_path / "data").mkdir()
+    text = (ROOT / "params.yaml").read_text()
+    section = text[text.index("pile_dip:") :]
+    (tmp_path / "params.yaml").write_text(text.replace(section, section.replace(*change, 1)))
+    finished = call("simulate", "pile_dip", "--workers", 1, folder=tmp_path)
+    assert finished.returncode == 2 and "params.yaml: " + said in finished.stderr
+    assert finished.stderr.count("\n") == 1 and not (tmp_path / "data" / "pile_dip.nc").exists()
 
 
 def test_a_result_is_continued_and_nothing_else(tmp_path):
@@ -127,7 +175,7 @@ def test_a_result_is_continued_and_nothing_else(tmp_path):
         np.testing.assert_array_equal(more["position"][:2], one["position"])
         np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"])
     finished = call("continue", "result.nc", "--to", "0.5", "-o", "less.nc", folder=tmp_path)
-    assert_one_line_error(finished, "result.nc: load factors [0.5]: must grow, from above 1")
+    assert_one_line_error(finished, "result.nc: load factors 0.5: must be finite and grow, from above 1")
     store.write(tmp_path / "study.nc", {"other": xr.Dataset()})
     finished = call("continue", "study.nc", "--to", "2", "-o", "less.nc", folder=tmp_path)
     assert_one_line_error(finished, "study.nc: holds no states, must be a result of granular-response run")

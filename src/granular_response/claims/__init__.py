@@ -44,9 +44,14 @@ VERBS: dict[Verdict, str] = {
 BLOCK = "claims"
 
 __all__ = [
-    "BLOCK", "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "Data", "Entry", "Finding", "NotMeasured",
-    "Verdict", "collect", "counts", "document", "evaluate", "judge", "renew", "sentence", "write",
+    "BLOCK", "CLAIMS", "GROUPS", "OUTPUT", "VERDICTS", "Claim", "ClaimsError", "Data", "Entry", "Finding",
+    "NotMeasured", "Verdict", "collect", "counts", "document", "evaluate", "judge", "read", "renew", "sentence",
+    "write",
 ]  # fmt: skip
+
+
+class ClaimsError(Exception):
+    """Nothing to judge, or no stored table. The message is one line."""
 
 
 def collect(folder: str | os.PathLike[str] = "data") -> Data:
@@ -115,12 +120,28 @@ def _number(value: float) -> float | None:
 def write(output: str | os.PathLike[str] = OUTPUT, folder: str | os.PathLike[str] = "data") -> dict[str, Any]:
     """Judge all claims on the datasets in ``folder`` and store the result; returns it.
 
-    Raises StoreError if a dataset cannot be read, OSError if the output cannot be written.
+    Raises ClaimsError if there are none, StoreError if one cannot be read, OSError if the output cannot be written.
     """
-    found = document(evaluate(collect(folder)))
+    data = collect(folder)
+    if not data.groups:
+        raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
+    found = document(evaluate(data))
     target = Path(output)
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
+    return found
+
+
+def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
+    """The stored table. Raises ClaimsError if it is missing or damaged."""
+    try:
+        found = json.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ClaimsError(
+            f"{path}: {getattr(error, 'strerror', None) or error}; make it with granular-response claims"
+        ) from None
+    if not isinstance(found, dict) or not {"counts", "table"} <= set(found):
+        raise ClaimsError(f"{path}: is not a table of claims")
     return found
 
 

@@ -131,6 +131,11 @@ def _ordered(low: FloatArray, high: FloatArray, *, rising: bool) -> tuple[int, i
     return int((after[known] >= before[known]).sum()), int(known.sum())
 
 
+def _decided(low: FloatArray, high: FloatArray) -> int:
+    """Neighbours along the last axis between which the value rises by more than the intervals."""
+    return int((low[..., 1:] > high[..., :-1]).sum())
+
+
 def _clear(low: FloatArray, high: FloatArray) -> bool:
     """Whether the value rises somewhere along the last axis by more than the intervals."""
     return any(bool((low[:, b] > high[:, a]).any()) for a in range(low.shape[1]) for b in range(a + 1, low.shape[1]))
@@ -140,13 +145,15 @@ def crossover_order(data: Data) -> Finding:
     study = _crossovers(data)
     disordered = study.isel(polydispersity=study["polydispersity"].values > 0.0)
     low, high, force = (disordered[name].values for name in ("low", "high", "force"))
+    clear = {"friction": _clear(low, high), "polydispersity": _clear(low.T[:, ::-1], high.T[:, ::-1])}
     rises, of_frictions = _ordered(low, high, rising=True)
     falls, of_disorders = _ordered(low.T, high.T, rising=False)
     if not of_frictions or not of_disorders:
         raise NotMeasured(f"data/{PHASES}.nc: crossovers holds too few crossover forces to compare")
     return Finding(
-        f"rises with friction in {rises} of {of_frictions} steps, falls with polydispersity in {falls} of "
-        f"{of_disorders}, within the intervals; {np.nanmin(force):.2g} to {np.nanmax(force):.2g} mg",
+        f"rises with friction in {rises} of {of_frictions} steps ({_decided(low, high)} of them clear of the "
+        f"intervals), falls with polydispersity in {falls} of {of_disorders} "
+        f"({_decided(low.T[:, ::-1], high.T[:, ::-1])} clear); {np.nanmin(force):.2g} to {np.nanmax(force):.0f} mg",
         (rises + falls) / (of_frictions + of_disorders),
         [
             Condition(
@@ -161,8 +168,8 @@ def crossover_order(data: Data) -> Finding:
             ),
             Condition(
                 "a rise and a fall are somewhere clear of the intervals",
-                _clear(low, high) and _clear(low.T[:, ::-1], high.T[:, ::-1]),
-                "intervals overlap",
+                all(clear.values()),
+                ", ".join(f"{name}: {'clear' if found else 'intervals overlap'}" for name, found in clear.items()),
             ),
         ],
     )
@@ -172,30 +179,60 @@ def gradual(data: Data) -> Finding:
     study = _averages(data, 6.0)
     rough = np.isclose(study["friction"].values, 1.0) & (study["polydispersity"].values > 0.0)
     x = study["x"].values
-    jumps = {}
+    jumps, single = {}, []
     for case in np.flatnonzero(rough):
         one = study.isel(case=int(case))
         mean = one["mean"].values[np.isfinite(one["mean"].values).all(axis=1)]
         if len(mean) < 3:
             continue
-        asymmetry = np.abs(mean - mean[:, ::-1]).max(axis=1) / mean.max(axis=1)
-        dip = np.array([central_dip(x, response) for response in mean])
-        jumps[float(one["polydispersity"])] = float(max(np.abs(np.diff(asymmetry)).max(), np.abs(np.diff(dip)).max()))
+        jumps[float(one["polydispersity"])] = _largest_change(x, mean)
+        single += [_largest_change(x, responses) for responses in _smoothed(data, int(case), x, 6.0)]
     if not jumps:
         raise NotMeasured(f"data/{AVERAGES}.nc: no disordered case with friction 1 at three forces")
     largest = max(jumps.values())
+    calm = sum(change < 0.5 for change in single)
     return Finding(
         "largest change between neighbouring forces, of the asymmetry of the mean or its dip at x = 0: "
         + ", ".join(f"{jump:.2f} (polydispersity {delta:g})" for delta, jump in jumps.items()),
         largest,
-        [Condition("no change by 0.5 or more", largest < 0.5, f"change by {largest:.2f}")],
+        [
+            Condition("no change of the mean by 0.5 or more", largest < 0.5, f"change by {largest:.2f}"),
+            Condition(
+                "nor of any single realization",
+                calm == len(single),
+                f"less than 0.5 in {calm} of {len(single)}, up to {max(single, default=np.nan):.2f}",
+            ),
+        ],
     )
+
+
+def _largest_change(x: FloatArray, responses: FloatArray) -> float:
+    """Of the asymmetry or the central dip, between neighbouring rows of (forces, x)."""
+    asymmetry = np.abs(responses - responses[:, ::-1]).max(axis=1) / responses.max(axis=1)
+    dip = np.array([central_dip(x, response) for response in responses])
+    return float(max(np.abs(np.diff(asymmetry)).max(), np.abs(np.diff(dip)).max()))
+
+
+def _smoothed(data: Data, case: int, x: FloatArray, width: float) -> list[FloatArray]:
+    """(forces at rest, x) responses of the realizations of a case, as their means are smoothed; at least two forces."""
+    study = data.get(AVERAGES, "ensembles", "floor_response", "x").isel(case=case)
+    place = study["x"].transpose("realization", "slot").values
+    response = study["floor_response"].transpose("realization", "step", "slot").values
+    found = []
+    for at_disk, of_disk in zip(place, response, strict=True):
+        here = np.isfinite(at_disk)
+        rows = of_disk[:, here][np.isfinite(of_disk[:, here]).all(axis=1)]
+        weight = np.exp(-(((x[:, None] - at_disk[here]) / width) ** 2)) / (width * np.sqrt(np.pi))
+        if len(rows) > 1:
+            found.append(rows @ weight.T)
+    return found
 
 
 def five_enough(data: Data) -> Finding:
     study = _averages(data, 6.0)
     x = study["x"].values
     agree, clear = 0, 0
+    far = _agreement_far_from_crossover(data)
     for case in np.flatnonzero(study["polydispersity"].values > 0.0):
         one = study.isel(case=int(case))
         for step in np.flatnonzero(one["count_at_rest"].values >= 10):
@@ -216,9 +253,27 @@ def five_enough(data: Data) -> Finding:
                 "in at least 95 % of the cases in which the dip at x = 0 is farther from 0 than 3 standard errors",
                 share >= 0.95,
                 f"{share:.0%}",
-            )
+            ),
+            Condition(
+                "in at least 95 % of draws of five, at every force more than a factor 2 from the crossover force",
+                bool((far >= 0.95).all()),
+                f"{far.min():.0%} at the worst of {far.size} forces, {np.median(far):.0%} in their median",
+            ),
         ],
     )
+
+
+def _agreement_far_from_crossover(data: Data) -> FloatArray:
+    """Part of the draws of five realizations with as many peaks as all, where the crossover force is known; w = 6."""
+    shapes = at(data.get(PHASES, "shapes", "few_agree", "applied_force", "polydispersity"), width=6.0)
+    crossover = at(data.get(PHASES, "crossovers", "force", "kind"), width=6.0)
+    force = shapes["applied_force"].transpose("case", "step").values / crossover["force"].values[:, None]
+    known = (crossover["kind"].values == FOUND) & (shapes["polydispersity"].values > 0.0)
+    agree = shapes["few_agree"].transpose("case", "step").values
+    chosen = known[:, None] & np.isfinite(agree) & (np.abs(np.log(np.maximum(force, 1e-300))) > np.log(2.0))
+    if not chosen.any():
+        raise NotMeasured(f"data/{PHASES}.nc: shapes holds no force away from a crossover")
+    return agree[chosen]
 
 
 def diagram(data: Data) -> Finding:
@@ -284,7 +339,8 @@ def superposition(force: float, limit: float):
             [
                 Condition(
                     f"at most {limit:.0%} in the median realization, every distance", typical <= limit, f"{typical:.1%}"
-                )
+                ),
+                Condition(f"at most {limit:.0%} in every realization", within == len(worst), f"{worst.max():.1%}"),
             ],
             (float(np.nanmin(error)), float(worst.max())),
         )
@@ -311,6 +367,11 @@ def superposition_range(data: Data) -> Finding:
                 "median between 0.2 and 0.8 mg (a factor 2 to either side of about 0.4 mg)",
                 bool(low >= 0.2 and high <= 0.8),
                 f"between {low:.3g} and {high:.3g} mg",
+            ),
+            Condition(
+                "every one of them between 0.2 and 0.8 mg",
+                bool(ended.all() and until.min() >= 0.2 and beyond.max() <= 0.8),
+                f"from {until.min():.3g} mg to {farthest}",
             ),
         ],
         (low, high),

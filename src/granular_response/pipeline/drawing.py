@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from granular_response import store
-from granular_response.pipeline import data_path, figures_folder, group_function
+from granular_response.pipeline import GroupError, data_path, figures_folder, group_function
 
 
 def draw(group: str, data: Path | None = None, folder: Path | None = None) -> list[Path]:
@@ -15,13 +15,18 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     Raises
     ------
     granular_response.pipeline.GroupError
-        If there is no such group.
+        If there is no such group, or the datasets are those of another one.
     granular_response.store.StoreError
         If its datasets cannot be read.
     """
     os.environ.setdefault("MPLBACKEND", "Agg")
     function = group_function("draw", group)
-    datasets = store.read(data or data_path(group))
+    path = data or data_path(group)
+    datasets = store.read(path)
+    stored = store.read_attributes(path).get("group")
+    if stored != group:
+        what = f"those of {stored}" if stored else "not those of a figure group"
+        raise GroupError(f"{path}: holds datasets of another kind, {what}, must be those of {group}")
     from granular_response.figures import style
 
     paths: list[Path] = []

@@ -73,10 +73,24 @@ def simulate(
     if scheduler:
         environment[sweep.SCHEDULER_VARIABLE] = scheduler
     with _environment(environment):
-        datasets = function(given, workers=workers, progress=progress)
+        try:
+            datasets = function(given, workers=workers, progress=progress)
+        except _PARAMETER_ERRORS as error:
+            raise GroupError(f"{parameter_file}: section {group}: {_said(error, given)}") from error
     store.write(output, datasets, {"group": group, "parameters": text.write(given)})
     shutil.rmtree(kept, ignore_errors=True)
     return output
+
+
+#: What studies raise on parameters that are missing or not what they must be.
+_PARAMETER_ERRORS = (KeyError, TypeError, ValueError, ZeroDivisionError)
+
+
+def _said(error: Exception, given: dict[str, Any]) -> str:
+    """One line; a missing key with those that are there, so that a misspelt one shows."""
+    if isinstance(error, KeyError):
+        return f"key {error} is missing; there are {', '.join(map(str, given))} (with those of common)"
+    return " ".join(str(error).split()) or type(error).__name__
 
 
 @contextmanager
