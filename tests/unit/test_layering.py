@@ -17,11 +17,11 @@ PACKAGE = SOURCE / "granular_response"
 ALLOWED = {
     "core": {"llvmlite", "numba", "numpy"},
     "scene": {"numpy", "pydantic", "pydantic_core", "yaml"},
-    "solve": {"numpy", "scipy", "qdldl"},
+    "solve": {"numpy", "scipy"},
     "observe": {"numpy", "scipy"},
     "theory": {"numpy", "scipy"},
     "studies": {"numpy", "scipy", "xarray"},
-    "figures": {"numpy", "scipy", "xarray", "matplotlib", "cmocean", "cycler"},
+    "figures": {"numpy", "scipy", "xarray", "matplotlib", "cycler"},
     "result": {"numpy", "xarray"},
     "store": {"netCDF4", "numpy", "xarray"},
     "sweep": {"numpy", "distributed"},

@@ -103,7 +103,7 @@ def page(root: Path) -> str:
 
 
 #: What the digits and the pictures come from.
-_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "qdldl", "xarray", "netCDF4", "matplotlib", "dvc")
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")
 
 _VERDICTS = ("reproduced", "differs", "not reproduced", "not measured")
 
