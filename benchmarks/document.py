@@ -180,14 +180,8 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
             table(metrics["runs"], {"what": "process", "seconds": "time [s]", "processor_seconds": "processor [s]"})
         ]
     if benchmark == "pipeline":
-        columns = {
-            "group": "group", "simulate_seconds": "simulations [s]", "simulate_processor_seconds": "processor [s]",
-            "draw_seconds": "figures [s]",
-        }  # fmt: skip
-        sums = {
-            "cores": "cores", "simulate_seconds": "simulations [s]", "draw_seconds": "figures [s]",
-            "processor_seconds": "processor [s]",
-        }  # fmt: skip
+        columns = {"group": "group", "simulate_seconds": "simulations [s]", "draw_seconds": "figures [s]"}
+        sums = {"cores": "cores", "simulate_seconds": "simulations [s]", "draw_seconds": "figures [s]"}
         return [
             table(metrics["runs"], columns),
             table(metrics["totals"], sums, "Sum of the groups that draw the paper's figures or check its claims:"),
