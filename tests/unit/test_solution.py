@@ -129,8 +129,8 @@ def test_disks_that_pass_through_each_other_are_refused():
 
 
 def test_a_fall_that_is_cut_short_is_no_rest_state():
-    falling = scene(contact__friction=0.0, packing__polydispersity=0.1, protocol__maximum_steps=200, loads=[])
-    with pytest.raises(NotSettled, match=r"did not come to rest under gravity within protocol.maximum_steps = 200"):
+    falling = scene(contact__friction=0.0, packing__polydispersity=0.1, protocol__maximum_steps=1500, loads=[])
+    with pytest.raises(NotSettled, match=r"did not come to rest under gravity within protocol.maximum_steps = 1500"):
         solve_scene(falling)
 
 

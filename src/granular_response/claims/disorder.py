@@ -221,6 +221,8 @@ def _smoothed(data: Data, case: int, x: FloatArray, width: float) -> list[FloatA
     found = []
     for at_disk, of_disk in zip(place, response, strict=True):
         here = np.isfinite(at_disk)
+        if not here.any():  # it never came to rest
+            continue
         rows = of_disk[:, here][np.isfinite(of_disk[:, here]).all(axis=1)]
         weight = np.exp(-(((x[:, None] - at_disk[here]) / width) ** 2)) / (width * np.sqrt(np.pi))
         if len(rows) > 1:

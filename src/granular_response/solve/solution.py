@@ -24,7 +24,7 @@ from .timestep import resolve_time_step
 ATTEMPTS, MORE_TIME = 8, 20.0
 
 #: Kinetic energy over the stop energy up to which a state that has not settled is tried all the same.
-NEARLY = 10.0
+NEARLY = 1e3
 
 #: Called as ``progress(done, total, what)``.
 Progress = Callable[[float, float, str], None]
