@@ -189,7 +189,7 @@ def skipping(metrics: Metrics) -> Figure:
 
 @style.context()
 def scale(metrics: Metrics) -> Figure:
-    """Time and memory of whole runs against the number of disks."""
+    """Processor time, which other work on the machine disturbs less, and memory of whole runs against their disks."""
     figure, axes = style.figure(1, 2, width="double", height=2.7)
     labels = {
         "minimise": "no friction, minimisation",
@@ -201,12 +201,12 @@ def scale(metrics: Metrics) -> Figure:
         runs = pick(metrics["runs"], method=method)
         disks = [row["disks"] for row in runs]
         (fit,) = pick(metrics["exponents"], method=method) or [None]
-        for panel, key in zip(axes[0], ("seconds", "peak_gibibytes"), strict=True):
+        for panel, key in zip(axes[0], ("cpu_seconds", "peak_gibibytes"), strict=True):
             power = f" $\\propto N^{{{fit[f'exponent_of_{key}']:.2f}}}$" if fit else ""
-            label = labels[method] + power if key == "seconds" else power.strip()
+            label = labels[method] + power if key == "cpu_seconds" else power.strip()
             marker = {"minimise": "s", "path": "o", "dynamics": "^"}[method]
             panel.plot(disks, [row[key] for row in runs], marker + "-", color=colours[method], label=label)
-    for panel, text in zip(axes[0], ("run time, one core [s]", "peak memory [GiB]"), strict=True):
+    for panel, text in zip(axes[0], ("processor time, one core [s]", "peak memory [GiB]"), strict=True):
         _logarithmic(panel, xlabel="disks", ylabel=text)
         panel.legend(fontsize=7)
     return figure

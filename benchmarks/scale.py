@@ -81,11 +81,14 @@ def measure(layers: int, per_row: int, method: str, friction: float, force: floa
 
 
 def exponents(rows: list[dict]) -> list[dict]:
-    """Slopes of log time and log memory against log N, over slabs of more than 3000 disks."""
+    """Slopes of log time and log memory against log N.
+
+    Over slabs of more than 10,000 disks: with fewer a process spends its time on starting.
+    """
     found = []
     for method in dict.fromkeys(row["method"] for row in rows):
         of = [row for row in rows if row["method"] == method]
-        large = [row for row in of if row["disks"] > 3000] if method != "dynamics" else of
+        large = [row for row in of if row["disks"] > 10_000] if method != "dynamics" else of
         if len(large) > 1:
             n = np.log([row["disks"] for row in large])
             entry = {"method": method, "from_disks": large[0]["disks"], "to_disks": large[-1]["disks"]}
