@@ -5,6 +5,7 @@ import os
 import pty
 import re
 import resource
+import select
 import signal
 import subprocess
 import sys
@@ -345,11 +346,13 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     command = [sys.executable, "-m", "granular_response", "run", "scene.yaml", "-o", "result.nc"]
     run = subprocess.Popen(command, cwd=tmp_path, stdin=child, stdout=child, stderr=child, start_new_session=True)
     os.close(child)
-    time.sleep(4)
+    output = b""
+    while b"gravity" not in output:  # it moves: while modules load or kernels compile, libraries may swallow the signal
+        assert select.select([parent], [], [], 120.0)[0], output
+        output += os.read(parent, 4096)
     assert run.poll() is None
     run.send_signal(signal.SIGINT)
     run.wait(timeout=60)
-    output = b""
     try:
         while chunk := os.read(parent, 4096):
             output += chunk
