@@ -56,8 +56,8 @@ TEXTS = {
     "scale": (
         "Large systems",
         "Whole processes, `granular-response run` from a scene file to the stored result, on one core. Slabs are four "
-        "times as wide as deep, and stiffness grows with their size so that the order of the slab survives. Where the time "
-        "is far above the processor time, other work held the core; goals are judged by the time.",
+        "times as wide as deep, and stiffness grows with their size so that the order of the slab survives. Where the "
+        "time is far above the processor time, other work held the core; goals are judged by the time.",
     ),
     "depth": (
         "The teardrop in deep slabs",
