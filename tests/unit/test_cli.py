@@ -344,7 +344,10 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     )
     parent, child = pty.openpty()
     command = [sys.executable, "-m", "granular_response", "run", "scene.yaml", "-o", "result.nc"]
-    run = subprocess.Popen(command, cwd=tmp_path, stdin=child, stdout=child, stderr=child, start_new_session=True)
+    run = subprocess.Popen(
+        command, cwd=tmp_path, stdin=child, stdout=child, stderr=child, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # jobs in the background ignore it
+    )  # fmt: skip
     os.close(child)
     output = b""
     while b"gravity" not in output:  # it moves: while modules load or kernels compile, libraries may swallow the signal
