@@ -191,6 +191,13 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
     return []
 
 
+def out_of_reach(runs: list[dict[str, Any]], scene: str, comparison: dict[str, Any]) -> float | None:
+    """How much longer than statics the longest run of LAMMPS is, where none of its runs reaches the error."""
+    theirs = [row["seconds"] for row in pick(runs, scene=scene, method="lammps")]
+    ours = comparison.get("statics_seconds")
+    return max(theirs) / ours if theirs and ours else None
+
+
 def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     """Goals that the project set itself, beside what was measured."""
     rows: list[dict[str, Any]] = []
@@ -223,7 +230,14 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     ):
         row = next(iter(pick(found.get("precision", {}).get("comparison", []), scene=scene)), {})
         value = row.get("times_faster_than_lammps")
-        add("precision", f"Speed over LAMMPS to a response: {what}", value, least, None, times)
+        bound = None if value is not None else out_of_reach(found.get("precision", {}).get("runs", []), scene, row)
+        if bound is None:
+            add("precision", f"Speed over LAMMPS to a response: {what}", value, least, None, times)
+        else:
+            said = f"more than {times(bound)}: LAMMPS does not reach the error with its longest run"
+            goal = f"at least {times(least)}"
+            title = f"Speed over LAMMPS to a response: {what}"
+            rows.append({"what": title, "goal": goal, "measured": said, "met": True if bound >= least else None})
     runs = found.get("scale", {}).get("runs", [])
     for method, disks, limit, what in (
         ("path", 100_000, 600.0, "100,000 disks with friction"),

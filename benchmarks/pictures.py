@@ -75,9 +75,10 @@ def _points(panel: Axes, rows: Rows, x: str, y: str, method: str, label: str, *,
 @style.context()
 def precision(metrics: Metrics) -> Figure:
     """Run time against error of the floor response."""
-    figure, axes = style.figure(1, 2, width="double", height=3.1, sharey=True)
+    figure, axes = style.figure(1, 2, width="double", height=3.1)
     for panel, reference in zip(axes[0], metrics["references"], strict=True):
-        runs = pick(metrics["runs"], scene=reference["scene"])
+        known = reference["reference_change"]  # errors below it, that of the reference itself too, are drawn there
+        runs = [{**r, "error": max(r["error"], known)} for r in pick(metrics["runs"], scene=reference["scene"])]
         for method in dict.fromkeys(row["method"] for row in runs):
             mine = pick(runs, method=method)
             if "static_finish" in mine[0]:
@@ -87,9 +88,9 @@ def precision(metrics: Metrics) -> Figure:
                 _points(panel, mine, "seconds", "error", method, name(method))
         own = [row for row in runs if row.get("error_from_own_limit")]
         _points(panel, own, "seconds", "error_from_own_limit", "lammps", "LAMMPS, from its own limit", open_=True)
-        panel.axhline(reference["reference_change"], color=style.MUTED, linewidth=0.8, linestyle=":")
+        panel.axhline(known, color=style.MUTED, linewidth=0.8, linestyle=":")
         panel.annotate(
-            "known to here", (1.0, reference["reference_change"]), (-4, 2), xycoords=("axes fraction", "data"),
+            "known to here", (1.0, known), (-4, 2), xycoords=("axes fraction", "data"),
             textcoords="offset points", ha="right", fontsize=7, color=style.MUTED,
         )  # fmt: skip
         _logarithmic(panel, xlabel="run time [s]")
