@@ -3,7 +3,7 @@
 `python benchmarks/depth.py OUTPUT.json [MOST_LAYERS]`. Slabs without friction, four times as wide as deep,
 each under the same forces. Stiffness grows with layers times disks per row from 1e5 at the paper's size, so that
 gravity compresses no slab enough to press its horizontal contacts together (see `docs/reproduction-notes.md`): what is
-left is the effect of the depth itself. It is a benchmark because the deepest slab takes a minute or two.
+left is the effect of the depth itself. It is a benchmark because the deepest slab takes some minutes.
 """
 
 from __future__ import annotations

@@ -15,13 +15,20 @@ def banded(n, b, seed, symmetric=False, dominant=True):
     return a + (4.0 * b + 4.0) * np.eye(n) if dominant else a
 
 
-@pytest.mark.parametrize(("n", "b"), [(1, 0), (5, 0), (7, 1), (40, 6), (12, 11)])
-def test_banded_lu(n, b):
-    dense = banded(n, b, 3)
+def by_rows(dense, b):
+    """The band of a matrix as the kernels store it."""
+    n = len(dense)
     stored = np.zeros((n, 2 * b + 1))
     for i in range(n):
         for j in range(max(0, i - b), min(n, i + b + 1)):
             stored[i, j - i + b] = dense[i, j]
+    return stored
+
+
+@pytest.mark.parametrize(("n", "b"), [(1, 0), (5, 0), (7, 1), (40, 6), (12, 11)])
+def test_banded_lu(n, b):
+    dense = banded(n, b, 3)
+    stored = by_rows(dense, b)
     band.factorise(stored, b)
     x = np.arange(1.0, n + 1.0)
     band.solve(stored, b, x)
@@ -31,10 +38,7 @@ def test_banded_lu(n, b):
 @pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 4), (23, 5), (24, 7), (10, 9)])
 def test_four_rows_at_once_give_the_bits_of_one_by_one(n, b):
     dense = banded(n, b, 5)
-    stored = np.zeros((n, 2 * b + 1))
-    for i in range(n):
-        for j in range(max(0, i - b), min(n, i + b + 1)):
-            stored[i, j - i + b] = dense[i, j]
+    stored = by_rows(dense, b)
     band.factorise(stored, b)
     for k in range(n):
         for i in range(k + 1, min(n, k + b + 1)):
