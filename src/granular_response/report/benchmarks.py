@@ -15,6 +15,8 @@ SUMMARY, PICTURES = "summary", "figures"
 #: What the pictures show, by stem.
 CAPTIONS = {
     "convergence": "Dynamics approaches the load path like one over the ramp time.",
+    "depth": "Depth and width of the region of contacts that a load opens without friction, in slabs up to 240 layers "
+    "deep; open symbols: it has reached the floor.",
     "kernel": "Disks times time steps per second on one core.",
     "precision": "Run time against the error of the floor response. Open symbols of integrators: without the static "
     "finish.",
