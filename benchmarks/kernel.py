@@ -17,7 +17,7 @@ from timing import interleaved, scene, write
 from granular_response.core import forces
 from granular_response.core.integrators import beeman
 from granular_response.core.integrators.record import LOOK_EVERY, moved_beyond
-from granular_response.core.lanes import WIDTH
+from granular_response.core.lanes import WIDTH, aligned, aligned_zeros
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Relaxation, Stop, relax_many
 from granular_response.solve.lockstep import Lanes, Network
@@ -73,9 +73,9 @@ def measure(layers: int, per_row: int, friction: float, settle: int, steps: int)
 
 
 @nb.njit(error_model="numpy")
-def _repeat_pairs(times, q, v, rim, f, n, runs, dx, dz, reach, spring, buffer, law, rule):
+def _repeat_pairs(times, q, v, rim, f, n, runs, dx, dz, reach, spring, scratch, law, rule):
     for _ in range(times):
-        forces.add_pair_forces(q, v, rim, f, n, runs, dx, dz, reach, spring, buffer, law, rule, 0.0)
+        forces.add_pair_forces(q, v, rim, f, n, runs, dx, dz, reach, spring, scratch, law, rule, 0.0)
 
 
 @nb.njit(error_model="numpy")
@@ -85,10 +85,9 @@ def _repeat_walls(times, q, v, rim, f, n, disk, normal, gap, spring, law, rule):
 
 
 @nb.njit(error_model="numpy")
-def _repeat_integration(times, q, v, a, a_before, a_new, predicted):
+def _repeat_integration(times, q, v, a, a_before, force, inverse_mass, predicted):
     for _ in range(times):
-        beeman._predict(q, v, a, a_before, predicted, 0.0)
-        beeman._correct(v, a, a_before, a_new, 0.0)
+        beeman._correct(q, v, a, a_before, force, inverse_mass, predicted, 0.0, True)
 
 
 @nb.njit(error_model="numpy")
@@ -104,19 +103,21 @@ def profile(friction: float) -> list[dict]:
     problem = variant(15, 61, friction, 0)
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", TIME_STEP)
     dynamics.advance(20_000)
-    # as in core.forces.accelerations; the weights, inverse masses, radii and loads are not timed by themselves
-    n, _, _, _, rim, _, _, runs, dx, dz, reach, spring, buffer, law, *rest = dynamics.model
+    # as in core.forces.forces; the weights, radii and loads are not timed by themselves
+    n, _, inverse_mass, _, rim, _, _, runs, dx, dz, reach, spring, scratch, law, *rest = dynamics.model
     wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule = rest
-    q, v, f = dynamics.q.copy(), dynamics.v.copy(), np.zeros_like(dynamics.q)
-    spring = None if spring is None else spring.copy()
-    history = dynamics.history.copy()
+    q, v, f = aligned(dynamics.q), aligned(dynamics.v), aligned_zeros(dynamics.q.size)
+    spring = None if spring is None else aligned(spring)
+    history = aligned(dynamics.history)
     times = 200
     parts = {
-        "pair forces": lambda: _repeat_pairs(times, q, v, rim, f, n, runs, dx, dz, reach, spring, buffer, law, rule),
+        "pair forces": lambda: _repeat_pairs(times, q, v, rim, f, n, runs, dx, dz, reach, spring, scratch, law, rule),
         "wall forces": lambda: _repeat_walls(
             times, q, v, rim, f, n, wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule
         ),
-        "integration": lambda: _repeat_integration(times, q, v, history[0], history[1], history[2], dynamics.predicted),
+        "integration": lambda: _repeat_integration(
+            times, q, v, history[0], history[1], history[2], inverse_mass, dynamics.predicted
+        ),
         "watching displacements": lambda: _repeat_look(times, q, v, n, 0.5),
     }
     for part in parts.values():
@@ -127,7 +128,7 @@ def profile(friction: float) -> list[dict]:
     whole = micro.pop()
     rows = [{"part": name, "microseconds": m, "share": m / whole} for name, m in zip(parts, micro, strict=True)]
     left = max(whole - sum(micro), 0.0)
-    rows.append({"part": "weights, inverse masses, rim speeds", "microseconds": left, "share": left / whole})
+    rows.append({"part": "weights, rim speeds", "microseconds": left, "share": left / whole})
     rows.append({"part": "whole step", "microseconds": whole, "share": 1.0})
     rows.append({"part": "listing neighbours anew (times made)", "microseconds": None, "share": dynamics.rebuilds})
     return [{"friction": friction, **row} for row in rows]

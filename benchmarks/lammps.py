@@ -103,6 +103,7 @@ def _run(packing: Packing, friction: float, time_step: float, body: str) -> tupl
     )
     if done.returncode:
         errors = [line for line in (folder / "log.lammps").read_text().splitlines() if "ERROR" in line]
+        shutil.rmtree(folder)
         raise RuntimeError(f"lmp failed: {' '.join(errors) or done.stderr}")
     log = (folder / "log.lammps").read_text()
     loops = re.findall(r"Loop time of ([\d.eE+-]+) on \d+ procs for (\d+) steps", log)

@@ -25,11 +25,6 @@ def floor(state, problem: Problem) -> np.ndarray:
     return state.walls.normal_force[: int((problem.packing.row == 0).sum())]
 
 
-def least(action: Callable[[], object], repeats: int) -> float:
-    """Seconds of the fastest of several runs: other work on the machine only ever adds to them."""
-    return min(interleaved([action], repeats))
-
-
 def interleaved(actions: list[Callable[[], object]], repeats: int) -> list[float]:
     """Least seconds of each of several actions whose repeats take turns, so that they meet the same machine."""
     seconds = np.empty((repeats, len(actions)))

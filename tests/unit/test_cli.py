@@ -340,7 +340,8 @@ def test_progress_on_a_terminal_shows_time_left_after_a_while():
 def test_an_interrupted_command_ends_quietly(tmp_path):
     """A real terminal, a real Ctrl-C."""
     (tmp_path / "scene.yaml").write_text(
-        "packing: {kind: slab}\nprotocol: {method: dynamics, stop_kinetic_energy: 1e-30}\n"
+        "packing: {kind: slab, layers: 60, disks_per_row: 242}\n"
+        "protocol: {method: dynamics, stop_kinetic_energy: 1e-30}\n"
     )
     parent, child = pty.openpty()
     command = [sys.executable, "-m", "granular_response", "run", "scene.yaml", "-o", "result.nc"]

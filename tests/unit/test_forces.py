@@ -7,8 +7,9 @@ import pytest
 from reference_loop import Material, forces
 
 from granular_response.core import neighbours
-from granular_response.core.forces import add_pair_forces, add_wall_forces
+from granular_response.core.forces import SCRATCH, add_pair_forces, add_wall_forces
 from granular_response.core.law import CUT, LITERAL
+from granular_response.core.pair import frictional_pair, frictionless_pair
 from granular_response.scene import SlabPacking
 
 
@@ -31,7 +32,7 @@ def run_kernel(position, velocity, spin, radius, first, second, springs, materia
     add_pair_forces(
         q[:size], v[:size], radius * spin if friction else None, out, n, runs,
         np.ascontiguousarray(d[0]), np.ascontiguousarray(d[1]), radius[i] + radius[j],
-        spring if friction else None, np.zeros((3 if friction else 2, slots)), material.law, rule, dt,
+        spring if friction else None, np.zeros(SCRATCH), material.law, rule, dt,
     )  # fmt: skip
     force = out[: 2 * n].reshape(2, n).T
     torque = -radius * out[2 * n :] if friction else np.zeros(n)
@@ -207,6 +208,42 @@ def test_vector_loop_and_single_pairs_agree():
     for a, b, c in zip(in_runs[:3], again[:3], alone[:3], strict=True):
         assert np.array_equal(a, b)
         assert c == pytest.approx(a, abs=1e-11)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("shift", [1, 3, 7, 8, 9, 40])
+@pytest.mark.parametrize("count", [5, 8, 64, 65, 151])
+def test_a_run_adds_to_each_disk_as_first_and_then_as_second(count, shift, friction):
+    """Bit for bit one pair after the other from the end of the run, however many are taken at once."""
+    rng = np.random.default_rng(count + 1000 * shift)
+    n, start, material, dt = count + shift + 2, 1, Material(mu=friction), 5e-4
+    q, v, f = (rng.normal(0, size, 3 * n) for size in (0.1, 0.1, 1.0))
+    rim, reach = rng.normal(0, 0.1, n), rng.uniform(1.5, 2.5, count)
+    dx, dz, spring = rng.normal(0, 2, count), rng.normal(0, 2, count), rng.normal(0, 1e-3, count)
+    expected, springs = f.copy(), spring.copy()
+    for k in reversed(range(count)):
+        i, j = start + k, start + k + shift
+        moved = dx[k] + (q[i] - q[j]), dz[k] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
+        if friction:
+            px, pz, pt, springs[k] = frictional_pair(
+                *moved, rim[i] + rim[j], reach[k], spring[k], material.law, CUT, dt
+            )
+            expected[2 * n + i] += pt
+            expected[2 * n + j] += pt
+        else:
+            px, pz = frictionless_pair(*moved, reach[k], material.law)
+        expected[i] += px
+        expected[j] -= px
+        expected[n + i] += pz
+        expected[n + j] -= pz
+    runs = np.array([[start, start + shift, count, 0]])
+    rough = friction > 0
+    add_pair_forces(
+        q, v, rim if rough else None, f, n, runs, dx, dz, reach, spring if rough else None, np.zeros(SCRATCH),
+        material.law, CUT, dt,
+    )  # fmt: skip
+    assert np.array_equal(f, expected)
+    assert np.array_equal(spring, springs)
 
 
 WALLS = {"floor": (0.0, 1.0), "left": (1.0, 0.0), "right": (-1.0, 0.0)}

@@ -65,6 +65,24 @@ def test_runs_hold_every_pair_once(pairs, gap, shortest):
     assert len(first) <= len(listed) * (1 + gap)
 
 
+@given(
+    pairs=st.sets(st.tuples(st.integers(0, 60), st.integers(1, 6)), max_size=150),
+    multiple=st.sampled_from([1, 2, 8]),
+)
+def test_lengthened_runs_hold_every_pair_in_a_slot_of_its_own(pairs, multiple):
+    listed = np.array(sorted((i, i + d) for i, d in pairs), np.int64).reshape(-1, 2)
+    n = int(listed.max(initial=0)) + 1
+    runs, slot = make_runs(listed[:, 0], listed[:, 1], n, shortest_run=4, multiple=multiple)
+    first, second = run_pairs(runs)
+    assert np.array_equal(first[slot], listed[:, 0]) and np.array_equal(second[slot], listed[:, 1])
+    assert len(np.unique(slot)) == len(slot)
+    assert first.min(initial=0) >= 0 and second.max(initial=0) < n
+    i, j, count, _ = runs.T
+    long = count > 1
+    room = n - j - count + i
+    assert np.all((count % multiple == 0) | (room < -count % multiple) | ~long)
+
+
 def test_lattice_is_three_runs():
     packing = SlabPacking(kind="slab", layers=15, disks_per_row=61).build()
     pairs = packing.neighbour_pairs()

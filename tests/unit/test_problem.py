@@ -89,3 +89,12 @@ def test_loads_on_one_disk_add_up():
     vector = problem.load_vector().reshape(3, -1)
     assert vector[:, 3] == pytest.approx([1.5, -2.0, 0.5])
     assert np.count_nonzero(vector) == 3
+
+
+def test_slots_of_no_listed_pair_have_no_reach():
+    """Runs are lengthened for vector instructions, over pairs that may be listed elsewhere: these must never touch."""
+    problem = Problem.from_scene(scene(7, 30))
+    c = problem.list_candidates(problem.packing.position)
+    empty = np.setdiff1d(np.arange(c.slots), c.slot)
+    assert len(empty) and not c.reach[empty].any()
+    assert np.array_equal(c.reach[c.slot], problem.packing.radius[c.first] + problem.packing.radius[c.second])

@@ -26,7 +26,7 @@ def test_forces_agree_with_dynamics_at_rest(friction):
     system = StaticSystem(problem, state)
     known = system.start(state)
     dynamics = Dynamics(problem, state)
-    force = dynamics.history[0] / problem.inverse_mass
+    force = dynamics.memory[0] / problem.inverse_mass
     trial = system.trial(known, known.q)
     assert (trial.status == STICKING).sum() > 20 and (trial.status == OPEN).any()
     assert trial.contact_force + problem.weight_vector() == pytest.approx(force, abs=1e-9)
@@ -44,7 +44,7 @@ def test_sliding_forces_agree_with_dynamics_at_rest():
     known = system.start(state)
     trial = system.trial(known, known.q)
     assert (trial.status == SLIDING).sum() > 10
-    force = Dynamics(problem, state).history[0] / problem.inverse_mass
+    force = Dynamics(problem, state).memory[0] / problem.inverse_mass
     assert trial.contact_force + problem.weight_vector() == pytest.approx(force, abs=1e-9)
 
 

@@ -2,94 +2,152 @@
 
 Candidate contacts of disks are stored as *runs*: ``(first disk, second disk, count, first slot)``, that is
 the pairs ``(i + k, j + k)`` for ``k < count``. On a lattice numbered row by row the whole network is three
-runs, one for each lattice direction, and the loop over a run reads and writes contiguous memory, so that the
-compiler vectorises it. A run may hold pairs that never touch (the end of a row and the start of the next):
-they cost a little arithmetic and no branch. Pairs that fit no run are runs of count one at the end of the
+runs, one for each lattice direction, and the loop over a run reads and writes contiguous memory, so it takes
+several pairs at once (``core.lanes``). A run may hold pairs that never touch (the end of a row and the start of the
+next): they cost a little arithmetic and no branch. Pairs that fit no run are runs of count one at the end of the
 table; they are looped over apart, and most of the work is left out for those that do not touch.
 
-Every pair force of a run goes to a buffer first and is then added to its two disks in a fixed order, so results
-do not depend on vector width.
+Results do not depend on how many pairs are taken at once: a run is gone through from its end, so that a disk gets
+the force of the pair it is first in before that of the pair it is second in, also when one vector holds both.
 """
 
 from __future__ import annotations
 
-import math
-
 import numba as nb
 
+from .lanes import WIDTH, put, spread, take
 from .law import LITERAL, normal_force, tangential_cut, tangential_literal
+from .pair import frictional_pair, frictionless_pair
+
+#: Pairs of a run of close indices whose forces are held back before they are added to their second disks: memory
+#: that one vector has just written at another offset cannot be read again at once.
+_BLOCK = 64
+#: Length of the scratch that this takes.
+SCRATCH = 3 * _BLOCK
+
+
+@nb.njit(cache=True, error_model="numpy", inline="always")
+def _frictionless_at(like, i, j, s, n, q, v, dx0, dz0, reach, law):
+    """Forces of the pairs of a run from disks ``i``, ``j`` and slot ``s`` on: of one, or of as many as ``like`` has."""
+    return frictionless_pair(
+        take(dx0, s, like) + (take(q, i, like) - take(q, j, like)),
+        take(dz0, s, like) + (take(q, n + i, like) - take(q, n + j, like)),
+        take(v, i, like) - take(v, j, like),
+        take(v, n + i, like) - take(v, n + j, like),
+        take(reach, s, like),
+        law,
+    )
+
+
+@nb.njit(cache=True, error_model="numpy", inline="always")
+def _frictional_at(like, i, j, s, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt):
+    """As :func:`_frictionless_at`, and the tangential forces; springs advance."""
+    px, pz, pt, new = frictional_pair(
+        take(dx0, s, like) + (take(q, i, like) - take(q, j, like)),
+        take(dz0, s, like) + (take(q, n + i, like) - take(q, n + j, like)),
+        take(v, i, like) - take(v, j, like),
+        take(v, n + i, like) - take(v, n + j, like),
+        take(rim, i, like) + take(rim, j, like),
+        take(reach, s, like),
+        take(spring, s, like),
+        law,
+        rule,
+        dt,
+    )
+    put(spring, s, new)
+    return px, pz, pt
+
+
+@nb.njit(cache=True, error_model="numpy", inline="always")
+def _add(target, k, value):
+    put(target, k, take(target, k, value) + value)
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _frictionless_run(x0, x1, z0, z1, u0, u1, w0, w1, dx0, dz0, reach, fx, fz, law):
-    for k in range(x0.size):
-        dx = dx0[k] + (x0[k] - x1[k])
-        dz = dz0[k] + (z0[k] - z1[k])
-        distance = math.sqrt(dx * dx + dz * dz)
-        inverse = 1.0 / distance
-        nx = dx * inverse
-        nz = dz * inverse
-        overlap = reach[k] - distance
-        fn = normal_force(overlap, (u0[k] - u1[k]) * nx + (w0[k] - w1[k]) * nz, law)
-        fn = fn if overlap > 0.0 else 0.0
-        fx[k] = fn * nx
-        fz[k] = fn * nz
+def _frictionless_run(i, j, s, count, n, q, v, f, dx0, dz0, reach, scratch, law):
+    """Add the forces of a run of ``count`` pairs from disks ``i``, ``j`` and slot ``s`` on."""
+    k = count
+    while k % WIDTH:
+        k -= 1
+        px, pz = _frictionless_at(0.0, i + k, j + k, s + k, n, q, v, dx0, dz0, reach, law)
+        _add(f, i + k, px)
+        _add(f, j + k, -px)
+        _add(f, n + i + k, pz)
+        _add(f, n + j + k, -pz)
+    like = spread(0.0)
+    if j - i >= WIDTH:
+        while k:
+            k -= WIDTH
+            px, pz = _frictionless_at(like, i + k, j + k, s + k, n, q, v, dx0, dz0, reach, law)
+            _add(f, i + k, px)
+            _add(f, j + k, -px)
+            _add(f, n + i + k, pz)
+            _add(f, n + j + k, -pz)
+        return
+    while k:
+        start = max(k - _BLOCK, 0)
+        top = k
+        while k > start:
+            k -= WIDTH
+            px, pz = _frictionless_at(like, i + k, j + k, s + k, n, q, v, dx0, dz0, reach, law)
+            put(scratch, k - start, px)
+            put(scratch, k - start + _BLOCK, pz)
+            _add(f, i + k, px)
+            _add(f, n + i + k, pz)
+        while top > start:
+            top -= WIDTH
+            _add(f, j + top, -take(scratch, top - start, like))
+            _add(f, n + j + top, -take(scratch, top - start + _BLOCK, like))
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _cut_run(x0, x1, z0, z1, u0, u1, w0, w1, s0, s1, dx0, dz0, reach, spring, fx, fz, ft, law, dt):
-    for k in range(x0.size):
-        dx = dx0[k] + (x0[k] - x1[k])
-        dz = dz0[k] + (z0[k] - z1[k])
-        distance = math.sqrt(dx * dx + dz * dz)
-        inverse = 1.0 / distance
-        nx = dx * inverse
-        nz = dz * inverse
-        overlap = reach[k] - distance
-        du = u0[k] - u1[k]
-        dw = w0[k] - w1[k]
-        fn = normal_force(overlap, du * nx + dw * nz, law)
-        force, new = tangential_cut(spring[k], dw * nx - du * nz - (s0[k] + s1[k]), fn, law, dt)
-        fn = fn if overlap > 0.0 else 0.0
-        force = force if overlap > 0.0 else 0.0
-        spring[k] = new if overlap > 0.0 else 0.0
-        fx[k] = fn * nx - force * nz
-        fz[k] = fn * nz + force * nx
-        ft[k] = force
-
-
-@nb.njit(cache=True, error_model="numpy")
-def _literal_run(x0, x1, z0, z1, u0, u1, w0, w1, s0, s1, dx0, dz0, reach, spring, fx, fz, ft, law, dt):
-    for k in range(x0.size):
-        dx = dx0[k] + (x0[k] - x1[k])
-        dz = dz0[k] + (z0[k] - z1[k])
-        distance = math.sqrt(dx * dx + dz * dz)
-        inverse = 1.0 / distance
-        nx = dx * inverse
-        nz = dz * inverse
-        overlap = reach[k] - distance
-        du = u0[k] - u1[k]
-        dw = w0[k] - w1[k]
-        fn = normal_force(overlap, du * nx + dw * nz, law)
-        force, new = tangential_literal(spring[k], dw * nx - du * nz - (s0[k] + s1[k]), fn, law, dt)
-        fn = fn if overlap > 0.0 else 0.0
-        force = force if overlap > 0.0 else 0.0
-        spring[k] = new if overlap > 0.0 else 0.0
-        fx[k] = fn * nx - force * nz
-        fz[k] = fn * nz + force * nx
-        ft[k] = force
-
-
-@nb.njit(cache=True, error_model="numpy")
-def _add(target, values):
-    for k in range(values.size):
-        target[k] += values[k]
-
-
-@nb.njit(cache=True, error_model="numpy")
-def _subtract(target, values):
-    for k in range(values.size):
-        target[k] -= values[k]
+def _frictional_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt):
+    """As :func:`_frictionless_run`, with springs."""
+    k = count
+    while k % WIDTH:
+        k -= 1
+        px, pz, pt = _frictional_at(
+            0.0, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
+        )  # fmt: skip
+        _add(f, i + k, px)
+        _add(f, j + k, -px)
+        _add(f, n + i + k, pz)
+        _add(f, n + j + k, -pz)
+        _add(f, 2 * n + i + k, pt)
+        _add(f, 2 * n + j + k, pt)
+    like = spread(0.0)
+    if j - i >= WIDTH:
+        while k:
+            k -= WIDTH
+            px, pz, pt = _frictional_at(
+                like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
+            )  # fmt: skip
+            _add(f, i + k, px)
+            _add(f, j + k, -px)
+            _add(f, n + i + k, pz)
+            _add(f, n + j + k, -pz)
+            _add(f, 2 * n + i + k, pt)
+            _add(f, 2 * n + j + k, pt)
+        return
+    while k:
+        start = max(k - _BLOCK, 0)
+        top = k
+        while k > start:
+            k -= WIDTH
+            px, pz, pt = _frictional_at(
+                like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
+            )  # fmt: skip
+            put(scratch, k - start, px)
+            put(scratch, k - start + _BLOCK, pz)
+            put(scratch, k - start + 2 * _BLOCK, pt)
+            _add(f, i + k, px)
+            _add(f, n + i + k, pz)
+            _add(f, 2 * n + i + k, pt)
+        while top > start:
+            top -= WIDTH
+            _add(f, j + top, -take(scratch, top - start, like))
+            _add(f, n + j + top, -take(scratch, top - start + _BLOCK, like))
+            _add(f, 2 * n + j + top, take(scratch, top - start + 2 * _BLOCK, like))
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -101,29 +159,17 @@ def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, law, ru
         k = singles[r, 3]
         dx = dx0[k] + (q[i] - q[j])
         dz = dz0[k] + (q[n + i] - q[n + j])
-        square = dx * dx + dz * dz
-        if square >= reach[k] * reach[k]:
+        if dx * dx + dz * dz >= reach[k] * reach[k]:
             if spring is not None:
                 spring[k] = 0.0
             continue
-        distance = math.sqrt(square)
-        inverse = 1.0 / distance
-        nx = dx * inverse
-        nz = dz * inverse
         du = v[i] - v[j]
         dw = v[n + i] - v[n + j]
-        fn = normal_force(reach[k] - distance, du * nx + dw * nz, law)
-        px = fn * nx
-        pz = fn * nz
-        if spring is not None:
-            slip = dw * nx - du * nz - (rim[i] + rim[j])
-            if rule == LITERAL:
-                force, new = tangential_literal(spring[k], slip, fn, law, dt)
-            else:
-                force, new = tangential_cut(spring[k], slip, fn, law, dt)
+        if spring is None:
+            px, pz = frictionless_pair(dx, dz, du, dw, reach[k], law)
+        else:
+            px, pz, force, new = frictional_pair(dx, dz, du, dw, rim[i] + rim[j], reach[k], spring[k], law, rule, dt)
             spring[k] = new
-            px -= force * nz
-            pz += force * nx
             f[2 * n + i] += force
             f[2 * n + j] += force
         f[i] += px
@@ -133,7 +179,7 @@ def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, law, ru
 
 
 @nb.njit(cache=True, error_model="numpy")
-def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, buffer, law, rule, dt):
+def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, scratch, law, rule, dt):
     """Add the forces of all disk-disk candidates to ``f``.
 
     Parameters
@@ -144,54 +190,21 @@ def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, buffer, law,
     runs : (r, 4) int64 candidate runs, those of count one last; ``dx0``, ``dz0``, ``reach`` : (m,) reference
         separation and sum of radii of each slot; ``spring`` : (m,) tangential springs, updated in place, or None
         without friction.
-    buffer : (3, m) or (2, m) scratch.
+    scratch : (SCRATCH,).
     law : tuple, see ``core.law``; ``rule`` : CUT or LITERAL; ``dt`` : time step of the spring update.
     """
-    x = q[:n]
-    z = q[n : 2 * n]
-    u = v[:n]
-    w = v[n : 2 * n]
-    fx = f[:n]
-    fz = f[n : 2 * n]
     for r in range(runs.shape[0]):
-        i0 = runs[r, 0]
-        j0 = runs[r, 1]
+        i = runs[r, 0]
+        j = runs[r, 1]
         count = runs[r, 2]
-        s0 = runs[r, 3]
+        s = runs[r, 3]
         if count == 1:
             _add_single_pairs(q, v, rim, f, n, runs[r:], dx0, dz0, reach, spring, law, rule, dt)
             break
-        i1 = i0 + count
-        j1 = j0 + count
-        s1 = s0 + count
-        px = buffer[0, s0:s1]
-        pz = buffer[1, s0:s1]
         if spring is None:
-            _frictionless_run(
-                x[i0:i1], x[j0:j1], z[i0:i1], z[j0:j1], u[i0:i1], u[j0:j1], w[i0:i1], w[j0:j1],
-                dx0[s0:s1], dz0[s0:s1], reach[s0:s1], px, pz, law,
-            )  # fmt: skip
+            _frictionless_run(i, j, s, count, n, q, v, f, dx0, dz0, reach, scratch, law)
         else:
-            pt = buffer[2, s0:s1]
-            if rule == LITERAL:
-                _literal_run(
-                    x[i0:i1], x[j0:j1], z[i0:i1], z[j0:j1], u[i0:i1], u[j0:j1], w[i0:i1], w[j0:j1],
-                    rim[i0:i1], rim[j0:j1], dx0[s0:s1], dz0[s0:s1], reach[s0:s1], spring[s0:s1],
-                    px, pz, pt, law, dt,
-                )  # fmt: skip
-            else:
-                _cut_run(
-                    x[i0:i1], x[j0:j1], z[i0:i1], z[j0:j1], u[i0:i1], u[j0:j1], w[i0:i1], w[j0:j1],
-                    rim[i0:i1], rim[j0:j1], dx0[s0:s1], dz0[s0:s1], reach[s0:s1], spring[s0:s1],
-                    px, pz, pt, law, dt,
-                )  # fmt: skip
-            ft = f[2 * n :]
-            _add(ft[i0:i1], pt)
-            _add(ft[j0:j1], pt)
-        _add(fx[i0:i1], px)
-        _subtract(fx[j0:j1], px)
-        _add(fz[i0:i1], pz)
-        _subtract(fz[j0:j1], pz)
+            _frictional_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -225,40 +238,47 @@ def add_wall_forces(q, v, rim, f, n, disk, normal, gap0, spring, law, rule, dt):
 
 
 @nb.njit(cache=True, error_model="numpy")
-def accelerations(
-    q, v, a, gravity, load_factor, dt,
+def forces(
+    q, v, f, gravity, load_factor, dt,
     n, weight, inverse_mass, radius, rim, load, load_disk,
-    runs, dx0, dz0, reach, spring, buffer, pair_law,
+    runs, dx0, dz0, reach, spring, scratch, pair_law,
     wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule,
 ):  # fmt: skip
-    """Fill ``a`` with all accelerations at ``(q, v)``; springs advance by ``dt``.
+    """Fill ``f`` with all forces and torques at ``(q, v)``; springs advance by ``dt``.
 
     The arguments from ``n`` on describe the scene and stay the same from step to step; integrators pass them
     as one tuple, the *model*. ``weight`` : (n,), multiplied by ``gravity``; ``load`` : (l, 3) force and torque
     on the disks ``load_disk`` (l,), multiplied by ``load_factor``; ``inverse_mass`` : like ``q``, moments of
-    inertia included; ``rim`` : (n,) scratch, or None without rotations.
+    inertia included, for those who need accelerations; ``rim`` : (n,) scratch, or None without rotations.
     """
     for i in range(n):
-        a[i] = 0.0
+        f[i] = 0.0
     for i in range(n):
-        a[n + i] = -gravity * weight[i]
+        f[n + i] = -gravity * weight[i]
     if rim is not None:
         spin = v[2 * n :]
-        total = a[2 * n :]
+        total = f[2 * n :]
         for i in range(n):
             rim[i] = radius[i] * spin[i]
             total[i] = 0.0
-    add_pair_forces(q, v, rim, a, n, runs, dx0, dz0, reach, spring, buffer, pair_law, rule, dt)
-    add_wall_forces(q, v, rim, a, n, wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule, dt)
+    add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, scratch, pair_law, rule, dt)
+    add_wall_forces(q, v, rim, f, n, wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule, dt)
     if rim is not None:
-        total = a[2 * n :]
+        total = f[2 * n :]
         for i in range(n):
             total[i] *= -radius[i]
     for c in range(load_disk.size):
         i = load_disk[c]
-        a[i] += load_factor * load[c, 0]
-        a[n + i] += load_factor * load[c, 1]
+        f[i] += load_factor * load[c, 0]
+        f[n + i] += load_factor * load[c, 1]
         if rim is not None:
-            a[2 * n + i] += load_factor * load[c, 2]
+            f[2 * n + i] += load_factor * load[c, 2]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def accelerations(q, v, a, gravity, load_factor, dt, model):
+    """Fill ``a`` with all accelerations; arguments as of :func:`forces`."""
+    forces(q, v, a, gravity, load_factor, dt, *model)
+    inverse_mass = model[2]
     for k in range(a.size):
         a[k] *= inverse_mass[k]

@@ -1,12 +1,14 @@
-"""A number for each of several scenes: the type that lock-step kernels calculate with.
+"""Several numbers at once: the type that vectorised kernels calculate with.
 
-A ``Lanes`` value holds ``WIDTH`` doubles in vector registers. Arithmetic, comparison, :func:`select`, :func:`root`
-and :func:`magnitude` act on each lane alone, with the rounding of the scalar operation, so a lane's results do not
-depend on what the others hold; functions written with them serve scalars as well. Loops over scenes are left to
-the compiler in other codes; here vector instructions are what a kernel asks for, not what it may get.
+A ``Lanes`` value holds ``WIDTH`` doubles in vector registers: of consecutive contacts or degrees of freedom, or of one
+quantity in several scenes (lock-step). Arithmetic, comparison, :func:`select`, :func:`root` and :func:`magnitude` act
+on each lane alone, with the rounding of the scalar operation, so a lane's results do not depend on what the others
+hold; functions written with them serve scalars as well. Other codes leave it to the compiler whether a loop becomes
+vector instructions; here they are what a kernel asks for.
 
-Lanes live in arrays of shape (rows, ``WIDTH``): :func:`load` and :func:`store` move ``array[row, :]``.
-With compilation off a ``Lanes`` value is a numpy array.
+:func:`take` and :func:`put` move ``array[k : k + WIDTH]``, or the scalar ``array[k]``, so that one body serves a
+vector loop and what is left at its end; :func:`load` and :func:`store` move ``array[row, :]`` of arrays of shape
+(rows, ``WIDTH``), one column for each scene. With compilation off a ``Lanes`` value is a numpy array.
 """
 
 from __future__ import annotations
@@ -19,9 +21,25 @@ from llvmlite import ir
 from numba.core import cgutils, config, types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
+from numpy.typing import NDArray
 
-#: Scenes that advance together: one AVX-512 register or two of AVX.
+#: Numbers in a value: one AVX-512 register or two of AVX.
 WIDTH = 8
+
+
+def aligned_zeros(*shape: int) -> NDArray[np.float64]:
+    """Zeros that begin at a cache line, so that no vector lies across two of them."""
+    size = int(np.prod(shape))
+    room = np.zeros(size + 8)
+    skip = -(room.ctypes.data // 8) % 8
+    return room[skip : skip + size].reshape(shape)
+
+
+def aligned(values) -> NDArray[np.float64]:
+    """A copy that begins at a cache line."""
+    copy = aligned_zeros(*np.shape(values))
+    copy[...] = values
+    return copy
 
 
 class _LanesType(types.Type):
@@ -111,6 +129,15 @@ def _vector_function(builder, name, value):
     return builder.call(function, [value])
 
 
+def _scalar_function(name):
+    def generate(context, builder, sig, args):
+        double = ir.DoubleType()
+        function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(double, [double]), f"llvm.{name}.f64")
+        return builder.call(function, args)
+
+    return types.float64(types.float64), generate
+
+
 def _place(context, builder, kind, array, row):
     data = context.make_array(kind)(context, builder, array).data
     return builder.gep(builder.bitcast(data, _DOUBLES.as_pointer()), [row])
@@ -149,6 +176,44 @@ def store(typing, array, row, value):
     return types.none(array, types.intp, LANES), generate
 
 
+def _is_line(array) -> bool:
+    return isinstance(array, types.Array) and array.ndim == 1 and array.dtype == types.float64 and array.layout == "C"
+
+
+def _at(context, builder, kind, array, k, element):
+    place = builder.gep(context.make_array(kind)(context, builder, array).data, [k])
+    return builder.bitcast(place, element.as_pointer())
+
+
+@intrinsic
+def take(typing, array, k, like):
+    """``array[k]`` or, where ``like`` is lanes, ``array[k : k + WIDTH]``; nothing is checked."""
+    if not _is_line(array) or like not in (LANES, types.float64):
+        return None
+
+    def generate(context, builder, sig, args):
+        element = _DOUBLES if like == LANES else ir.DoubleType()
+        loaded = builder.load(_at(context, builder, sig.args[0], args[0], args[1], element))
+        loaded.align = 8
+        return loaded
+
+    return like(array, types.intp, like), generate
+
+
+@intrinsic
+def put(typing, array, k, value):
+    """Set what :func:`take` takes."""
+    if not _is_line(array) or value not in (LANES, types.float64):
+        return None
+
+    def generate(context, builder, sig, args):
+        stored = builder.store(args[2], _at(context, builder, sig.args[0], args[0], args[1], args[2].type))
+        stored.align = 8
+        return context.get_dummy_value()
+
+    return types.none(array, types.intp, value), generate
+
+
 @intrinsic
 def spread(typing, value):
     """Lanes that all hold ``value``."""
@@ -172,10 +237,22 @@ def select(typing, condition, yes, no):
     return types.float64(types.boolean, types.float64, types.float64), generate_scalar
 
 
+def _any(builder, mask):
+    return builder.icmp_unsigned("!=", builder.bitcast(mask, ir.IntType(WIDTH)), ir.IntType(WIDTH)(0))
+
+
+@intrinsic
+def anywhere(typing, condition):
+    """Whether a condition holds in some lane."""
+    return types.boolean(MASK), lambda context, builder, sig, args: _any(builder, args[0])
+
+
 @intrinsic
 def root(typing, value):
     """Square root."""
-    return LANES(LANES), lambda context, builder, sig, args: _vector_function(builder, "sqrt", args[0])
+    if value == LANES:
+        return LANES(LANES), lambda context, builder, sig, args: _vector_function(builder, "sqrt", args[0])
+    return _scalar_function("sqrt")
 
 
 @intrinsic
@@ -183,13 +260,7 @@ def magnitude(typing, value):
     """Absolute value."""
     if value == LANES:
         return LANES(LANES), lambda context, builder, sig, args: _vector_function(builder, "fabs", args[0])
-
-    def generate(context, builder, sig, args):
-        double = ir.DoubleType()
-        fabs = cgutils.get_or_insert_function(builder.module, ir.FunctionType(double, [double]), "llvm.fabs.f64")
-        return builder.call(fabs, args)
-
-    return types.float64(types.float64), generate
+    return _scalar_function("fabs")
 
 
 @intrinsic
@@ -198,14 +269,16 @@ def quotient_where(typing, condition, dividend, divisor, otherwise):
     if condition == MASK:
 
         def generate(context, builder, sig, args):
-            condition, dividend, divisor, otherwise = args
+            condition = args[0]
+            dividend, divisor, otherwise = (
+                _as_lanes(builder, k, v) for k, v in zip(sig.args[1:], args[1:], strict=True)
+            )
             result = cgutils.alloca_once_value(builder, otherwise)
-            any_lane = builder.icmp_unsigned("!=", builder.bitcast(condition, ir.IntType(WIDTH)), ir.IntType(WIDTH)(0))
-            with builder.if_then(any_lane):
+            with builder.if_then(_any(builder, condition)):
                 builder.store(builder.select(condition, builder.fdiv(dividend, divisor), otherwise), result)
             return builder.load(result)
 
-        return LANES(MASK, LANES, LANES, LANES), generate
+        return LANES(MASK, *(LANES if k == LANES else types.float64 for k in (dividend, divisor, otherwise))), generate
 
     def generate_scalar(context, builder, sig, args):
         condition, dividend, divisor, otherwise = args
@@ -216,7 +289,16 @@ def quotient_where(typing, condition, dividend, divisor, otherwise):
 
 if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
     spread = partial(np.full, WIDTH)
-    root, magnitude = np.sqrt, np.abs
+    root, magnitude, anywhere = np.sqrt, np.abs, np.any
+
+    def take(array, k, like):
+        return array[k : k + WIDTH].copy() if isinstance(like, np.ndarray) else array[k]
+
+    def put(array, k, value):
+        if isinstance(value, np.ndarray):
+            array[k : k + WIDTH] = value
+        else:
+            array[k] = value
 
     def load(array, row):
         return array[row].copy()

@@ -19,8 +19,9 @@ import math
 import numba as nb
 
 from .integrators import beeman, gear, verlet
-from .lanes import load, root, select, spread, store
+from .lanes import load, select, spread, store
 from .law import LITERAL, normal_force, tangential_cut, tangential_literal
+from .pair import frictional_pair, frictionless_pair
 
 #: Integrators by number, as :func:`advance` takes them.
 KINDS = {"beeman": 0, "verlet": 1, "gear": 2}
@@ -56,16 +57,11 @@ def _frictionless_pairs(start, end, motion, rows, contact, force, first, second,
         p = CONTACT * k
         dx = load(contact, p) + (load(motion, i) - load(motion, j))
         dz = load(contact, p + 1) + (load(motion, i + 1) - load(motion, j + 1))
-        distance = root(dx * dx + dz * dz)
-        inverse = 1.0 / distance
-        nx = dx * inverse
-        nz = dz * inverse
-        overlap = load(contact, p + 2) - distance
         du = load(motion, i + c) - load(motion, j + c)
         dw = load(motion, i + c + 1) - load(motion, j + c + 1)
-        fn = select(overlap > 0.0, normal_force(overlap, du * nx + dw * nz, law), 0.0)
-        store(force, FORCE * k, fn * nx)
-        store(force, FORCE * k + 1, fn * nz)
+        fx, fz = frictionless_pair(dx, dz, du, dw, load(contact, p + 2), law)
+        store(force, FORCE * k, fx)
+        store(force, FORCE * k + 1, fz)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -77,26 +73,14 @@ def _frictional_pairs(start, end, motion, contact, force, first, second, law, ru
         p = CONTACT * k
         dx = load(contact, p) + (load(motion, i) - load(motion, j))
         dz = load(contact, p + 1) + (load(motion, i + 1) - load(motion, j + 1))
-        distance = root(dx * dx + dz * dz)
-        inverse = 1.0 / distance
-        nx = dx * inverse
-        nz = dz * inverse
-        overlap = load(contact, p + 2) - distance
         du = load(motion, i + 3) - load(motion, j + 3)
         dw = load(motion, i + 4) - load(motion, j + 4)
-        fn = normal_force(overlap, du * nx + dw * nz, law)
-        slip = dw * nx - du * nz - (load(motion, i + 5) + load(motion, j + 5))
+        rims = load(motion, i + 5) + load(motion, j + 5)
         spring = load(contact, p + 3)
-        if rule == LITERAL:
-            ft, new = tangential_literal(spring, slip, fn, law, dt)
-        else:
-            ft, new = tangential_cut(spring, slip, fn, law, dt)
-        closed = overlap > 0.0
-        fn = select(closed, fn, 0.0)
-        ft = select(closed, ft, 0.0)
-        store(contact, p + 3, select(closed, new, 0.0))
-        store(force, FORCE * k, fn * nx - ft * nz)
-        store(force, FORCE * k + 1, fn * nz + ft * nx)
+        fx, fz, ft, spring = frictional_pair(dx, dz, du, dw, rims, load(contact, p + 2), spring, law, rule, dt)
+        store(contact, p + 3, spring)
+        store(force, FORCE * k, fx)
+        store(force, FORCE * k + 1, fz)
         store(force, FORCE * k + 2, ft)
 
 

@@ -73,20 +73,21 @@ def close_pairs(position, radius, skin):
     return first[by].astype(np.int32), second[by].astype(np.int32)
 
 
-def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_RUN):
+def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_RUN, multiple=1):
     """Store pairs as runs of constant index difference.
 
     Parameters
     ----------
     first, second : (m,) int pairs with ``first < second``, each listed once, sorted by ``(first, second)``;
         ``n`` : number of disks; ``longest_gap`` : number of missing pairs bridged inside a run;
-        ``shortest_run`` : runs that hold fewer of the pairs are taken apart.
+        ``shortest_run`` : runs that hold fewer of the pairs are taken apart; ``multiple`` : runs are lengthened to a
+        multiple of it where there are disks enough.
 
     Returns
     -------
     runs : (r, 4) int64 ``first disk, second disk, count, first slot``, single pairs last in their given order;
         ``slot`` : (m,) int64 slot of each given pair. There are ``runs[-1, 2] + runs[-1, 3]`` slots; those of no
-        given pair fill gaps.
+        given pair fill gaps and ends, and may belong to a pair that is given elsewhere.
     """
     m = len(first)
     if m == 0:
@@ -102,18 +103,23 @@ def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_R
     alone[by] = np.repeat(members < shortest_run, members)
     kept = members >= shortest_run
     begin, members = begin[kept], members[kept]
-    count = a[begin + members - 1] - a[begin] + 1
+    i0, j0 = a[begin], b[begin]
+    count = a[begin + members - 1] - i0 + 1
+    up = np.minimum(-count % multiple, n - j0 - count)
+    down = np.minimum((-count - up) % multiple, i0)
+    fits = (count + up + down) % multiple == 0
+    i0, j0, count = i0 - down * fits, j0 - down * fits, count + (up + down) * fits
     first_slot = np.cumsum(count) - count
     slot = np.empty(m, np.int64)
     which = np.repeat(np.arange(len(begin)), members)
     in_run = by[~alone[by]]
-    slot[in_run] = first_slot[which] + i[in_run] - a[begin][which]
+    slot[in_run] = first_slot[which] + i[in_run] - i0[which]
     single = np.flatnonzero(alone)
     slot[single] = int(count.sum()) + np.arange(len(single))
     ones = np.ones(len(single), np.int64)
     runs = np.concatenate(
         [
-            np.stack([a[begin], b[begin], count, first_slot], axis=1),
+            np.stack([i0, j0, count, first_slot], axis=1),
             np.stack([i[single], j[single], ones, slot[single]], axis=1),
         ]
     )
@@ -130,17 +136,35 @@ def run_pairs(runs):
 
 
 @nb.njit(cache=True, error_model="numpy")
-def mark_closed(x, reference, radius, first, second, wall_disk, wall_normal, wall_gap, closed):
+def mark_closed(q, reference, radius, first, second, wall_disk, wall_normal, wall_gap, closed):
     """Fill ``closed``: which listed pairs overlap, then which listed wall contacts do.
 
-    ``x``, ``reference`` (n, 2): centres now and when the list was made; ``wall_gap``: gaps at that time.
+    ``reference`` (n, 2): centres when the list was made, ``wall_gap``: gaps at that time; ``q`` : displacements since.
     """
     pairs = len(first)
+    n = len(radius)
     for k in range(pairs):
         i, j = first[k], second[k]
-        dx, dz, reach = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1], radius[i] + radius[j]
+        dx = (reference[i, 0] + q[i]) - (reference[j, 0] + q[j])
+        dz = (reference[i, 1] + q[n + i]) - (reference[j, 1] + q[n + j])
+        reach = radius[i] + radius[j]
         closed[k] = dx * dx + dz * dz < reach * reach
     for k in range(len(wall_disk)):
         i = wall_disk[k]
-        shift = wall_normal[k, 0] * (x[i, 0] - reference[i, 0]) + wall_normal[k, 1] * (x[i, 1] - reference[i, 1])
-        closed[pairs + k] = wall_gap[k] + shift < 0.0
+        shift_x = (reference[i, 0] + q[i]) - reference[i, 0]
+        shift_z = (reference[i, 1] + q[n + i]) - reference[i, 1]
+        closed[pairs + k] = wall_gap[k] + (wall_normal[k, 0] * shift_x + wall_normal[k, 1] * shift_z) < 0.0
+
+
+@nb.njit(cache=True, error_model="numpy")
+def count_closed(closed, first, second, wall_disk, count):
+    """Fill ``count`` (n,): closed contacts of each disk, from what :func:`mark_closed` has marked."""
+    count[:] = 0
+    pairs = len(first)
+    for k in range(pairs):
+        if closed[k]:
+            count[first[k]] += 1
+            count[second[k]] += 1
+    for k in range(len(wall_disk)):
+        if closed[pairs + k]:
+            count[wall_disk[k]] += 1

@@ -49,8 +49,8 @@ LINE_STYLES: tuple[Any, ...] = (
 )
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
-#: Colour maps: magnitudes, and signed values about zero (blue negative, red positive).
-SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
+#: Colour map of magnitudes.
+SEQUENTIAL = "viridis"
 
 #: Greys of things that are there for orientation only.
 FAINT, MUTED = "#C8C8C8", "#707070"

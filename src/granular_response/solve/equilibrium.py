@@ -6,7 +6,7 @@ a semi-smooth Newton method: near a solution it ends in a few steps with residua
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -49,9 +49,6 @@ class Certificate:
     @property
     def stable(self) -> bool:
         return self.negative_modes == 0
-
-    def as_dict(self) -> dict[str, float]:
-        return asdict(self)
 
 
 def residual(system: StaticSystem, trial: Trial, external: FloatArray) -> FloatArray:

@@ -16,15 +16,17 @@ from numpy.typing import NDArray
 
 from ..core import lockstep as kernel
 from ..core.integrators.record import LOOK_EVERY
-from ..core.lanes import WIDTH
+from ..core.lanes import WIDTH, aligned_zeros
 from .dynamics import CHECK_EVERY, Dynamics, Relaxation
 from .problem import wall_normals
 from .state import FloatArray, State
 
 #: Fewer scenes than this are faster alone than in lanes of which the others idle.
 WORTHWHILE = WIDTH - 1
-#: More disks than this are faster alone: their lanes no longer fit into the cache of a core.
-MOST_DISKS = 2000
+#: More disks than this are faster alone, where a scene fills vectors by itself with the pairs of its runs.
+MOST_IN_RUNS = 500
+#: And more than this in any case: their lanes no longer fit into the cache of a core.
+MOST_DISKS = 5000
 
 
 class Network:
@@ -46,6 +48,12 @@ class Network:
         self.wall_start = _starts(c.wall_disk, n)
         self.wall_normal = wall_normals(c.wall[self.wall_order])
         self._runs, self._walls = c.runs, (c.wall_disk, c.wall)
+
+    @property
+    def pays(self) -> bool:
+        """Whether scenes on it are faster together: small ones, and those whose candidates fit few runs."""
+        alone = np.count_nonzero(self._runs[:, 2] == 1)
+        return self.n <= (MOST_DISKS if 2 * alone > len(self.slot) else MOST_IN_RUNS)
 
     def fits(self, dynamics: Dynamics) -> bool:
         """Whether a scene can share sweeps with those that this network was made of."""
@@ -75,14 +83,6 @@ def _terms(runs, slot, first, second, n: int) -> tuple[NDArray[np.int64], NDArra
     by = np.lexsort((np.concatenate([slot, slot]), side, np.concatenate([run, run]), disk))
     pair = np.concatenate([np.arange(m), ~np.arange(m)])
     return _starts(disk, n), pair[by]
-
-
-def aligned_zeros(*shape: int) -> FloatArray:
-    """Zeros that begin at a cache line, so that no vector lies across two of them."""
-    size = int(np.prod(shape))
-    room = np.zeros(size + 8)
-    skip = -(room.ctypes.data // 8) % 8
-    return room[skip : skip + size].reshape(shape)
 
 
 class Lanes:
@@ -119,8 +119,8 @@ class Lanes:
         self._gather_loads()
         self.motion[:, :f, lane] = dynamics.q.reshape(f, -1).T
         self.motion[:, 2 * f : 3 * f, lane] = dynamics.v.reshape(f, -1).T
-        history = dynamics.history[:-1].reshape(-1, net.n)  # the last row is scratch
-        self.motion[:, 3 * f : 3 * f + len(history), lane] = history.T
+        memory = dynamics.memory.reshape(-1, net.n)
+        self.motion[:, 3 * f : 3 * f + len(memory), lane] = memory.T
         if dynamics.spring is not None:
             self.contact[:, 3, lane] = dynamics.spring[net.slot]
         if dynamics.wall_spring is not None:
@@ -139,8 +139,9 @@ class Lanes:
     def give_back(self, lane: int, dynamics: Dynamics) -> None:
         """After :meth:`report`, the rest of a scene's motion: springs, and the history of its integrator."""
         net, f = self.network, self.network.freedoms
-        history = dynamics.history[:-1].reshape(-1, net.n)
-        history[:] = self.motion[:, 3 * f : 3 * f + len(history), lane].T
+        memory = dynamics.memory
+        rows = memory.size // net.n
+        memory[:] = self.motion[:, 3 * f : 3 * f + rows, lane].T.reshape(memory.shape)
         if dynamics.spring is not None:
             dynamics.spring[net.slot] = self.contact[:, 3, lane]
         if dynamics.wall_spring is not None:
@@ -204,7 +205,7 @@ def relax_many(relaxations: Iterable[Relaxation]) -> list[State]:
         else:
             groups.append((Network(relaxation.dynamics), [relaxation]))
     for network, members in groups:
-        if network.n <= MOST_DISKS:
+        if network.pays:
             _run_together(network, members)
     return [relaxation.run() for relaxation in relaxations]  # alone, what is left
 

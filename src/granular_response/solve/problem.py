@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import neighbours
+from ..core.lanes import WIDTH, aligned, aligned_zeros
 from ..core.law import CUT, LITERAL
 from ..scene import Packing, Scene, resolve_disk
 from .state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Contacts, FloatArray, State
@@ -39,7 +40,7 @@ class Candidates:
     slot: NDArray[np.int64]  #: (m,)
     runs: NDArray[np.int64]  #: (r, 4)
     separation: FloatArray  #: (2, slots) reference separations of the slots' disks
-    reach: FloatArray  #: (slots,) sums of radii
+    reach: FloatArray  #: (slots,) sums of radii; 0 in slots of no listed pair
     wall_disk: NDArray[np.int64]  #: (w,)
     wall: NDArray[np.int8]  #: (w,)
     wall_gap: FloatArray  #: (w,) reference gaps
@@ -172,19 +173,20 @@ class Problem:
         limit = 0.0
         if pairs is not None and packing.lattice_constant is not None:
             # second neighbours touch once two disks have moved this far towards each other
-            second = np.sqrt(3.0) * packing.lattice_constant - 2.0 * float(radius.max())
+            room = np.sqrt(3.0) * packing.lattice_constant - 2.0 * float(radius.max())
             shift = np.linalg.norm(position - packing.position, axis=1)
-            limit = 0.5 * second - float(shift.max())
+            limit = 0.5 * room - float(shift.max())
         if pairs is not None and limit > LEAST_LATTICE_LIMIT:
-            first, second_disk = pairs[:, 0], pairs[:, 1]
+            first, second = pairs[:, 0], pairs[:, 1]
             margin = 2.0 * limit
         else:
-            first, second_disk = neighbours.close_pairs(position, radius, SKIN)
+            first, second = neighbours.close_pairs(position, radius, SKIN)
             limit = 0.5 * SKIN
             margin = SKIN
-        second = second_disk
-        runs, slot = neighbours.make_runs(first, second, self.n)
+        runs, slot = neighbours.make_runs(first, second, self.n, multiple=WIDTH)
         i, j = neighbours.run_pairs(runs)
+        reach = aligned_zeros(len(i))  # slots of no listed pair have none
+        reach[slot] = radius[first] + radius[second]
         wall_disk, wall = _wall_candidates(position, radius, packing.width, margin)
         return Candidates(
             reference=position.copy(),
@@ -192,8 +194,8 @@ class Problem:
             second=second.astype(np.int32),
             slot=slot,
             runs=runs,
-            separation=np.ascontiguousarray((position[i] - position[j]).T),
-            reach=radius[i] + radius[j],
+            separation=aligned((position[i] - position[j]).T),
+            reach=reach,
             wall_disk=wall_disk,
             wall=wall,
             wall_gap=wall_gap(position[wall_disk], radius[wall_disk], wall, packing.width),

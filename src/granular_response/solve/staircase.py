@@ -106,7 +106,7 @@ def _dynamic(problem: Problem, start: State, factor: float, ramp_time: float, lo
     disk = int(problem.load_disk[0])
 
     def watch(_: int, __: float) -> None:
-        height = float(dynamics.position[disk, 1])
+        height = dynamics.height(disk)
         if height < lowest:
             raise Collapsed(factor, height)
 

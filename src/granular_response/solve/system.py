@@ -325,8 +325,3 @@ def _symmetric_part(matrix: sp.csc_array) -> sp.csc_array:
     transposed = sp.csc_array(matrix.T)
     transposed.sort_indices()
     return sp.csc_array((0.5 * (matrix.data + transposed.data), matrix.indices, matrix.indptr), shape=matrix.shape)
-
-
-def sliding_count(trial: Trial) -> int:
-    """Number of sliding contacts."""
-    return int((trial.pair_status == SLIDING).sum() + (trial.wall_status == SLIDING).sum())

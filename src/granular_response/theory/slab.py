@@ -32,9 +32,6 @@ FloatArray = NDArray[np.float64]
 _MOST_WAVE_NUMBERS = 400_000
 _CHUNK = 1024
 
-#: Order of the components in ``Slab.stress`` and ``Slab.transform``.
-COMPONENTS = ("xx", "zz", "xz")
-
 
 def _decay(generator: FloatArray, q: FloatArray) -> FloatArray:
     """(n, 2, 2) ``exp(generator q)`` of a 2 x 2 matrix whose eigenvalues have negative real parts.

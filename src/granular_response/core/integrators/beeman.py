@@ -5,8 +5,9 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from ..forces import accelerations
-from .record import LOOK_EVERY, Integrator, moved_beyond, ramp
+from ..forces import forces
+from ..lanes import WIDTH, put, spread, take
+from .record import LOOK_EVERY, Integrator, goes_on, moved_beyond, ramp
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -23,17 +24,33 @@ def correct(v, a, a_before, a_new, dt):
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _predict(q, v, a, a_before, predicted, dt):
+def _predict(q, v, a, a_before, seen, dt):
     for k in range(q.size):
-        q[k], predicted[k] = predict(q[k], v[k], a[k], a_before[k], dt)
+        q[k], seen[k] = predict(q[k], v[k], a[k], a_before[k], dt)
+
+
+@nb.njit(cache=True, error_model="numpy", inline="always")
+def _correct_at(k, like, q, v, a, a_before, force, inverse_mass, seen, dt, predicts):
+    a_new = take(force, k, like) * take(inverse_mass, k, like)
+    a_now = take(a, k, like)
+    v_new = correct(take(v, k, like), a_now, take(a_before, k, like), a_new, dt)
+    put(v, k, v_new)
+    put(a_before, k, a_now)
+    put(a, k, a_new)
+    if predicts:
+        x, predicted = predict(take(q, k, like), v_new, a_new, a_now, dt)
+        put(q, k, x)
+        put(seen, k, predicted)
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _correct(v, a, a_before, a_new, dt):
-    for k in range(v.size):
-        v[k] = correct(v[k], a[k], a_before[k], a_new[k], dt)
-        a_before[k] = a[k]
-        a[k] = a_new[k]
+def _correct(q, v, a, a_before, force, inverse_mass, seen, dt, predicts):
+    """End a step and, where ``predicts``, begin the next while its numbers are at hand."""
+    whole = q.size - q.size % WIDTH
+    for k in range(0, whole, WIDTH):
+        _correct_at(k, spread(0.0), q, v, a, a_before, force, inverse_mass, seen, dt, predicts)
+    for k in range(whole, q.size):
+        _correct_at(k, 0.0, q, v, a, a_before, force, inverse_mass, seen, dt, predicts)
 
 
 @nb.njit(cache=True, error_model="numpy", nogil=True)
@@ -41,16 +58,20 @@ def advance(steps, dt, schedule, limit, q, v, history, velocity, model):
     """See the package docstring; history rows: a(t), a(t - dt), scratch."""
     time, g0, g1, gt, l0, l1, lt = schedule
     n = model[0]
+    inverse_mass = model[2]
     a = history[0]
     a_before = history[1]
-    a_new = history[2]
+    force = history[2]
+    begun = False
     for step in range(steps):
-        if step % LOOK_EVERY == 0 and limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
-            return step
-        _predict(q, v, a, a_before, velocity, dt)
+        if not begun:
+            if limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
+                return step
+            _predict(q, v, a, a_before, velocity, dt)
         now = time + (step + 1) * dt
-        accelerations(q, velocity, a_new, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
-        _correct(v, a, a_before, a_new, dt)
+        forces(q, velocity, force, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
+        begun = goes_on(step + 1, steps, limit)
+        _correct(q, v, a, a_before, force, inverse_mass, velocity, dt, begun)
     return steps
 
 

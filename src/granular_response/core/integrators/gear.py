@@ -5,8 +5,9 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from ..forces import accelerations
-from .record import LOOK_EVERY, Integrator, moved_beyond, ramp
+from ..forces import forces
+from ..lanes import WIDTH, put, spread, take
+from .record import LOOK_EVERY, Integrator, goes_on, moved_beyond, ramp
 
 # Corrector coefficients for second-order equations whose forces depend on velocity
 # (Allen & Tildesley, Computer Simulation of Liquids, App. E).
@@ -40,11 +41,29 @@ def _predict(q, v, a, b, c, dt):
         q[k], v[k], a[k], b[k] = predict(q[k], v[k], a[k], b[k], c[k], dt)
 
 
+@nb.njit(cache=True, error_model="numpy", inline="always")
+def _correct_at(k, like, q, v, a, b, c, force, inverse_mass, dt, predicts):
+    a_new = take(force, k, like) * take(inverse_mass, k, like)
+    x, v_new, b_new, c_new = correct(
+        take(q, k, like), take(v, k, like), take(a, k, like), take(b, k, like), take(c, k, like), a_new, dt
+    )
+    if predicts:
+        x, v_new, a_new, b_new = predict(x, v_new, a_new, b_new, c_new, dt)
+    put(q, k, x)
+    put(v, k, v_new)
+    put(a, k, a_new)
+    put(b, k, b_new)
+    put(c, k, c_new)
+
+
 @nb.njit(cache=True, error_model="numpy")
-def _correct(q, v, a, b, c, a_new, dt):
-    for k in range(q.size):
-        q[k], v[k], b[k], c[k] = correct(q[k], v[k], a[k], b[k], c[k], a_new[k], dt)
-        a[k] = a_new[k]
+def _correct(q, v, a, b, c, force, inverse_mass, dt, predicts):
+    """End a step and, where ``predicts``, begin the next while its numbers are at hand."""
+    whole = q.size - q.size % WIDTH
+    for k in range(0, whole, WIDTH):
+        _correct_at(k, spread(0.0), q, v, a, b, c, force, inverse_mass, dt, predicts)
+    for k in range(whole, q.size):
+        _correct_at(k, 0.0, q, v, a, b, c, force, inverse_mass, dt, predicts)
 
 
 @nb.njit(cache=True, error_model="numpy", nogil=True)
@@ -52,17 +71,21 @@ def advance(steps, dt, schedule, limit, q, v, history, velocity, model):
     """See the package docstring; history rows: second, third and fourth derivative, scratch."""
     time, g0, g1, gt, l0, l1, lt = schedule
     n = model[0]
+    inverse_mass = model[2]
     a = history[0]
     b = history[1]
     c = history[2]
-    a_new = history[3]
+    force = history[3]
+    begun = False
     for step in range(steps):
-        if step % LOOK_EVERY == 0 and limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
-            return step
-        _predict(q, v, a, b, c, dt)
+        if not begun:
+            if limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
+                return step
+            _predict(q, v, a, b, c, dt)
         now = time + (step + 1) * dt
-        accelerations(q, v, a_new, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
-        _correct(q, v, a, b, c, a_new, dt)
+        forces(q, v, force, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
+        begun = goes_on(step + 1, steps, limit)
+        _correct(q, v, a, b, c, force, inverse_mass, dt, begun)
     return steps
 
 

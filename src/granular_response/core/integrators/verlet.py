@@ -5,8 +5,9 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from ..forces import accelerations
-from .record import LOOK_EVERY, Integrator, moved_beyond, ramp
+from ..forces import forces
+from ..lanes import WIDTH, put, spread, take
+from .record import LOOK_EVERY, Integrator, goes_on, moved_beyond, ramp
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -22,16 +23,31 @@ def kick(v, a, a_new, dt):
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _drift(q, v, a, predicted, dt):
+def _drift(q, v, a, seen, dt):
     for k in range(q.size):
-        q[k], predicted[k] = drift(q[k], v[k], a[k], dt)
+        q[k], seen[k] = drift(q[k], v[k], a[k], dt)
+
+
+@nb.njit(cache=True, error_model="numpy", inline="always")
+def _kick_at(k, like, q, v, a, force, inverse_mass, seen, dt, drifts):
+    a_new = take(force, k, like) * take(inverse_mass, k, like)
+    v_new = kick(take(v, k, like), take(a, k, like), a_new, dt)
+    put(v, k, v_new)
+    put(a, k, a_new)
+    if drifts:
+        x, predicted = drift(take(q, k, like), v_new, a_new, dt)
+        put(q, k, x)
+        put(seen, k, predicted)
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _kick(v, a, a_new, dt):
-    for k in range(v.size):
-        v[k] = kick(v[k], a[k], a_new[k], dt)
-        a[k] = a_new[k]
+def _kick(q, v, a, force, inverse_mass, seen, dt, drifts):
+    """End a step and, where ``drifts``, begin the next while its numbers are at hand."""
+    whole = q.size - q.size % WIDTH
+    for k in range(0, whole, WIDTH):
+        _kick_at(k, spread(0.0), q, v, a, force, inverse_mass, seen, dt, drifts)
+    for k in range(whole, q.size):
+        _kick_at(k, 0.0, q, v, a, force, inverse_mass, seen, dt, drifts)
 
 
 @nb.njit(cache=True, error_model="numpy", nogil=True)
@@ -39,15 +55,19 @@ def advance(steps, dt, schedule, limit, q, v, history, velocity, model):
     """See the package docstring; history rows: a(t), scratch."""
     time, g0, g1, gt, l0, l1, lt = schedule
     n = model[0]
+    inverse_mass = model[2]
     a = history[0]
-    a_new = history[1]
+    force = history[1]
+    begun = False
     for step in range(steps):
-        if step % LOOK_EVERY == 0 and limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
-            return step
-        _drift(q, v, a, velocity, dt)
+        if not begun:
+            if limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
+                return step
+            _drift(q, v, a, velocity, dt)
         now = time + (step + 1) * dt
-        accelerations(q, velocity, a_new, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
-        _kick(v, a, a_new, dt)
+        forces(q, velocity, force, ramp(now, g0, g1, gt), ramp(now, l0, l1, lt), dt, *model)
+        begun = goes_on(step + 1, steps, limit)
+        _kick(q, v, a, force, inverse_mass, velocity, dt, begun)
     return steps
 
 
