@@ -2,7 +2,7 @@
 
 `python benchmarks/convergence.py OUTPUT.json`. For each friction the load ends below and above the force near which
 a simple path follower stops (29.3 for a friction of 0.2, 62.3 for 1). Dynamics starts from the rest state of the
-path, ramps the load linearly, relaxes, and is finished by statics; all ramps of all frictions run in lock-step.
+path, ramps the load linearly, relaxes, and is finished by statics.
 
 The packing and its path are symmetric. With a friction of 1 and large loads a slow ramp amplifies what rounding adds to
 the antisymmetric part, so the part of the difference that is symmetric is given beside the whole of it.

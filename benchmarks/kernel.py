@@ -23,7 +23,7 @@ from granular_response.solve import Dynamics, Problem, Relaxation, Stop, relax_m
 from granular_response.solve.lockstep import Lanes, Network
 
 #: layers, disks per row, settling steps, timed steps
-SLABS = [(15, 61, 20_000, 400), (30, 121, 5_000, 100), (60, 242, 1500, 25), (100, 1000, 400, 4)]
+SLABS = [(8, 31, 20_000, 1000), (15, 61, 20_000, 400), (30, 121, 5_000, 100), (60, 242, 1500, 25), (100, 1000, 400, 4)]
 FRICTIONS = (0.0, 0.2)
 REPEATS = 25
 TIME_STEP = 4e-4
@@ -135,11 +135,12 @@ def profile(friction: float) -> list[dict]:
 
 
 def falls() -> dict:
-    """Eight frictional slabs from the lattice to rest: one by one, and in lock-step."""
+    """Eight small frictional slabs from the lattice to rest: one by one, and in lock-step."""
+    small = {"packing.layers": 8, "packing.disks_per_row": 31}
 
     def relaxations():
         for k in range(WIDTH):
-            problem = Problem.from_scene(scene(0.1 + 0.1 * k))
+            problem = Problem.from_scene(scene(0.1 + 0.1 * k).updated(small))
             yield Relaxation(Dynamics(problem, problem.bare_state(), "beeman", TIME_STEP), Stop(1e-9))
 
     same: list = []
@@ -150,6 +151,7 @@ def falls() -> dict:
     steps = [state.information["relaxation_steps"] for state in same[0]]
     return {
         "scenes": WIDTH,
+        "disks": len(same[0][0].position),
         "steps_least": min(steps),
         "steps_most": max(steps),
         "seconds_one_by_one": seconds[0],

@@ -53,8 +53,9 @@ app = typer.Typer(
 
 def _loaded() -> None:
     """A command has what it needs: start collecting garbage, but not among what the imports have made."""
-    gc.freeze()
-    gc.enable()
+    if not gc.isenabled():
+        gc.freeze()
+        gc.enable()
 
 
 def _examples(*lines: str) -> str:
@@ -418,3 +419,4 @@ def main() -> None:
         sys.exit(2)
     finally:
         gc.freeze()
+        gc.enable()

@@ -210,37 +210,38 @@ def test_vector_loop_and_single_pairs_agree():
         assert c == pytest.approx(a, abs=1e-11)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-@pytest.mark.parametrize("shift", [1, 3, 7, 8, 9, 40])
+@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL)])
+@pytest.mark.parametrize("shifts", [(1,), (3,), (7, 8), (9, 40), (1, 40, 2)])
 @pytest.mark.parametrize("count", [5, 8, 64, 65, 151])
-def test_a_run_adds_to_each_disk_as_first_and_then_as_second(count, shift, friction):
-    """Bit for bit one pair after the other from the end of the run, however many are taken at once."""
-    rng = np.random.default_rng(count + 1000 * shift)
-    n, start, material, dt = count + shift + 2, 1, Material(mu=friction), 5e-4
+def test_runs_add_to_each_disk_as_first_and_then_as_second(count, shifts, friction, rule):
+    """Bit for bit one pair after the other from the end of each run, however many are taken at once."""
+    rng = np.random.default_rng(count + 1000 * sum(shifts))
+    n, start, slots = count + max(shifts) + 2, 1, count * len(shifts)
+    material, dt, rough = Material(mu=friction), 5e-4, friction > 0
     q, v, f = (rng.normal(0, size, 3 * n) for size in (0.1, 0.1, 1.0))
-    rim, reach = rng.normal(0, 0.1, n), rng.uniform(1.5, 2.5, count)
-    dx, dz, spring = rng.normal(0, 2, count), rng.normal(0, 2, count), rng.normal(0, 1e-3, count)
+    rim, reach = rng.normal(0, 0.1, n), rng.uniform(1.5, 2.5, slots)
+    dx, dz, spring = rng.normal(0, 2, slots), rng.normal(0, 2, slots), rng.normal(0, 1e-3, slots)
     expected, springs = f.copy(), spring.copy()
-    for k in reversed(range(count)):
-        i, j = start + k, start + k + shift
-        moved = dx[k] + (q[i] - q[j]), dz[k] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
-        if friction:
-            px, pz, pt, springs[k] = frictional_pair(
-                *moved, rim[i] + rim[j], reach[k], spring[k], material.law, CUT, dt
-            )
-            expected[2 * n + i] += pt
-            expected[2 * n + j] += pt
-        else:
-            px, pz = frictionless_pair(*moved, reach[k], material.law)
-        expected[i] += px
-        expected[j] -= px
-        expected[n + i] += pz
-        expected[n + j] -= pz
-    runs = np.array([[start, start + shift, count, 0]])
-    rough = friction > 0
+    runs = np.array([[start, start + shift, count, count * r] for r, shift in enumerate(shifts)])
+    for i0, j0, _, s0 in runs:
+        for k in reversed(range(count)):
+            i, j, s = i0 + k, j0 + k, s0 + k
+            moved = dx[s] + (q[i] - q[j]), dz[s] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
+            if rough:
+                px, pz, pt, springs[s] = frictional_pair(
+                    *moved, rim[i] + rim[j], reach[s], spring[s], material.law, rule, dt
+                )  # fmt: skip
+                expected[2 * n + i] += pt
+                expected[2 * n + j] += pt
+            else:
+                px, pz = frictionless_pair(*moved, reach[s], material.law)
+            expected[i] += px
+            expected[j] -= px
+            expected[n + i] += pz
+            expected[n + j] -= pz
     add_pair_forces(
         q, v, rim if rough else None, f, n, runs, dx, dz, reach, spring if rough else None, np.zeros(SCRATCH),
-        material.law, CUT, dt,
+        material.law, rule, dt,
     )  # fmt: skip
     assert np.array_equal(f, expected)
     assert np.array_equal(spring, springs)

@@ -10,9 +10,9 @@ from small_scenes import scene
 
 from granular_response.core import lockstep as kernel
 from granular_response.core.integrators import INTEGRATORS
-from granular_response.core.lanes import WIDTH
+from granular_response.core.lanes import WIDTH, aligned_zeros
 from granular_response.solve import Dynamics, DynamicsError, Problem, Relaxation, Stop, relax_many
-from granular_response.solve.lockstep import Lanes, Network, aligned_zeros
+from granular_response.solve.lockstep import Lanes, Network
 
 #: Changes that leave the network as it is: friction, stiffness, damping, load, radii.
 VARIANTS = [

@@ -26,128 +26,70 @@ _BLOCK = 64
 SCRATCH = 3 * _BLOCK
 
 
-@nb.njit(cache=True, error_model="numpy", inline="always")
-def _frictionless_at(like, i, j, s, n, q, v, dx0, dz0, reach, law):
-    """Forces of the pairs of a run from disks ``i``, ``j`` and slot ``s`` on: of one, or of as many as ``like`` has."""
-    return frictionless_pair(
-        take(dx0, s, like) + (take(q, i, like) - take(q, j, like)),
-        take(dz0, s, like) + (take(q, n + i, like) - take(q, n + j, like)),
-        take(v, i, like) - take(v, j, like),
-        take(v, n + i, like) - take(v, n + j, like),
-        take(reach, s, like),
-        law,
-    )
+@nb.njit(cache=True, error_model="numpy", forceinline=True)
+def _forces_at(like, i, j, s, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt):
+    """Force on the first disk, and its tangential part, of the pair of disks ``i`` and ``j`` in slot ``s``.
 
-
-@nb.njit(cache=True, error_model="numpy", inline="always")
-def _frictional_at(like, i, j, s, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt):
-    """As :func:`_frictionless_at`, and the tangential forces; springs advance."""
+    Or of as many pairs from there on as ``like`` has lanes. Springs advance.
+    """
+    dx = take(dx0, s, like) + (take(q, i, like) - take(q, j, like))
+    dz = take(dz0, s, like) + (take(q, n + i, like) - take(q, n + j, like))
+    du = take(v, i, like) - take(v, j, like)
+    dw = take(v, n + i, like) - take(v, n + j, like)
+    if spring is None:
+        px, pz = frictionless_pair(dx, dz, du, dw, take(reach, s, like), law)
+        return px, pz, like
+    rims = take(rim, i, like) + take(rim, j, like)
     px, pz, pt, new = frictional_pair(
-        take(dx0, s, like) + (take(q, i, like) - take(q, j, like)),
-        take(dz0, s, like) + (take(q, n + i, like) - take(q, n + j, like)),
-        take(v, i, like) - take(v, j, like),
-        take(v, n + i, like) - take(v, n + j, like),
-        take(rim, i, like) + take(rim, j, like),
-        take(reach, s, like),
-        take(spring, s, like),
-        law,
-        rule,
-        dt,
-    )
+        dx, dz, du, dw, rims, take(reach, s, like), take(spring, s, like), law, rule, dt
+    )  # fmt: skip
     put(spring, s, new)
     return px, pz, pt
 
 
-@nb.njit(cache=True, error_model="numpy", inline="always")
-def _add(target, k, value):
-    put(target, k, take(target, k, value) + value)
+@nb.njit(cache=True, error_model="numpy", forceinline=True)
+def _add(f, n, i, px, pz, pt, spring):
+    """Add to the forces on disk ``i``, and the disks after it with lanes."""
+    put(f, i, take(f, i, px) + px)
+    put(f, n + i, take(f, n + i, pz) + pz)
+    if spring is not None:
+        put(f, 2 * n + i, take(f, 2 * n + i, pt) + pt)
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _frictionless_run(i, j, s, count, n, q, v, f, dx0, dz0, reach, scratch, law):
-    """Add the forces of a run of ``count`` pairs from disks ``i``, ``j`` and slot ``s`` on."""
+def _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt):
+    """Add the forces of ``count`` pairs from disks ``i``, ``j`` and slot ``s`` on."""
     k = count
     while k % WIDTH:
         k -= 1
-        px, pz = _frictionless_at(0.0, i + k, j + k, s + k, n, q, v, dx0, dz0, reach, law)
-        _add(f, i + k, px)
-        _add(f, j + k, -px)
-        _add(f, n + i + k, pz)
-        _add(f, n + j + k, -pz)
+        px, pz, pt = _forces_at(0.0, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+        _add(f, n, i + k, px, pz, pt, spring)
+        _add(f, n, j + k, -px, -pz, pt, spring)
     like = spread(0.0)
     if j - i >= WIDTH:
         while k:
             k -= WIDTH
-            px, pz = _frictionless_at(like, i + k, j + k, s + k, n, q, v, dx0, dz0, reach, law)
-            _add(f, i + k, px)
-            _add(f, j + k, -px)
-            _add(f, n + i + k, pz)
-            _add(f, n + j + k, -pz)
+            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+            _add(f, n, i + k, px, pz, pt, spring)
+            _add(f, n, j + k, -px, -pz, pt, spring)
         return
     while k:
+        end = k
         start = max(k - _BLOCK, 0)
-        top = k
         while k > start:
             k -= WIDTH
-            px, pz = _frictionless_at(like, i + k, j + k, s + k, n, q, v, dx0, dz0, reach, law)
+            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+            _add(f, n, i + k, px, pz, pt, spring)
             put(scratch, k - start, px)
-            put(scratch, k - start + _BLOCK, pz)
-            _add(f, i + k, px)
-            _add(f, n + i + k, pz)
-        while top > start:
-            top -= WIDTH
-            _add(f, j + top, -take(scratch, top - start, like))
-            _add(f, n + j + top, -take(scratch, top - start + _BLOCK, like))
-
-
-@nb.njit(cache=True, error_model="numpy")
-def _frictional_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt):
-    """As :func:`_frictionless_run`, with springs."""
-    k = count
-    while k % WIDTH:
-        k -= 1
-        px, pz, pt = _frictional_at(
-            0.0, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
-        )  # fmt: skip
-        _add(f, i + k, px)
-        _add(f, j + k, -px)
-        _add(f, n + i + k, pz)
-        _add(f, n + j + k, -pz)
-        _add(f, 2 * n + i + k, pt)
-        _add(f, 2 * n + j + k, pt)
-    like = spread(0.0)
-    if j - i >= WIDTH:
-        while k:
-            k -= WIDTH
-            px, pz, pt = _frictional_at(
-                like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
-            )  # fmt: skip
-            _add(f, i + k, px)
-            _add(f, j + k, -px)
-            _add(f, n + i + k, pz)
-            _add(f, n + j + k, -pz)
-            _add(f, 2 * n + i + k, pt)
-            _add(f, 2 * n + j + k, pt)
-        return
-    while k:
-        start = max(k - _BLOCK, 0)
-        top = k
-        while k > start:
-            k -= WIDTH
-            px, pz, pt = _frictional_at(
-                like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
-            )  # fmt: skip
-            put(scratch, k - start, px)
-            put(scratch, k - start + _BLOCK, pz)
-            put(scratch, k - start + 2 * _BLOCK, pt)
-            _add(f, i + k, px)
-            _add(f, n + i + k, pz)
-            _add(f, 2 * n + i + k, pt)
-        while top > start:
-            top -= WIDTH
-            _add(f, j + top, -take(scratch, top - start, like))
-            _add(f, n + j + top, -take(scratch, top - start + _BLOCK, like))
-            _add(f, 2 * n + j + top, take(scratch, top - start + 2 * _BLOCK, like))
+            put(scratch, _BLOCK + k - start, pz)
+            if spring is not None:
+                put(scratch, 2 * _BLOCK + k - start, pt)
+        while end > start:
+            end -= WIDTH
+            px = take(scratch, end - start, like)
+            pz = take(scratch, _BLOCK + end - start, like)
+            pt = take(scratch, 2 * _BLOCK + end - start, like)
+            _add(f, n, j + end, -px, -pz, pt, spring)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -163,19 +105,9 @@ def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, law, ru
             if spring is not None:
                 spring[k] = 0.0
             continue
-        du = v[i] - v[j]
-        dw = v[n + i] - v[n + j]
-        if spring is None:
-            px, pz = frictionless_pair(dx, dz, du, dw, reach[k], law)
-        else:
-            px, pz, force, new = frictional_pair(dx, dz, du, dw, rim[i] + rim[j], reach[k], spring[k], law, rule, dt)
-            spring[k] = new
-            f[2 * n + i] += force
-            f[2 * n + j] += force
-        f[i] += px
-        f[j] -= px
-        f[n + i] += pz
-        f[n + j] -= pz
+        px, pz, pt = _forces_at(0.0, i, j, k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+        _add(f, n, i, px, pz, pt, spring)
+        _add(f, n, j, -px, -pz, pt, spring)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -201,10 +133,7 @@ def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, scratch, law
         if count == 1:
             _add_single_pairs(q, v, rim, f, n, runs[r:], dx0, dz0, reach, spring, law, rule, dt)
             break
-        if spring is None:
-            _frictionless_run(i, j, s, count, n, q, v, f, dx0, dz0, reach, scratch, law)
-        else:
-            _frictional_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt)
+        _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt)
 
 
 @nb.njit(cache=True, error_model="numpy")

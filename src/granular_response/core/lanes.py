@@ -28,7 +28,7 @@ WIDTH = 8
 
 
 def aligned_zeros(*shape: int) -> NDArray[np.float64]:
-    """Zeros that begin at a cache line, so that no vector lies across two of them."""
+    """Zeros that begin at a cache line."""
     size = int(np.prod(shape))
     room = np.zeros(size + 8)
     skip = -(room.ctypes.data // 8) % 8

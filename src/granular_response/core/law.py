@@ -1,9 +1,10 @@
-"""The contact law of Sec. III.A for one contact: scalars in, scalars out.
+"""The contact law of Sec. III.A for one contact.
 
 The law's constants travel as one tuple
 ``(normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force)``.
 ``least_force`` bounds the normal force of a closed contact from below: ``-inf`` lets the dashpot pull for a
-moment, as eq. (2) says; ``0`` cuts that off. A scalar is a float, or the ``Lanes`` of several scenes.
+moment, as eq. (2) says; ``0`` cuts that off. An argument is a float, or the ``Lanes`` of several contacts or
+scenes.
 """
 
 from __future__ import annotations

@@ -217,15 +217,12 @@ class Dynamics:
         count_closed(self.touching() if touching is None else touching, c.first, c.second, c.wall_disk, count)
         return count
 
-    def kinetic_energies(self) -> FloatArray:
-        """(dof,) kinetic energy of each degree of freedom."""
-        return 0.5 * self.v**2 / self._inverse_mass
-
-    def kinetic_energy(self, *, bearing_only: bool = False) -> float:
-        """Kinetic energy per disk; optionally of the disks with two contacts or more."""
-        energies = self.kinetic_energies()
+    def kinetic_energy(self, *, bearing_only: bool = False, count: NDArray[np.int64] | None = None) -> float:
+        """Kinetic energy per disk; optionally of the disks with two contacts or more (``count``, if it is known)."""
+        energies = 0.5 * self.v**2 / self._inverse_mass
         if bearing_only:
-            energies = energies.reshape(self.problem.freedoms, -1)[:, self.contact_count() >= 2]
+            count = self.contact_count() if count is None else count
+            energies = energies.reshape(self.problem.freedoms, -1)[:, count >= 2]
         return float(energies.sum()) / self.problem.n
 
     def loose_disks_roll(self, count: NDArray[np.int64]) -> bool:
@@ -308,9 +305,7 @@ class Relaxation:
             When the motion has blown up, or a load carries a disk off.
         """
         dynamics, stop = self.dynamics, self.stop
-        energies = dynamics.kinetic_energies()
-        n = dynamics.problem.n
-        energy = float(energies.sum()) / n
+        energy = dynamics.kinetic_energy()
         if not energy < self.scale:
             raise DynamicsError(dynamics._blow_up())
         if self.progress is not None:
@@ -324,7 +319,7 @@ class Relaxation:
         if (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0:
             self.rolling = dynamics.loose_disks_roll(count)
         if energy > stop.kinetic_energy and (energy < 1e3 * stop.kinetic_energy or self.rolling):
-            energy = float(energies.reshape(-1, n)[:, count >= 2].sum()) / n
+            energy = dynamics.kinetic_energy(bearing_only=True, count=count)
         self.envelope.append(energy)
         if energy < 1e3 * stop.kinetic_energy:
             same = self.network is not None and np.array_equal(touching, self.network)

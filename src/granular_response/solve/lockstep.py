@@ -184,7 +184,7 @@ class Lanes:
 
 
 def relax_many(relaxations: Iterable[Relaxation]) -> list[State]:
-    """Run relaxations to their ends, together where they share a network.
+    """Run relaxations to their ends, together where they share a network and that pays.
 
     Returns
     -------

@@ -29,7 +29,7 @@ def _predict(q, v, a, a_before, seen, dt):
         q[k], seen[k] = predict(q[k], v[k], a[k], a_before[k], dt)
 
 
-@nb.njit(cache=True, error_model="numpy", inline="always")
+@nb.njit(cache=True, error_model="numpy", forceinline=True)
 def _correct_at(k, like, q, v, a, a_before, force, inverse_mass, seen, dt, predicts):
     a_new = take(force, k, like) * take(inverse_mass, k, like)
     a_now = take(a, k, like)

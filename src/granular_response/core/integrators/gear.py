@@ -41,7 +41,7 @@ def _predict(q, v, a, b, c, dt):
         q[k], v[k], a[k], b[k] = predict(q[k], v[k], a[k], b[k], c[k], dt)
 
 
-@nb.njit(cache=True, error_model="numpy", inline="always")
+@nb.njit(cache=True, error_model="numpy", forceinline=True)
 def _correct_at(k, like, q, v, a, b, c, force, inverse_mass, dt, predicts):
     a_new = take(force, k, like) * take(inverse_mass, k, like)
     x, v_new, b_new, c_new = correct(

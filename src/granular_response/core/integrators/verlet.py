@@ -28,7 +28,7 @@ def _drift(q, v, a, seen, dt):
         q[k], seen[k] = drift(q[k], v[k], a[k], dt)
 
 
-@nb.njit(cache=True, error_model="numpy", inline="always")
+@nb.njit(cache=True, error_model="numpy", forceinline=True)
 def _kick_at(k, like, q, v, a, force, inverse_mass, seen, dt, drifts):
     a_new = take(force, k, like) * take(inverse_mass, k, like)
     v_new = kick(take(v, k, like), take(a, k, like), a_new, dt)
