@@ -28,6 +28,8 @@ SPRINGS_ALONE = 1e-6
 #: Where factorisations are dear, in packings of more disks than this, a saddle is left as soon as one is near: when the
 #: stiffness is not positive though little damped and no force out of balance exceeds that many disk weights.
 LARGE, NEAR_SADDLE = 20_000, 0.1
+#: How often a saddle is left before the search is given up.
+MOST_ESCAPES = 20
 #: First length along an unstable direction, times the normal stiffness.
 SHORTEST_ESCAPE = 1e-3
 #: Factors of the damping after a poor and after a good step.
@@ -57,95 +59,132 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
     """
     if problem.rotations:
         raise ValueError("method minimise needs a scene without friction; use path or dynamics")
-    system = StaticSystem(problem, start)
-    external = external_force(problem, load_factor)
-    k = problem.pair_law[0]
-    known = system.start(start)
-    q = known.q.copy()
-    trial = system.trial(known, q)
-    value = energy(system, trial, external)
-    damping = 1e-3 * k
-    iterations = escapes = 0
-    while iterations < MAXIMUM_ITERATIONS:
-        r = trial.contact_force + external
-        size = float(np.abs(r).max())
-        tolerance = attainable(system, q)
-        settled = size < 0.01 * TOLERANCE or (size < tolerance and damping == 0.0)
-        if (settled or iterations % LOOK_EVERY == LOOK_EVERY - 1) and system.meets_unlisted(q):
+    descent = _Descent(problem, start, load_factor)
+    while not descent.at_minimum():
+        if descent.iterations >= MAXIMUM_ITERATIONS:
+            raise EquilibriumError(f"no minimum of the energy within {MAXIMUM_ITERATIONS} iterations")
+        descent.go_on()
+    state = descent.system.state(
+        descent.trial,
+        load_factor,
+        method="minimise",
+        newton_iterations=descent.iterations,
+        escapes=descent.escapes,
+    )
+    state.information["certificate"] = certify(problem, state, modes=0)
+    return state
+
+
+class _Descent:
+    """A configuration on its way down, and how much its steps are damped."""
+
+    def __init__(self, problem: Problem, start: State, load_factor: float) -> None:
+        self.problem = problem
+        self.stiffness = problem.pair_law[0]
+        self.system = StaticSystem(problem, start)
+        self.external = external_force(problem, load_factor)
+        self.known = self.system.start(start)
+        self.damping = 1e-3 * self.stiffness
+        self.iterations = self.escapes = 0
+        self._move(self.known.q.copy(), self.system.trial(self.known, self.known.q))
+
+    def _move(self, q: FloatArray, trial: Trial) -> None:
+        self.q, self.trial = q, trial
+        self.value = energy(self.system, trial, self.external)
+        self.unbalanced = trial.contact_force + self.external
+        self.size = float(np.abs(self.unbalanced).max())
+        self.tolerance = attainable(self.system, q)
+
+    @property
+    def _large(self) -> bool:
+        return self.problem.n > LARGE
+
+    def _settled(self) -> bool:
+        return self.size < 0.01 * TOLERANCE or (self.size < self.tolerance and self.damping == 0.0)
+
+    def at_minimum(self) -> bool:
+        """Whether nothing is out of balance and the stiffness is positive; looks for rearrangements now and then."""
+        settled = self._settled()
+        if (settled or self.iterations % LOOK_EVERY == LOOK_EVERY - 1) and self.system.meets_unlisted(self.q):
             raise Rearranged("the packing rearranges on its way to a minimum of the energy; use method dynamics")
-        if settled:
-            modes = system.negative_modes(trial)
-            if modes == 0:
-                break
-            if escapes == 20:
-                raise EquilibriumError("the minimisation keeps returning to a saddle of the energy")
-            escapes += 1
-            if problem.n > LARGE:
-                q, trial = _down_from_saddle(system, known, external, q, trial)
-            else:
-                q = q + 1e-4 * system.unstable_direction(trial)
-                trial = system.trial(known, q)
-            value = energy(system, trial, external)
-            damping = 1e-4 * k
-            iterations += 1
-            continue
-        lu = system.definite_factor(trial, damping + REGULARISATION * k)
-        iterations += 1
-        if lu is None and problem.n > LARGE and size < NEAR_SADDLE and damping < 1e-7 * k and escapes < 20:
-            escapes += 1
-            q, trial = _down_from_saddle(system, known, external, q, trial)
-            value = energy(system, trial, external)
-            damping = 1e-7 * k
-            continue
-        if lu is None:
-            lu = system.definite_factor(system.without_prestress(trial), max(damping, SPRINGS_ALONE * k))
-        if lu is None:
-            damping = max(MORE * damping, 1e-8 * k)
-            continue
-        step = system.deinterleave(lu.solve(system.interleave(r)))
+        return settled and self.system.negative_modes(self.trial) == 0
+
+    def go_on(self) -> None:
+        """One iteration: away from a saddle, or a damped step, or more damping where a step would be no good."""
+        if self._settled():
+            self._leave_saddle()
+            return
+        factor = self.system.definite_factor(self.trial, self.damping + REGULARISATION * self.stiffness)
+        self.iterations += 1
+        if factor is None:
+            near = self.size < NEAR_SADDLE and self.damping < 1e-7 * self.stiffness
+            if self._large and near and self.escapes < MOST_ESCAPES:
+                self.escapes += 1
+                self._move(*_down_from_saddle(self.system, self.known, self.external, self.q, self.trial))
+                self.damping = 1e-7 * self.stiffness
+                return
+            springs = self.system.without_prestress(self.trial)
+            factor = self.system.definite_factor(springs, max(self.damping, SPRINGS_ALONE * self.stiffness))
+        if factor is None:
+            self._damp(MORE)
+            return
+        step = self.system.deinterleave(factor.solve(self.system.interleave(self.unbalanced)))
         length = float(np.abs(step).max())
         if length > LONGEST_STEP:
-            if not np.isfinite(length) or damping > 1e6 * k:
+            if not np.isfinite(length) or self.damping > 1e6 * self.stiffness:
                 raise EquilibriumError("the minimisation found no minimum: part of the packing falls")
-            damping = max(4.0 * damping, 1e-8 * k)
-            continue
-        new = system.trial(known, q + step)
-        new_value = energy(system, new, external)
-        predicted = 0.5 * float(step @ r) + 0.5 * damping * float(step @ step)
-        gained = value - new_value
-        new_size = float(np.abs(new.contact_force + external).max())
-        rounding = 1e-11 * (abs(value) + 1.0)
-        if predicted <= rounding and problem.n > LARGE:
+            self._damp(4.0)
+            return
+        self._take(step)
+
+    def _leave_saddle(self) -> None:
+        if self.escapes == MOST_ESCAPES:
+            raise EquilibriumError("the minimisation keeps returning to a saddle of the energy")
+        self.escapes += 1
+        self.iterations += 1
+        if self._large:
+            self._move(*_down_from_saddle(self.system, self.known, self.external, self.q, self.trial))
+        else:
+            q = self.q + 1e-4 * self.system.unstable_direction(self.trial)
+            self._move(q, self.system.trial(self.known, q))
+        self.damping = 1e-4 * self.stiffness
+
+    def _damp(self, factor: float) -> None:
+        self.damping = max(factor * self.damping, 1e-8 * self.stiffness)
+
+    def _take(self, step: FloatArray) -> None:
+        """Take a step, or the part of it that is good for something, and set the damping by how good it was."""
+        slope = float(step @ self.unbalanced)
+        new = self.system.trial(self.known, self.q + step)
+        new_value = energy(self.system, new, self.external)
+        predicted = 0.5 * slope + 0.5 * self.damping * float(step @ step)
+        new_size = float(np.abs(new.contact_force + self.external).max())
+        rounding = 1e-11 * (abs(self.value) + 1.0)
+        if predicted > rounding:
+            ratio = (self.value - new_value) / predicted
+            if ratio < POOR:
+                step, new = _shorter(self.system, self.known, self.external, self.q, step, slope, new)
+                if energy(self.system, new, self.external) > self.value:
+                    self._damp(MORE)
+                    return
+        elif self._large:
             # Energies have lost their digits, slopes have not. Contacts that open or close may raise the residual for a
             # moment; to stop at each of them would take many steps.
             ratio = 1.0
-            if new_size > 10.0 * size and new_size > tolerance:
-                step, new = _shorter(system, known, external, q, step, float(step @ r), new)
-                new_value = energy(system, new, external)
+            if new_size > 10.0 * self.size and new_size > self.tolerance:
+                length = float(np.abs(step).max())
+                step, new = _shorter(self.system, self.known, self.external, self.q, step, slope, new)
                 ratio = float(np.abs(step).max()) / length
-        elif predicted > rounding:
-            ratio = gained / predicted
         else:
-            ratio = 1.0 if new_size < 2.0 * size or new_size < tolerance else 0.0
-        if ratio < POOR and predicted > rounding:
-            step, new = _shorter(system, known, external, q, step, float(step @ r), new)
-            new_value = energy(system, new, external)
-            if new_value > value:
-                damping = max(MORE * damping, 1e-8 * k)
-                continue
-        elif ratio < POOR:
-            damping = max(MORE * damping, 1e-8 * k)
-            continue
-        q, trial, value = q + step, new, new_value
+            ratio = 1.0 if new_size < 2.0 * self.size or new_size < self.tolerance else 0.0
+        if ratio < POOR and predicted <= rounding:
+            self._damp(MORE)
+            return
+        self._move(self.q + step, new)
         if ratio > 0.5:
-            damping = LESS * damping if damping > 1e-9 * k else 0.0
+            self.damping = LESS * self.damping if self.damping > 1e-9 * self.stiffness else 0.0
         elif ratio < POOR:
-            damping = max(MORE * damping, 1e-8 * k)
-    else:
-        raise EquilibriumError(f"no minimum of the energy within {MAXIMUM_ITERATIONS} iterations")
-    state = system.state(trial, load_factor, method="minimise", newton_iterations=iterations, escapes=escapes)
-    state.information["certificate"] = certify(problem, state, modes=0)
-    return state
+            self._damp(MORE)
 
 
 def _shorter(system: StaticSystem, known, external, q, step, slope, full: Trial) -> tuple[FloatArray, Trial]:
