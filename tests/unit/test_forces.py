@@ -214,31 +214,46 @@ def test_vector_loop_and_single_pairs_agree():
 @pytest.mark.parametrize("shifts", [(1,), (3,), (7, 8), (9, 40), (1, 40, 2)])
 @pytest.mark.parametrize("count", [5, 8, 64, 65, 151])
 def test_runs_add_to_each_disk_as_first_and_then_as_second(count, shifts, friction, rule):
-    """Bit for bit one pair after the other from the end of each run, however many are taken at once."""
-    rng = np.random.default_rng(count + 1000 * sum(shifts))
-    n, start, slots = count + max(shifts) + 2, 1, count * len(shifts)
+    """From the end of each run, however many are taken at once."""
+    start = 1
+    runs = np.array([[start, start + shift, count, count * r] for r, shift in enumerate(shifts)])
+    order = [(i + k, j + k, s + k) for i, j, _, s in runs for k in reversed(range(count))]
+    agrees_to_the_bit(runs, order, start + count + max(shifts) + 1, friction, rule)
+
+
+@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL)])
+@pytest.mark.parametrize("count", [3, 8, 29])
+def test_single_pairs_add_in_their_order(count, friction, rule):
+    rng = np.random.default_rng(count)
+    pairs = sorted({tuple(sorted(rng.choice(9, 2, replace=False).tolist())) for _ in range(4 * count)})[:count]
+    order = [(i, j, s) for s, (i, j) in enumerate(pairs)]
+    runs = np.array([[i, j, 1, s] for i, j, s in order])
+    agrees_to_the_bit(runs, order, 9, friction, rule)
+
+
+def agrees_to_the_bit(runs, order, n, friction, rule):
+    """The kernel against one pair after the other, ``order`` of first disk, second disk and slot."""
+    slots = len(order)
+    rng = np.random.default_rng(slots + n)
     material, dt, rough = Material(mu=friction), 5e-4, friction > 0
     q, v, f = (rng.normal(0, size, 3 * n) for size in (0.1, 0.1, 1.0))
     rim, reach = rng.normal(0, 0.1, n), rng.uniform(1.5, 2.5, slots)
     dx, dz, spring = rng.normal(0, 2, slots), rng.normal(0, 2, slots), rng.normal(0, 1e-3, slots)
     expected, springs = f.copy(), spring.copy()
-    runs = np.array([[start, start + shift, count, count * r] for r, shift in enumerate(shifts)])
-    for i0, j0, _, s0 in runs:
-        for k in reversed(range(count)):
-            i, j, s = i0 + k, j0 + k, s0 + k
-            moved = dx[s] + (q[i] - q[j]), dz[s] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
-            if rough:
-                px, pz, pt, springs[s] = frictional_pair(
-                    *moved, rim[i] + rim[j], reach[s], spring[s], material.law, rule, dt
-                )  # fmt: skip
-                expected[2 * n + i] += pt
-                expected[2 * n + j] += pt
-            else:
-                px, pz = frictionless_pair(*moved, reach[s], material.law)
-            expected[i] += px
-            expected[j] -= px
-            expected[n + i] += pz
-            expected[n + j] -= pz
+    for i, j, s in order:
+        moved = dx[s] + (q[i] - q[j]), dz[s] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
+        if rough:
+            px, pz, pt, springs[s] = frictional_pair(
+                *moved, rim[i] + rim[j], reach[s], spring[s], material.law, rule, dt
+            )  # fmt: skip
+            expected[2 * n + i] += pt
+            expected[2 * n + j] += pt
+        else:
+            px, pz = frictionless_pair(*moved, reach[s], material.law)
+        expected[i] += px
+        expected[j] -= px
+        expected[n + i] += pz
+        expected[n + j] -= pz
     add_pair_forces(
         q, v, rim if rough else None, f, n, runs, dx, dz, reach, spring if rough else None, np.zeros(SCRATCH),
         material.law, rule, dt,

@@ -5,7 +5,7 @@ the pairs ``(i + k, j + k)`` for ``k < count``. On a lattice numbered row by row
 runs, one for each lattice direction, and the loop over a run reads and writes contiguous memory, so it takes
 several pairs at once (``core.lanes``). A run may hold pairs that never touch (the end of a row and the start of the
 next): they cost a little arithmetic and no branch. Pairs that fit no run are runs of count one at the end of the
-table; they are looped over apart, and most of the work is left out for those that do not touch.
+table; what their disks do is gathered from all over the arrays, several pairs at a time too.
 
 Results do not depend on how many pairs are taken at once: a run is gone through from its end, so that a disk gets
 the force of the pair it is first in before that of the pair it is second in, also when one vector holds both.
@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numba as nb
 
-from .lanes import WIDTH, put, spread, take
+from .lanes import WIDTH, gather, put, spread, take
 from .law import LITERAL, normal_force, tangential_cut, tangential_literal
 from .pair import frictional_pair, frictionless_pair
 
@@ -93,19 +93,47 @@ def _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, 
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, law, rule, dt):
-    """Add the forces of the runs of count one, ``singles`` (s, 4); other arguments as in :func:`add_pair_forces`."""
-    for r in range(singles.shape[0]):
+def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, scratch, law, rule, dt):
+    """Add the forces of the runs of count one, ``singles`` (s, 4), several at once.
+
+    Their slots follow one another. Other arguments as in :func:`add_pair_forces`.
+    """
+    count = singles.shape[0]
+    whole = count - count % WIDTH
+    like = spread(0.0)
+    for r in range(0, whole, WIDTH):
+        s = singles[r, 3]
+        dx = take(dx0, s, like) + (gather(q, 0, singles, r, 0) - gather(q, 0, singles, r, 1))
+        dz = take(dz0, s, like) + (gather(q, n, singles, r, 0) - gather(q, n, singles, r, 1))
+        du = gather(v, 0, singles, r, 0) - gather(v, 0, singles, r, 1)
+        dw = gather(v, n, singles, r, 0) - gather(v, n, singles, r, 1)
+        if spring is None:
+            px, pz = frictionless_pair(dx, dz, du, dw, take(reach, s, like), law)
+        else:
+            rims = gather(rim, 0, singles, r, 0) + gather(rim, 0, singles, r, 1)
+            px, pz, pt, new = frictional_pair(
+                dx, dz, du, dw, rims, take(reach, s, like), take(spring, s, like), law, rule, dt
+            )  # fmt: skip
+            put(spring, s, new)
+            put(scratch, 2 * WIDTH, pt)
+        put(scratch, 0, px)
+        put(scratch, WIDTH, pz)
+        for lane in range(WIDTH):
+            i = singles[r + lane, 0]
+            j = singles[r + lane, 1]
+            f[i] += scratch[lane]
+            f[j] -= scratch[lane]
+            f[n + i] += scratch[WIDTH + lane]
+            f[n + j] -= scratch[WIDTH + lane]
+            if spring is not None:
+                f[2 * n + i] += scratch[2 * WIDTH + lane]
+                f[2 * n + j] += scratch[2 * WIDTH + lane]
+    for r in range(whole, count):
         i = singles[r, 0]
         j = singles[r, 1]
-        k = singles[r, 3]
-        dx = dx0[k] + (q[i] - q[j])
-        dz = dz0[k] + (q[n + i] - q[n + j])
-        if dx * dx + dz * dz >= reach[k] * reach[k]:
-            if spring is not None:
-                spring[k] = 0.0
-            continue
-        px, pz, pt = _forces_at(0.0, i, j, k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+        px, pz, pt = _forces_at(
+            0.0, i, j, singles[r, 3], n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
+        )  # fmt: skip
         _add(f, n, i, px, pz, pt, spring)
         _add(f, n, j, -px, -pz, pt, spring)
 
@@ -131,7 +159,7 @@ def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, scratch, law
         count = runs[r, 2]
         s = runs[r, 3]
         if count == 1:
-            _add_single_pairs(q, v, rim, f, n, runs[r:], dx0, dz0, reach, spring, law, rule, dt)
+            _add_single_pairs(q, v, rim, f, n, runs[r:], dx0, dz0, reach, spring, scratch, law, rule, dt)
             break
         _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt)
 

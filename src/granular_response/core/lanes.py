@@ -215,6 +215,27 @@ def put(typing, array, k, value):
 
 
 @intrinsic
+def gather(typing, array, start, table, row, column):
+    """Lanes ``array[start + table[row : row + WIDTH, column]]``; nothing is checked."""
+    if not _is_line(array) or not (isinstance(table, types.Array) and table.ndim == 2 and table.layout == "C"):
+        return None
+
+    def generate(context, builder, sig, args):
+        array, start, table, row, column = args
+        data = builder.gep(context.make_array(sig.args[0])(context, builder, array).data, [start])
+        indices = context.make_array(sig.args[2])(context, builder, table)
+        columns = builder.extract_value(indices.shape, 1)
+        result = ir.Constant(_DOUBLES, ir.Undefined)
+        for lane in range(WIDTH):
+            place = builder.add(builder.mul(builder.add(row, row.type(lane)), columns), column)
+            index = builder.load(builder.gep(indices.data, [place]))
+            result = builder.insert_element(result, builder.load(builder.gep(data, [index])), ir.IntType(32)(lane))
+        return result
+
+    return LANES(array, types.intp, table, types.intp, types.intp), generate
+
+
+@intrinsic
 def spread(typing, value):
     """Lanes that all hold ``value``."""
     return LANES(types.float64), lambda context, builder, sig, args: _spread(builder, args[0])
@@ -299,6 +320,9 @@ if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
             array[k : k + WIDTH] = value
         else:
             array[k] = value
+
+    def gather(array, start, table, row, column):
+        return array[start + table[row : row + WIDTH, column]]
 
     def load(array, row):
         return array[row].copy()
