@@ -1,5 +1,6 @@
 """The command line as a user has it: a process of its own, its output, its exit code."""
 
+import gc
 import io
 import os
 import pty
@@ -366,6 +367,15 @@ def test_an_interrupted_command_ends_quietly(tmp_path):
     assert run.returncode not in (0, None)
     assert b"Traceback" not in output
     assert not (tmp_path / "result.nc").exists()
+
+
+def test_a_command_leaves_garbage_collection_on(monkeypatch, capsys):
+    """For those who call it from Python: it is off only while a command loads what it needs."""
+    monkeypatch.setattr(sys, "argv", ["granular-response", "version"])
+    with pytest.raises(SystemExit):
+        cli.main()
+    gc.unfreeze()
+    assert gc.isenabled() and "granular-response" in capsys.readouterr().out
 
 
 def test_every_command_is_listed():
