@@ -17,8 +17,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from pictures import Metrics, name, pick
 from timing import write
 
-from granular_response import atomic, generated
-from granular_response.figures import style
+from granular_response.plot import style
+from granular_response.store import atomic, generated
 
 HERE = Path(__file__).resolve().parent
 

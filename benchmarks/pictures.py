@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from granular_response.figures import style
+from granular_response.plot import style
 
 Metrics = dict[str, Any]
 Rows = list[dict[str, Any]]

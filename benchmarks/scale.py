@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 from timing import write
 
-from granular_response import store
 from granular_response.scene import Scene
+from granular_response.store import files as store
 
 #: layers and disks in the bottom row
 SLABS = [(15, 61), (30, 121), (60, 241), (120, 481), (160, 641), (240, 961), (500, 2001)]

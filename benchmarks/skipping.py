@@ -13,7 +13,7 @@ import numpy as np
 from timing import interleaved, scene, write
 
 from granular_response.solve import Dynamics, Problem, Stop, certify, finish, relax, rest_state
-from granular_response.solve.problem import wall_gap, wall_normals
+from granular_response.state import wall_normals
 
 TIME_STEP = 4e-4
 STEPS, REPEATS = 400, 25
@@ -31,7 +31,7 @@ def all_walls(dynamics: Dynamics) -> None:
     c, problem = dynamics.candidates, dynamics.problem
     n = problem.n
     disk, wall = np.tile(np.arange(n), 3), np.repeat(np.arange(3, dtype=np.int8), n)
-    gap = wall_gap(c.reference[disk], problem.packing.radius[disk], wall, problem.packing.width)
+    gap = problem.packing.box.wall_gap(c.reference[disk], problem.packing.radius[disk], wall)
     dynamics.candidates = replace(c, wall_disk=disk, wall=wall, wall_gap=gap)
     model = list(dynamics.model)
     dynamics.wall_normal = wall_normals(wall)

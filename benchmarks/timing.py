@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from granular_response import atomic
 from granular_response.scene import Scene
 from granular_response.solve import Problem
+from granular_response.store import atomic
 
 
 def scene(friction: float, force: float | None = None, **protocol: Any) -> Scene:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from timing import write
 
-from granular_response.core.integrators import INTEGRATORS
+from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Dynamics, Problem
 

@@ -13,10 +13,10 @@ import numpy as np
 
 from granular_response.observe.floor import smoothed_response
 from granular_response.observe.network import HORIZONTAL, bulk_disks, coordination_number, lattice_direction
-from granular_response.result import to_dataset
 from granular_response.scene import Scene
 from granular_response.solve import solve_scene
-from granular_response.sweep import map_tasks
+from granular_response.store.result import to_dataset
+from granular_response.sweep.sweep import map_tasks
 
 STARTS = (2.0, "touching-largest")
 FORCE = 15.0

@@ -4,7 +4,7 @@ import os
 
 from hypothesis import settings
 
-from granular_response import floating_point
+from granular_response.machine import floating_point
 
 floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import free_disks
 
-from granular_response.core.integrators import INTEGRATORS
+from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.solve import Dynamics
 
 STIFFNESS = 6000.0

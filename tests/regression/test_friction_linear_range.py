@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from granular_response import store
-from granular_response.figures import friction_linear_range as figures
-from granular_response.figures import style
-from granular_response.solve.state import SLIDING
-from granular_response.studies import friction_linear_range as study
+from granular_response.paper.groups.friction_linear_range import draw as figures
+from granular_response.paper.groups.friction_linear_range import simulate as study
+from granular_response.plot import style
+from granular_response.state import SLIDING
+from granular_response.store import files as store
 
 PARAMETERS = {
     "method": "auto",

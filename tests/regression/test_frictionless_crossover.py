@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from granular_response import store
-from granular_response.figures import frictionless_crossover as figures
-from granular_response.figures import style
-from granular_response.studies import frictionless_crossover as study
+from granular_response.paper.groups.frictionless_crossover import draw as figures
+from granular_response.paper.groups.frictionless_crossover import simulate as study
+from granular_response.plot import style
+from granular_response.store import files as store
 
 PARAMETERS = {
     "method": "auto",

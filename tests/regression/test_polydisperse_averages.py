@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from granular_response import store
-from granular_response.figures import polydisperse_averages as figures
-from granular_response.figures import style
-from granular_response.studies import polydisperse_averages as study
+from granular_response.paper.groups.polydisperse_averages import draw as figures
+from granular_response.paper.groups.polydisperse_averages import simulate as study
+from granular_response.plot import style
+from granular_response.store import files as store
 
 PARAMETERS = {
     "method": "auto",

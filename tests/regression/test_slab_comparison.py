@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from granular_response import store
-from granular_response.figures import slab_comparison as figures
-from granular_response.figures import style
-from granular_response.studies import slab_comparison as study
+from granular_response.paper.groups.slab_comparison import draw as figures
+from granular_response.paper.groups.slab_comparison import simulate as study
+from granular_response.plot import style
+from granular_response.store import files as store
 
 
 def case(friction, floor, layers, gravity="at-once"):

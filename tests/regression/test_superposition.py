@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from granular_response import store
-from granular_response.figures import style
-from granular_response.figures import superposition as figures
+from granular_response.paper.groups.superposition import draw as figures
+from granular_response.paper.groups.superposition import simulate as study
+from granular_response.plot import style
 from granular_response.scene import Scene
-from granular_response.studies import superposition as study
+from granular_response.store import files as store
 
 SCENE = {
     "packing.layers": 6,

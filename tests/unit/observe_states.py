@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from granular_response.solve.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING, Contacts, State
+from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING, Box, Contacts, State
 
 ROW = np.sqrt(3.0)
 
@@ -32,7 +32,7 @@ def contacts(
     )
 
 
-def state(position: np.ndarray, pairs: Contacts, walls: Contacts | None = None) -> State:
+def state(position: np.ndarray, pairs: Contacts, walls: Contacts | None = None, width: float = 4.0) -> State:
     n = len(position)
     return State(
         position=np.asarray(position, dtype=float),
@@ -41,6 +41,7 @@ def state(position: np.ndarray, pairs: Contacts, walls: Contacts | None = None) 
         angular_velocity=np.zeros(n),
         pairs=pairs,
         walls=contacts([]) if walls is None else walls,
+        box=Box(width),
     )
 
 
@@ -57,7 +58,7 @@ def slab(layers: int, long_row: int) -> State:
     walls = [(i, FLOOR) for i in range(n) if centre[i, 1] < 1.1]
     walls += [(i, LEFT_WALL) for i in range(n) if centre[i, 0] < 1.1]
     walls += [(i, RIGHT_WALL) for i in range(n) if centre[i, 0] > 2.0 * long_row - 1.1]
-    return state(centre, contacts(links), contacts(walls))
+    return state(centre, contacts(links), contacts(walls), 2.0 * long_row)
 
 
 def with_pairs(source: State, chosen: np.ndarray, **values: float) -> State:

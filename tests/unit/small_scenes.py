@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, State
+from granular_response.solve import Problem
+from granular_response.state import State
 
 
 def scene(layers=4, disks_per_row=7, **changes) -> Scene:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
+from granular_response.paper.trials.random_scenes import check, contradiction, rounding_of
 from granular_response.solve import Solution, solve_scene
-from granular_response.solve.state import OPEN, SLIDING, Contacts
-from granular_response.studies.trials.random_scenes import check, contradiction, rounding_of
+from granular_response.state import OPEN, SLIDING, Contacts
 
 
 @pytest.fixture(scope="module")

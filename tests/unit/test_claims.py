@@ -9,9 +9,11 @@ import pytest
 import xarray as xr
 import yaml
 
-from granular_response import claims, generated, store
-from granular_response.claims.claim import Bracket, Condition, Data, NotMeasured, at, sampled_event, verdict_of
-from granular_response.studies import theory
+from granular_response.paper import claims
+from granular_response.paper.claims.claim import Bracket, Condition, Data, NotMeasured, at, sampled_event, verdict_of
+from granular_response.paper.groups.theory import simulate as theory
+from granular_response.store import files as store
+from granular_response.store import generated
 
 ROOT = Path(__file__).parents[2]
 IDS = [

@@ -19,9 +19,14 @@ import xarray as xr
 import yaml
 from rich.console import Console
 
-from granular_response import __version__, cli, floating_point, pipeline, store, terminal
-from granular_response.pipeline import drawing, simulation
+from granular_response import __version__
+from granular_response.cli import main as cli
+from granular_response.cli import terminal
+from granular_response.machine import floating_point
+from granular_response.paper import pipeline
+from granular_response.paper.pipeline import drawing, simulation
 from granular_response.scene import SceneError
+from granular_response.store import files as store
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = ["run", "continue", "simulate", "draw", "show", "keys", "export", "claims", "report", "cite", "version"]
@@ -246,7 +251,7 @@ class Study:
 
     @staticmethod
     def simulate(parameters, *, workers=None, progress=None):
-        from granular_response.sweep import map_tasks
+        from granular_response.sweep.sweep import map_tasks
 
         squares = map_tasks(square, range(parameters["count"]), workers=workers, progress=progress)
         return {"squares": xr.Dataset({"square": ("item", np.array(squares), LABEL)})}
@@ -385,7 +390,7 @@ def test_every_command_is_listed():
 
 
 def test_a_shell_takes_the_floating_point_choices():
-    code = f'eval "$({sys.executable} -m granular_response.floating_point)"; env'
+    code = f'eval "$({sys.executable} -m granular_response.machine.floating_point)"; env'
     environment = {k: v for k, v in os.environ.items() if k not in floating_point.variables()}
     done = subprocess.run(["sh", "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert {f"{name}={value}" for name, value in floating_point.variables().items()} <= set(done.stdout.splitlines())

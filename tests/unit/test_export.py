@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from granular_response import store
-from granular_response.export import ExportError, contact_force_sums, export
-from granular_response.result import to_dataset
 from granular_response.scene import Scene
 from granular_response.solve import solve_scene
+from granular_response.store import files as store
+from granular_response.store.export import ExportError, contact_force_sums, export
+from granular_response.store.result import to_dataset
 
 FORCE = (0.5, -1.0)
 SCENE = {

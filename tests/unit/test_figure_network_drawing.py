@@ -6,9 +6,9 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from granular_response.figures import network_drawing as nd
-from granular_response.figures import style
-from granular_response.solve.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL
+from granular_response.plot import network as nd
+from granular_response.plot import style
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL
 
 POSITION = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 1.0 + np.sqrt(3.0)], [4.2, 2.5]])
 RADIUS = np.array([1.0, 1.0, 1.0, 0.5])

@@ -6,7 +6,7 @@ import pytest
 from matplotlib import font_manager
 from matplotlib.colors import to_rgb
 
-from granular_response.figures import style
+from granular_response.plot import style
 
 
 @style.context()

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from reference_loop import Material, forces
 
-from granular_response.core import neighbours
-from granular_response.core.forces import SCRATCH, add_pair_forces, add_wall_forces
-from granular_response.core.law import CUT, LITERAL
-from granular_response.core.pair import frictional_pair, frictionless_pair
+from granular_response.contact.linear import CUT, LITERAL
+from granular_response.contact.pair import frictional_pair, frictionless_pair
+from granular_response.kernels import neighbours
+from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
 from granular_response.scene import SlabPacking
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from granular_response import generated
+from granular_response.store import generated
 
 TEXT = "before\n\n<!-- counts: begin -->\nold\nlines\n<!-- counts: end -->\n\nafter\n"
 

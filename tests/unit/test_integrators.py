@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from small_scenes import free_disks
 
-from granular_response.core.integrators import INTEGRATORS
-from granular_response.core.integrators.record import moved_beyond, ramp
+from granular_response.kernels.integrators import INTEGRATORS
+from granular_response.kernels.integrators.record import moved_beyond, ramp
 from granular_response.solve import Dynamics
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from granular_response import store
-from granular_response.labelled import Labelled, Values, labelled
+from granular_response.store import files as store
+from granular_response.store.labelled import Labelled, Values, labelled
 
 LABELS = {"long_name": "a quantity", "units": "1"}
 
@@ -82,7 +82,7 @@ def test_a_scene_is_solved_and_stored_without_loading_xarray(tmp_path):
     scene = tmp_path / "scene.yaml"
     scene.write_text("packing: {kind: slab, layers: 3, disks_per_row: 5}\ncontact: {friction: 0.0}\n")
     code = (
-        "import sys\nfrom granular_response.cli import app\n"
+        "import sys\nfrom granular_response.cli.main import app\n"
         f"app(['run', {str(scene)!r}, '-o', {str(tmp_path / 'result.nc')!r}], standalone_mode=False)\n"
         "print(sorted({'dask', 'pandas', 'xarray'} & set(sys.modules)))\n"
     )

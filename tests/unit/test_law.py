@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from reference_loop import Material, contact_force
 
-from granular_response.core.law import normal_force, tangential_cut, tangential_literal
+from granular_response.contact.linear import normal_force, tangential_cut, tangential_literal
 
 # round numbers: k_N 1000, nu_N 10, k_T 800, nu_T 5, mu 0.5
 LAW = (1000.0, 10.0, 800.0, 5.0, 0.5, -math.inf)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from granular_response.core import band
-from granular_response.solve.linear import Band, node_order
+from granular_response.solve.linear import band
+from granular_response.solve.linear.factor import Band, node_order
 
 
 def banded(n, b, seed, symmetric=False, dominant=True):

@@ -7,8 +7,8 @@ from scipy.sparse.linalg import spsolve
 from small_scenes import scene
 
 from granular_response.solve import Problem
-from granular_response.solve import linear as module
-from granular_response.solve.multifrontal import Dissection, Multifrontal
+from granular_response.solve.linear import factor as module
+from granular_response.solve.linear.multifrontal import Dissection, Multifrontal
 from granular_response.solve.system import StaticSystem
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from granular_response.core.neighbours import close_pairs, make_runs, run_pairs
+from granular_response.kernels.neighbours import close_pairs, make_runs, run_pairs
 from granular_response.scene import SlabPacking
 
 

@@ -11,7 +11,7 @@ from granular_response.observe.difference import (
     require_same_candidates,
     wall_force_difference,
 )
-from granular_response.solve.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, SLIDING, STICKING
+from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, SLIDING, STICKING
 
 
 def two(angle, normal, tangential):
@@ -59,13 +59,15 @@ def test_matching_gives_one_list_and_keeps_the_forces():
         position,
         contacts([(0, 1), (2, 1)], np.array([1.0, 2.0]), np.array([0.1, -0.2]), np.array([STICKING, SLIDING])),
         contacts([(0, FLOOR), (2, RIGHT_WALL)], np.array([3.0, 4.0])),
+        width,
     )
     loaded = state(
         position + np.array([0.1, 0.05]),
         contacts([(1, 2), (0, 2)], np.array([5.0, 0.0]), np.array([0.5, 0.0]), np.array([STICKING, OPEN])),
         contacts([(0, LEFT_WALL), (0, FLOOR)], np.array([6.0, 7.0])),
+        width,
     )
-    a, b = match_candidates(rest, loaded, radius, width)
+    a, b = match_candidates(rest, loaded, radius)
     require_same_candidates(a, b)
     assert list(zip(a.pairs.first, a.pairs.second, strict=True)) == [(0, 1), (0, 2), (1, 2)]
     assert a.pairs.status.tolist() == [STICKING, OPEN, SLIDING]
@@ -100,6 +102,6 @@ def test_matching_refuses_doubles_and_other_packings():
     position = np.array([[1.0, 1.0], [3.0, 1.0]])
     good, bad = state(position, contacts([(0, 1)])), state(position, contacts([(0, 1), (1, 0)]))
     with pytest.raises(ValueError, match="twice"):
-        match_candidates(good, bad, np.ones(2), 4.0)
+        match_candidates(good, bad, np.ones(2))
     with pytest.raises(ValueError, match="radius"):
-        match_candidates(good, good, np.ones(3), 4.0)
+        match_candidates(good, good, np.ones(3))

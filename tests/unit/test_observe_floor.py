@@ -4,14 +4,8 @@ import numpy as np
 import pytest
 from observe_states import contacts, slab, state
 
-from granular_response.observe.floor import (
-    floor_disks,
-    floor_force,
-    floor_response,
-    interior_mask,
-    smoothed_response,
-)
-from granular_response.solve.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING
+from granular_response.observe.floor import floor_disks, floor_force, floor_response, interior_mask, smoothed_response
+from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING
 
 
 def three_disks(floor_force=(1.0, 2.0, 0.0), status=(STICKING, STICKING, OPEN)):

@@ -20,7 +20,7 @@ from granular_response.observe.network import (
     sliding_count,
     unmatched_contacts,
 )
-from granular_response.solve.state import FLOOR, OPEN, SLIDING, STICKING
+from granular_response.state import FLOOR, OPEN, SLIDING, STICKING
 
 
 def test_contact_changes_between_all_statuses():

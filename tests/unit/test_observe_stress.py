@@ -17,7 +17,7 @@ from granular_response.observe.stress import (
     load_forces,
     pressure,
 )
-from granular_response.solve.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING
+from granular_response.state import FLOOR, LEFT_WALL, OPEN, RIGHT_WALL, STICKING
 
 
 def one_contact(point, branch, force):
@@ -98,7 +98,7 @@ def test_contacts_of_a_state_with_its_walls():
     position = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 2.7]])
     pairs = contacts([(0, 1), (2, 0)], np.array([0.0, 2.0]), 0.0, np.array([OPEN, STICKING]))
     walls = contacts([(1, FLOOR), (0, LEFT_WALL), (1, RIGHT_WALL)], np.array([1.0, 2.0, 3.0]), 0.25)
-    found = contact_forces(state(position, pairs, walls), 4.0)
+    found = contact_forces(state(position, pairs, walls))
     # The open pair is left out; branches run from the partner to the disk.
     np.testing.assert_allclose(found.point, [[2.0, 2.7], [3.0, 1.0], [1.0, 1.0], [3.0, 1.0]])
     np.testing.assert_allclose(found.branch, [[1.0, 1.7], [0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
@@ -111,7 +111,7 @@ def test_added_forces_sit_in_the_loaded_geometry():
     k = pair_index(rest, 0, 1)
     loaded = with_pairs(rest, k, normal_force=3.0)
     loaded = replace(loaded, position=rest.position + np.array([0.25, 0.0]))
-    found = load_forces(rest, loaded, 4.0)
+    found = load_forces(rest, loaded)
     carries = np.any(np.abs(found.force) > 1e-12, axis=1)
     assert np.count_nonzero(carries) == 1
     i = rest.pairs.first[k]

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from granular_response import store
-from granular_response.figures import phase_diagram as figures
-from granular_response.figures import style
-from granular_response.studies.phase_diagram import (
+from granular_response.paper.groups.phase_diagram import draw as figures
+from granular_response.paper.groups.phase_diagram.simulate import (
     ABOVE,
     BELOW,
     FOUND,
@@ -20,7 +18,9 @@ from granular_response.studies.phase_diagram import (
     shape,
     simulate,
 )
-from granular_response.studies.polydisperse_averages import AT_REST, COLLAPSED, linear_end
+from granular_response.paper.groups.polydisperse_averages.simulate import AT_REST, COLLAPSED, linear_end
+from granular_response.plot import style
+from granular_response.store import files as store
 
 X = np.arange(0.0, 30.5, 0.5)
 

@@ -15,12 +15,12 @@ PARAMETERS = yaml.safe_load((ROOT / "params.yaml").read_text())
 
 #: Modules at which a stage starts; {} is its figure group.
 STARTS = {
-    "simulate": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
-    "derive": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
-    "stress": ["granular_response.pipeline.simulation", "granular_response.studies.{}"],
-    "draw": ["granular_response.pipeline.drawing", "granular_response.figures.{}"],
-    "claims": ["granular_response.claims"],
-    "report": ["granular_response.report"],
+    "simulate": ["granular_response.paper.pipeline.simulation", "granular_response.paper.groups.{}.simulate"],
+    "derive": ["granular_response.paper.pipeline.simulation", "granular_response.paper.groups.{}.simulate"],
+    "stress": ["granular_response.paper.pipeline.simulation", "granular_response.paper.groups.{}.simulate"],
+    "draw": ["granular_response.paper.pipeline.drawing", "granular_response.paper.groups.{}.draw"],
+    "claims": ["granular_response.paper.claims"],
+    "report": ["granular_response.paper.report"],
 }
 
 
@@ -103,10 +103,10 @@ def declared_code(definition) -> list[str]:
 
 
 def test_the_walk_finds_imports_through_packages():
-    modules = closure(["granular_response.cli"])
-    assert {"granular_response", "granular_response.store", "granular_response.atomic"} <= modules
+    modules = closure(["granular_response.cli.main"])
+    assert {"granular_response", "granular_response.store.files", "granular_response.store.atomic"} <= modules
     assert "granular_response.scene.errors" in modules  # imported by its package, inside a command
-    assert "granular_response.figures.style" not in closure(["granular_response.core"])
+    assert "granular_response.plot.style" not in closure(["granular_response.kernels"])
 
 
 @pytest.mark.parametrize(("kind", "group", "definition"), STAGES)

@@ -7,7 +7,7 @@ import pytest
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.solve import Problem
-from granular_response.solve.problem import carry_springs, static_contacts, wall_gap
+from granular_response.solve.problem import carry_springs, static_contacts
 
 
 def test_relisting_carries_every_spring():
@@ -68,7 +68,7 @@ def test_candidates_hold_every_contact_within_their_limit(move):
         touching = {*zip(*(k.tolist() for k in np.nonzero(np.triu(distance < 2.0, 1))), strict=True)}
         assert touching <= listed
         for wall in range(3):
-            gap = wall_gap(x, np.ones(problem.n), np.full(problem.n, wall), problem.packing.width)
+            gap = problem.packing.box.wall_gap(x, np.ones(problem.n), np.full(problem.n, wall))
             assert {(k, wall) for k in np.flatnonzero(gap < 0).tolist()} <= walls
 
 

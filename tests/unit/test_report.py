@@ -14,11 +14,13 @@ import pytest
 from PIL import Image
 from xarray import Dataset
 
-from granular_response import claims, generated, report, store
-from granular_response.claims.claim import Data
-from granular_response.report import benchmarks, explorer, pictures, readings
-from granular_response.result import variable
-from granular_response.studies import sensitivity
+from granular_response.paper import claims, report
+from granular_response.paper.claims.claim import Data
+from granular_response.paper.groups.sensitivity import simulate as sensitivity
+from granular_response.paper.report import benchmarks, explorer, pictures, readings
+from granular_response.store import files as store
+from granular_response.store import generated
+from granular_response.store.result import variable
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))), None)
 ROOT = Path(__file__).parents[2]

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response import store
-from granular_response.result import scene_of, solution_from, state_from, to_dataset
 from granular_response.solve import solve_scene
 from granular_response.solve.path import Crossing
-from granular_response.solve.state import Contacts
+from granular_response.state import Contacts
+from granular_response.store import files as store
+from granular_response.store.result import scene_of, solution_from, state_from, to_dataset
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.3], ids=["frictionless", "frictional"])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.solve.state import OPEN, SLIDING, STICKING
-from granular_response.studies import slab_response, symmetry_breaking
-from granular_response.studies.slab_response import (
+from granular_response.paper import slab_response
+from granular_response.paper.groups.symmetry_breaking import simulate as symmetry_breaking
+from granular_response.paper.slab_response import (
     SCALARS,
     Event,
     LoadPath,
@@ -23,6 +23,7 @@ from granular_response.studies.slab_response import (
     mobilised_contacts,
     states_picture,
 )
+from granular_response.state import OPEN, SLIDING, STICKING
 
 UNIT_LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 

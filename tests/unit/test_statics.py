@@ -7,8 +7,8 @@ import pytest
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.solve import Dynamics, Problem
-from granular_response.solve.state import OPEN, SLIDING, STICKING
 from granular_response.solve.system import StaticSystem
+from granular_response.state import OPEN, SLIDING, STICKING
 
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
 

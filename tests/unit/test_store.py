@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from granular_response import __version__, atomic, hdf5_image, store
-from granular_response.store import StoreError
+from granular_response import __version__
+from granular_response.store import atomic, hdf5_image
+from granular_response.store import files as store
+from granular_response.store.files import StoreError
 
 LABEL = {"long_name": "a quantity", "units": "1"}
 KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))

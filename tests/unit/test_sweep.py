@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from granular_response import sweep
-from granular_response.sweep import SweepError, digest, map_tasks
+from granular_response.sweep import sweep
+from granular_response.sweep.sweep import SweepError, digest, map_tasks
 
 
 def response(item):

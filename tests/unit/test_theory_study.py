@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from granular_response import store
-from granular_response.figures import spring_model, style
-from granular_response.figures import theory as figures
-from granular_response.studies import theory
+from granular_response.paper.groups.stiffness_ratio_crossover import spring_model
+from granular_response.paper.groups.theory import draw as figures
+from granular_response.paper.groups.theory import simulate as theory
+from granular_response.plot import style
+from granular_response.store import files as store
 
 PARAMETERS = {
     "stiffness_ratio": 0.8,

@@ -9,7 +9,7 @@ import pytest
 
 from granular_response.scene import Scene
 from granular_response.solve import Problem, rest_state
-from granular_response.solve.state import FLOOR
+from granular_response.state import FLOOR
 
 CASES = [(0.25, 0.0, 2.0), (0.25, 0.2, 2.0), (0.25, 1.0, 2.0), (0.1, 0.2, "touching-largest"), (0.01, 0.0, 2.0)]
 

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from nbclient import NotebookClient
 
-from granular_response import store
-from granular_response.result import to_dataset
 from granular_response.scene import Scene
 from granular_response.solve import solve_scene
+from granular_response.store import files as store
+from granular_response.store.result import to_dataset
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 #: The slabs of the examples are cut to this size here.

@@ -19,9 +19,8 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from granular_response import cli, store
-from granular_response.pipeline import GroupError, simulation
-from granular_response.result import ResultError, solution_from, state_from, states_dataset, to_dataset
+from granular_response.cli import main as cli
+from granular_response.paper.pipeline import GroupError, simulation
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import (
     Dynamics,
@@ -33,6 +32,8 @@ from granular_response.solve import (
     rest_state,
     solve_scene,
 )
+from granular_response.store import files as store
+from granular_response.store.result import ResultError, solution_from, state_from, states_dataset, to_dataset
 
 ROOT = Path(__file__).parents[2]
 KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
@@ -56,7 +57,8 @@ def command(folder: str, arguments: list[str]) -> None:
 @pytest.fixture(scope="module")
 def processes():
     context = multiprocessing.get_context("forkserver")  # starts in milliseconds, with everything imported
-    context.set_forkserver_preload(["granular_response.cli", "granular_response.solve", "granular_response.result"])
+    modules = ("cli.main", "solve", "store.result")
+    context.set_forkserver_preload([f"granular_response.{module}" for module in modules])
     return context
 
 

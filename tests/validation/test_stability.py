@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import yaml
 
-from granular_response.figures import stability as figures
+from granular_response.paper.groups.stability import draw as figures
+from granular_response.paper.groups.stability import simulate as stability
+from granular_response.paper.trials import closed_forms, random_scenes, time_steps
+from granular_response.paper.trials.rounding import disturb
+from granular_response.paper.trials.time_steps import SETTLES, StepTrial, scene_of
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
-from granular_response.studies import stability
-from granular_response.studies.trials import closed_forms, random_scenes, time_steps
-from granular_response.studies.trials.rounding import disturb
-from granular_response.studies.trials.time_steps import SETTLES, StepTrial, scene_of
 
 PARAMETERS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["stability"]
 SEED = PARAMETERS["seed"]

@@ -22,7 +22,7 @@ from granular_response.observe.stress import (
     grid_points,
     load_forces,
 )
-from granular_response.solve.state import FLOOR, LEFT_WALL, RIGHT_WALL, STICKING, WALL_NORMAL, Contacts, State
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, STICKING, WALL_NORMAL, Box, Contacts, State
 
 #: Far enough for the Gaussian to be below rounding, where a test wants the identity itself.
 WHOLE = 7.0
@@ -42,7 +42,7 @@ def contacts(links: list[tuple[int, int]], normal: np.ndarray, tangential: np.nd
     )
 
 
-def state(position: np.ndarray, pairs: Contacts, walls: Contacts) -> State:
+def state(position: np.ndarray, pairs: Contacts, walls: Contacts, width: float) -> State:
     n = len(position)
     return State(
         position=position,
@@ -51,6 +51,7 @@ def state(position: np.ndarray, pairs: Contacts, walls: Contacts) -> State:
         angular_velocity=np.zeros(n),
         pairs=pairs,
         walls=walls,
+        box=Box(width),
     )
 
 
@@ -93,7 +94,8 @@ def random_packing() -> tuple[State, float]:
     walls += [(i, LEFT_WALL) for i in range(40) if position[i, 0] < 3.0]
     walls += [(i, RIGHT_WALL) for i in range(40) if position[i, 0] > width - 3.0]
     pairs = contacts(sorted(links), rng.normal(size=len(links)), rng.normal(size=len(links)))
-    return state(position, pairs, contacts(walls, rng.normal(size=len(walls)), rng.normal(size=len(walls)))), width
+    at_walls = contacts(walls, rng.normal(size=len(walls)), rng.normal(size=len(walls)))
+    return state(position, pairs, at_walls, width), width
 
 
 def slab_in_equilibrium(load: float, layers: int = 9, long_row: int = 15) -> tuple[State, float]:
@@ -133,6 +135,7 @@ def slab_in_equilibrium(load: float, layers: int = 9, long_row: int = 15) -> tup
         position,
         contacts(links, force[:m], force[m : 2 * m]),
         contacts(walls, force[2 * m : 2 * m + w], force[2 * m + w :]),
+        width,
     ), width
 
 
@@ -140,17 +143,17 @@ def slab_in_equilibrium(load: float, layers: int = 9, long_row: int = 15) -> tup
 def test_divergence_is_the_body_force_and_the_push_of_the_walls(w):
     s, width = random_packing()
     points = grid_points(np.linspace(0.0, width, 9), np.linspace(0.0, 12.0, 8))
-    got = divergence(contact_forces(s, width), points, w)
+    got = divergence(contact_forces(s), points, w)
     expected = body_force_density(s.position, outer_force(s), points, w, WHOLE)
     expected += body_force_density(wall_points(s, width), s.wall_force(), points, w, WHOLE)
     np.testing.assert_allclose(got, expected, atol=1e-9 * np.abs(expected).max())
 
 
 def test_slab_under_gravity_balances_its_weight_in_the_interior():
-    s, width = slab_in_equilibrium(0.0)
+    s, _ = slab_in_equilibrium(0.0)
     w = 2.0
     points = grid_points(np.linspace(9.5, 20.5, 9), np.array([7.3, 8.1]))
-    got = divergence(contact_forces(s, width), points, w)
+    got = divergence(contact_forces(s), points, w)
     weight = body_force_density(s.position, np.tile([0.0, -1.0], (len(s.position), 1)), points, w, WHOLE)
     # What is left are the tails of the wall forces, 7.3 (3.6 w) and more away.
     np.testing.assert_allclose(got, weight, atol=2e-4 * np.abs(weight).max())
@@ -175,10 +178,10 @@ def test_sigma_zz_over_a_line_carries_the_load_above_it():
         # A point force is counted above the line to the extent of its smeared-out share there.
         share = 0.5 * (1.0 + erf((height[side] - z) / 2.0))
         expected = load - np.sum(force[side, 1] * share)
-        assert line_integral(load_forces(rest, loaded, width), z, width) == pytest.approx(expected, rel=tolerance)
-    weight_and_load = line_integral(contact_forces(loaded, width), 7.0, width)
-    only_load = line_integral(load_forces(rest, loaded, width), 7.0, width)
-    assert weight_and_load - only_load == pytest.approx(line_integral(contact_forces(rest, width), 7.0, width))
+        assert line_integral(load_forces(rest, loaded), z, width) == pytest.approx(expected, rel=tolerance)
+    weight_and_load = line_integral(contact_forces(loaded), 7.0, width)
+    only_load = line_integral(load_forces(rest, loaded), 7.0, width)
+    assert weight_and_load - only_load == pytest.approx(line_integral(contact_forces(rest), 7.0, width))
 
 
 def test_sigma_zz_just_above_the_floor_carries_the_floor_force():
@@ -187,14 +190,14 @@ def test_sigma_zz_just_above_the_floor_carries_the_floor_force():
     floor = floor_force(s, floor_disks([s])).sum()
     w = 0.1
     x = np.linspace(-1.0, width + 1.0, 6401)
-    stress = coarse_grained_stress(contact_forces(s, width), grid_points(x, np.array([0.5])), w, WHOLE)
+    stress = coarse_grained_stress(contact_forces(s), grid_points(x, np.array([0.5])), w, WHOLE)
     assert stress[0, :, 1, 1].sum() * (x[1] - x[0]) == pytest.approx(floor, rel=1e-9)
 
 
 def test_load_needs_no_gravity_in_the_balance():
     load = 12.0
     (rest, width), (loaded, _) = slab_in_equilibrium(0.0), slab_in_equilibrium(load)
-    s = load_forces(rest, loaded, width)
+    s = load_forces(rest, loaded)
     top = int(np.argmin(outer_force(loaded)[:, 1]))
     points = grid_points(np.linspace(6.0, 24.0, 13), np.linspace(8.0, 17.0, 9))
     got = divergence(s, points, 2.0)
@@ -208,13 +211,13 @@ def test_antisymmetric_part_is_small_when_torques_balance():
     """Torque balance makes the stress symmetric up to gradients over a disk; without it, it is not."""
     s, width = slab_in_equilibrium(0.0)
     points = grid_points(np.linspace(9.0, 21.0, 7), np.array([7.0, 9.0]))
-    balanced = antisymmetric_ratio(coarse_grained_stress(contact_forces(s, width), points))
+    balanced = antisymmetric_ratio(coarse_grained_stress(contact_forces(s), points))
     assert balanced.max() < 0.02
     spun = contacts(
         list(zip(s.pairs.first.tolist(), s.pairs.second.tolist(), strict=True)),
         s.pairs.normal_force,
         s.pairs.tangential_force + 1.0,
     )
-    forces = contact_forces(state(s.position, spun, s.walls), width)
+    forces = contact_forces(state(s.position, spun, s.walls, width))
     turned = antisymmetric_ratio(coarse_grained_stress(forces, points))
     assert turned.min() > 0.2

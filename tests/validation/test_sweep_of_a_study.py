@@ -15,9 +15,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from granular_response import cli, store, sweep
-from granular_response.pipeline import simulation
-from granular_response.studies import settled
+from granular_response.cli import main as cli
+from granular_response.paper.pipeline import simulation
+from granular_response.store import files as store
+from granular_response.sweep import memory as settled
+from granular_response.sweep import sweep
 
 GROUP = "superposition"
 SECTIONS = {

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from granular_response.solve.state import FLOOR, LEFT_WALL, OPEN, Contacts, FloatArray, State
+from granular_response.state import OPEN, Contacts, FloatArray, State
 
 
 def require_same_candidates(rest: State, loaded: State) -> None:
@@ -55,11 +55,11 @@ def force_misalignment(rest: State, loaded: State) -> float:
     return float(np.sum(np.arctan2(across, along) * magnitude) / total) if total > 0.0 else float("nan")
 
 
-def match_candidates(rest: State, loaded: State, radius: FloatArray, width: float) -> tuple[State, State]:
+def match_candidates(rest: State, loaded: State, radius: FloatArray) -> tuple[State, State]:
     """The same two states on one common candidate list (the union, ordered by disk and partner).
 
     A contact that one state does not list is OPEN there: no force, no spring, and the overlap that its
-    geometry gives. ``radius`` is (n,), ``width`` the distance of the side walls. A pair keeps its forces when
+    geometry gives. ``radius`` is (n,). A pair keeps its forces when
     it is listed in the other direction, since normal and tangent change sign together. Raises ``ValueError``
     if a state lists a contact twice or the states hold different numbers of disks.
     """
@@ -68,13 +68,11 @@ def match_candidates(rest: State, loaded: State, radius: FloatArray, width: floa
         raise ValueError(f"radius: {radius.shape} for states of {n} and {loaded.position.shape[0]} disks")
 
     def pair_overlap(state: State, i: NDArray[np.int32], j: NDArray[np.int32]) -> FloatArray:
-        distance = np.linalg.norm(state.position[i] - state.position[j], axis=1)
+        distance = np.linalg.norm(state.box.separation(state.position[i], state.position[j]), axis=1)
         return radius[i] + radius[j] - distance
 
     def wall_overlap(state: State, i: NDArray[np.int32], wall: NDArray[np.int32]) -> FloatArray:
-        x, z = state.position[i, 0], state.position[i, 1]
-        distance = np.where(wall == FLOOR, z, np.where(wall == LEFT_WALL, x, width - x))
-        return radius[i] - distance
+        return -state.box.wall_gap(state.position[i], radius[i], wall)
 
     pair_keys = [_pair_keys(s.pairs, n) for s in (rest, loaded)]
     wall_keys = [s.walls.first.astype(np.int64) * 3 + s.walls.second for s in (rest, loaded)]

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from granular_response.solve.state import FLOOR, FloatArray, State
+from granular_response.state import FLOOR, FloatArray, State
 
 
 def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[np.intp]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from granular_response.solve.state import SLIDING, Contacts, FloatArray, State
+from granular_response.state import SLIDING, Contacts, FloatArray, State
 
 #: Directions of the triangular lattice, as returned by :func:`lattice_direction`.
 HORIZONTAL, RISING, FALLING = 0, 1, 2

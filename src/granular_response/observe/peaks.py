@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from granular_response.solve.state import FloatArray
+from granular_response.state import FloatArray
 
 #: A dip shallower than this fraction of the largest response does not separate two peaks. Responses of two
 #: correct codes differ by about 1e-4; a dip at the limit of sight in a printed figure is about 1e-2.

@@ -9,7 +9,7 @@ import numpy as np
 
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.network import contact_centre
-from granular_response.solve.state import FloatArray, State
+from granular_response.state import FloatArray, State
 
 #: Distance of neighbouring rows of the triangular lattice, in lattice constants.
 ROW_SPACING = np.sqrt(3.0) / 2.0

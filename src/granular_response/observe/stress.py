@@ -32,7 +32,7 @@ from scipy.spatial import cKDTree
 from scipy.special import erf
 
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
-from granular_response.solve.state import FLOOR, LEFT_WALL, RIGHT_WALL, FloatArray, State
+from granular_response.state import FloatArray, State
 
 #: Evaluations of a contact at a point that are held in memory at once.
 _CHUNK = 2_000_000
@@ -47,12 +47,12 @@ class ContactForces:
     force: FloatArray  #: force on that disk
 
 
-def contact_forces(state: State, width: float) -> ContactForces:
-    """All touching contacts of a state, walls included; ``width`` is the distance of the side walls."""
-    return _contact_forces(state, state.pair_force(), state.wall_force(), width)
+def contact_forces(state: State) -> ContactForces:
+    """All touching contacts of a state, walls included."""
+    return _contact_forces(state, state.pair_force(), state.wall_force())
 
 
-def load_forces(rest: State, loaded: State, width: float) -> ContactForces:
+def load_forces(rest: State, loaded: State) -> ContactForces:
     """The forces that the load adds, at the contacts of the loaded geometry (Fig. 14).
 
     Gravity is subtracted as a vector at each contact. Points and branch vectors are those of the loaded
@@ -60,21 +60,18 @@ def load_forces(rest: State, loaded: State, width: float) -> ContactForces:
     field, by the product of rest forces and displacements. Raises ``ValueError`` if the states list
     different candidates.
     """
-    return _contact_forces(loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded), width)
+    return _contact_forces(loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded))
 
 
-def _contact_forces(state: State, pair_force: FloatArray, wall_force: FloatArray, width: float) -> ContactForces:
+def _contact_forces(state: State, pair_force: FloatArray, wall_force: FloatArray) -> ContactForces:
     position, pairs, walls = state.position, state.pairs, state.walls
     at_wall = position[walls.first]
-    on_wall = at_wall.copy()
-    on_wall[walls.second == FLOOR, 1] = 0.0
-    on_wall[walls.second == LEFT_WALL, 0] = 0.0
-    on_wall[walls.second == RIGHT_WALL, 0] = width
+    on_wall = state.box.on_wall(at_wall, walls.second)
     force = np.concatenate([pair_force, wall_force])
     carries = np.any(force != 0.0, axis=1)
     return ContactForces(
         point=np.concatenate([position[pairs.first], at_wall])[carries],
-        branch=np.concatenate([position[pairs.first] - position[pairs.second], at_wall - on_wall])[carries],
+        branch=np.concatenate([state.pair_separation(), at_wall - on_wall])[carries],
         force=force[carries],
     )
 

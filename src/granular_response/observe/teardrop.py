@@ -20,7 +20,7 @@ from scipy.spatial import cKDTree
 
 from granular_response.observe.difference import require_same_candidates
 from granular_response.observe.network import contact_centre, contact_changes
-from granular_response.solve.state import FLOOR, FloatArray, State
+from granular_response.state import FLOOR, FloatArray, State
 
 BoolArray = NDArray[np.bool_]
 

@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..state import Box
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
@@ -37,6 +39,11 @@ class Packing:
     def n(self) -> int:
         """Number of disks."""
         return len(self.radius)
+
+    @property
+    def box(self) -> Box:
+        """What bounds the disks."""
+        return Box(self.width)
 
     @property
     def ordered(self) -> bool:

@@ -1,7 +1,7 @@
 """How equilibrium is reached.
 
 ``solve_scene`` settles and loads a scene. Below it: ``rest_state`` and ``loaded_states`` for studies that share a
-rest state, ``dynamics`` (explicit relaxation), ``lockstep`` (of many scenes at once), ``minimise`` (no friction),
+rest state, ``dynamics`` (explicit relaxation), ``minimise`` (no friction),
 ``equilibrium`` (Newton on the contact law), ``path`` (quasi-static loading), ``choice`` (which of them, and why).
 """
 
@@ -15,11 +15,9 @@ if TYPE_CHECKING:
     from .dynamics import Dynamics, DynamicsError, Relaxation, Stop, relax
     from .energy import minimise
     from .equilibrium import Certificate, EquilibriumError, certify, finish
-    from .lockstep import relax_many
     from .path import PathError, PathRecord, follow
     from .problem import Problem
     from .solution import NotSettled, Solution, continue_solution, loaded_states, rest_state, solve_scene
-    from .state import State
     from .timestep import UnstableTimeStep
 
 # Names are looked up on first use: whoever reads states alone does not load the solvers.
@@ -35,7 +33,6 @@ _HOME = {
     "certify": "equilibrium",
     "finish": "equilibrium",
     "minimise": "energy",
-    "relax_many": "lockstep",
     "PathError": "path",
     "PathRecord": "path",
     "follow": "path",
@@ -46,7 +43,6 @@ _HOME = {
     "loaded_states": "solution",
     "rest_state": "solution",
     "solve_scene": "solution",
-    "State": "state",
     "UnstableTimeStep": "timestep",
 }
 _ERRORS = ("DynamicsError", "EquilibriumError", "NotSettled", "PathError", "UnstableTimeStep")
@@ -73,7 +69,6 @@ __all__ = [
     "Problem",
     "Relaxation",
     "Solution",
-    "State",
     "Stop",
     "UnstableTimeStep",
     "certify",
@@ -83,7 +78,6 @@ __all__ = [
     "loaded_states",
     "minimise",
     "relax",
-    "relax_many",
     "rest_state",
     "solve_scene",
 ]

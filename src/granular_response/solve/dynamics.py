@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.forces import SCRATCH, accelerations
-from ..core.integrators import INTEGRATORS
-from ..core.lanes import WIDTH, aligned, aligned_zeros
-from ..core.neighbours import count_closed, mark_closed
-from .problem import Candidates, Problem, carry_springs, wall_normals
-from .state import Contacts, FloatArray, State
+from ..kernels.forces import SCRATCH, accelerations
+from ..kernels.integrators import INTEGRATORS
+from ..kernels.neighbours import count_closed, mark_closed
+from ..machine.lanes import WIDTH, aligned, aligned_zeros
+from ..state import Contacts, FloatArray, State, wall_normals
+from .problem import Candidates, Problem, carry_springs
 
 #: Steps between two looks at the stopping criteria.
 CHECK_EVERY = 100
@@ -58,7 +58,7 @@ class Dynamics:
     ----------
     problem : the scene's arrays (with loads chosen, if it has any).
     state : where to start: positions, angles, velocities and springs are taken over.
-    integrator : a name in ``core.integrators.INTEGRATORS``.
+    integrator : a name in ``kernels.integrators.INTEGRATORS``.
     time_step : in units of sqrt(R/g).
     """
 
@@ -197,6 +197,7 @@ class Dynamics:
                 wall_spring,
                 zero_walls.astype(np.int8),
             ),
+            box=problem.packing.box,
             load_factor=self.load[1],
             information={"steps": self.steps, "time": self.time, "rebuilds": self.rebuilds, **information},
         )
@@ -261,7 +262,7 @@ class Relaxation:
     """Ramps of gravity and load that start now, and the relaxation to rest after them.
 
     It advances step by step under its owner's control: after each ``CHECK_EVERY`` time steps of ``dynamics``,
-    :meth:`look` says whether it has ended. :meth:`run` does both; ``solve.lockstep`` advances many together.
+    :meth:`look` says whether it has ended. :meth:`run` does both.
 
     Parameters
     ----------
@@ -348,7 +349,7 @@ class Relaxation:
             settled=self.settled,
             relaxation_steps=dynamics.steps - self.started,
             network_fixed_steps=self.fixed,
-            sliding_contacts=int((state.pairs.status == 2).sum() + (state.walls.status == 2).sum()),
+            sliding_contacts=int(state.pairs.sliding.sum() + state.walls.sliding.sum()),
             mean_acceleration=dynamics.mean_acceleration(),
             loose_disks=int((dynamics.contact_count() < 2).sum()),
         )

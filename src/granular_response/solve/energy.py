@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..state import FloatArray, State
 from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, attainable, certify, external_force
 from .problem import Problem
-from .state import FloatArray, State
 from .system import REGULARISATION, StaticSystem, Trial
 
 #: Most iterations of one minimisation.

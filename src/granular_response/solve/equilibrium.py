@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..state import OPEN, FloatArray, State
 from .problem import Problem
-from .state import OPEN, FloatArray, State
 from .system import Configuration, StaticSystem, Trial
 
 #: Largest force or torque left on any disk, in units of a mean disk weight.

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..state import FloatArray
 from .equilibrium import newton
-from .state import FloatArray
 from .system import Configuration, StaticSystem, Trial
 
 #: Newton iterations on the true law before limits are held fixed.

@@ -13,10 +13,10 @@ import numpy as np
 
 from ..scene.lattice import SlabPacking
 from ..scene.packing import Packing
+from ..state import FloatArray, State
 from .energy import minimise
 from .equilibrium import EquilibriumError
 from .problem import Problem
-from .state import FloatArray, State
 
 #: Disks from which on a smaller slab is asked first.
 LARGE = 20_000

@@ -1,6 +1,6 @@
 """Quasi-static loading: a sequence of equilibria under a growing load (the limit of an infinitely slow ramp).
 
-Each increment is solved with the return map of ``core.statics`` (see :mod:`.increment`). Where a contact goes on
+Each increment is solved with the return map of ``kernels.statics`` (see :mod:`.increment`). Where a contact goes on
 opening, sliding or sticking throughout an increment the return map is exact for any length of the increment.
 Where no equilibrium is found on the shortest increment, or the equilibrium has lost its stability, the branch has
 ended: explicit dynamics carries the packing to the next equilibrium and statics goes on from there. So
@@ -19,11 +19,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..state import State
 from .dynamics import Dynamics, Stop, relax
 from .equilibrium import EquilibriumError, certify, external_force, finish
 from .increment import Work, solve_increment
 from .problem import Problem
-from .state import State
 from .system import Configuration, StaticSystem, Trial
 from .timestep import resolve_time_step
 

@@ -12,11 +12,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import neighbours
-from ..core.lanes import WIDTH, aligned, aligned_zeros
-from ..core.law import CUT, LITERAL
+from ..contact.linear import CUT, LITERAL
+from ..kernels import neighbours
+from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Packing, Scene, resolve_disk
-from .state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Contacts, FloatArray, State
+from ..state import OPEN, SLIDING, STICKING, Contacts, FloatArray, State
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
@@ -31,7 +31,7 @@ Law = tuple[float, float, float, float, float, float]
 class Candidates:
     """Contacts that can exist while no disk is farther than ``limit`` from ``reference``.
 
-    Slots are the storage places of the runs (see ``core.forces``); ``slot`` maps each listed pair to its own.
+    Slots are the storage places of the runs (see ``kernels.forces``); ``slot`` maps each listed pair to its own.
     """
 
     reference: FloatArray  #: (n, 2) positions that displacements are measured from
@@ -187,18 +187,18 @@ class Problem:
         i, j = neighbours.run_pairs(runs)
         reach = aligned_zeros(len(i))  # slots of no listed pair have none
         reach[slot] = radius[first] + radius[second]
-        wall_disk, wall = _wall_candidates(position, radius, packing.width, margin)
+        wall_disk, wall = packing.box.near_walls(position, radius, margin)
         return Candidates(
             reference=position.copy(),
             first=first.astype(np.int32),
             second=second.astype(np.int32),
             slot=slot,
             runs=runs,
-            separation=aligned((position[i] - position[j]).T),
+            separation=aligned(packing.box.separation(position[i], position[j]).T),
             reach=reach,
             wall_disk=wall_disk,
             wall=wall,
-            wall_gap=wall_gap(position[wall_disk], radius[wall_disk], wall, packing.width),
+            wall_gap=packing.box.wall_gap(position[wall_disk], radius[wall_disk], wall),
             limit=limit,
         )
 
@@ -209,7 +209,7 @@ class Problem:
         n = self.n
         pairs = _empty_contacts(candidates.first, candidates.second)
         walls = _empty_contacts(candidates.wall_disk, candidates.wall)
-        state = State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), pairs, walls)
+        state = State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), pairs, walls, self.packing.box)
         return self.with_static_forces(state)
 
     def relisted(self, state: State) -> State:
@@ -239,9 +239,9 @@ class Problem:
         """The state with overlaps, spring forces and statuses made from its positions and springs."""
         position, radius = state.position, self.packing.radius
         i, j = state.pairs.first, state.pairs.second
-        distance = np.linalg.norm(position[i] - position[j], axis=1)
+        distance = np.linalg.norm(state.pair_separation(), axis=1)
         k = state.walls.first
-        gap = wall_gap(position[k], radius[k], state.walls.second, self.packing.width)
+        gap = self.packing.box.wall_gap(position[k], radius[k], state.walls.second)
         return replace(
             state,
             pairs=static_contacts(i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_law),
@@ -281,27 +281,10 @@ def static_contacts(first, second, overlap, spring, law: Law) -> Contacts:
     spring = np.where(touch, spring, 0.0) if law[4] > 0 else np.zeros_like(overlap)
     tangential = -law[2] * spring if law[4] > 0 else np.zeros_like(overlap)
     sliding = touch & (law[4] > 0) & (np.abs(tangential) >= law[4] * normal * (1 - 1e-9))
-    status = np.where(touch, np.where(sliding, 2, 1), 0).astype(np.int8)
+    status = np.where(touch, np.where(sliding, SLIDING, STICKING), OPEN).astype(np.int8)
     return Contacts(
         np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, normal, tangential, spring, status
     )
-
-
-def wall_gap(position, radius, wall, width: float) -> FloatArray:
-    """Gaps between disks and walls: floor at z = 0, walls at x = 0 and x = ``width``."""
-    x, z = position[:, 0], position[:, 1]
-    distance = np.where(wall == FLOOR, z, np.where(wall == LEFT_WALL, x, width - x))
-    return distance - radius
-
-
-def _wall_candidates(position, radius, width: float, margin: float):
-    disks, walls = [], []
-    for wall in (FLOOR, LEFT_WALL, RIGHT_WALL):
-        gap = wall_gap(position, radius, np.full(len(radius), wall), width)
-        near = np.flatnonzero(gap < margin)
-        disks.append(near)
-        walls.append(np.full(len(near), wall, np.int8))
-    return np.concatenate(disks).astype(np.int64), np.concatenate(walls)
 
 
 def _empty_contacts(first, second) -> Contacts:
@@ -315,8 +298,3 @@ def _empty_contacts(first, second) -> Contacts:
         zero,
         zero.astype(np.int8),
     )
-
-
-def wall_normals(wall) -> FloatArray:
-    """(w, 2) inward normals of the given walls."""
-    return np.ascontiguousarray(WALL_NORMAL[np.asarray(wall, np.int64)])

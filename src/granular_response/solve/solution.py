@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..scene import Scene, SceneError
+from ..state import State
 from .choice import Choice, finishes_statically, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
@@ -16,7 +17,6 @@ from .equilibrium import EquilibriumError, certify, check_overlaps, finish
 from .nested import rest_start
 from .path import Crossing, follow
 from .problem import Problem
-from .state import State
 from .system import StaticSystem
 from .timestep import resolve_time_step
 

@@ -13,11 +13,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 
-from ..core import statics
-from ..core.neighbours import close_pairs
-from .linear import Band, Factor, Multifrontal, Storage, elimination
-from .problem import Problem, wall_gap, wall_normals
-from .state import SLIDING, Contacts, FloatArray, State
+from ..kernels import statics
+from ..kernels.neighbours import close_pairs
+from ..state import SLIDING, Contacts, FloatArray, State, wall_normals
+from .linear.factor import Band, Factor, Multifrontal, Storage, elimination
+from .problem import Problem
 
 #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
 REGULARISATION = 1e-10
@@ -73,12 +73,11 @@ class StaticSystem:
         self.wall_disk = state.walls.first.astype(np.int64)
         self.wall = state.walls.second
         radius = problem.packing.radius
-        d = self.reference[self.first] - self.reference[self.second]
+        box = problem.packing.box
+        d = box.separation(self.reference[self.first], self.reference[self.second])
         self.dx0, self.dz0 = np.ascontiguousarray(d[:, 0]), np.ascontiguousarray(d[:, 1])
         self.gap0 = np.hypot(d[:, 0], d[:, 1]) - (radius[self.first] + radius[self.second])
-        self.wall_gap0 = wall_gap(
-            self.reference[self.wall_disk], radius[self.wall_disk], self.wall, problem.packing.width
-        )
+        self.wall_gap0 = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
         self.wall_normals = wall_normals(self.wall)
         self.weight = problem.weight_vector()
         self._pattern()
@@ -246,6 +245,7 @@ class StaticSystem:
                 self.wall_disk.astype(np.int32), self.wall, c.wall_overlap, trial.wall_normal,
                 trial.wall_tangential, c.wall_spring, trial.wall_status,
             ),
+            box=self.problem.packing.box,
             load_factor=load_factor,
             information=information,
         )  # fmt: skip

@@ -25,7 +25,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..core.integrators import INTEGRATORS
+from ..kernels.integrators import INTEGRATORS
 from .problem import Law, Problem
 
 #: Part of the limit that ``time_step: auto`` takes.

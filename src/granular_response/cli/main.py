@@ -1,0 +1,423 @@
+"""The command line. It knows arguments and messages; what is heavy is imported inside the commands."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import __version__
+from ..machine import floating_point
+
+# Before anything loads numpy: the stages of the pipeline give the same digits on every x86 machine.
+floating_point.pin()
+
+PAPER = (
+    "C. Goldenberg and I. Goldhirsch, Effects of Friction and Disorder on the Quasi-Static Response of "
+    "Granular Solids to a Localized Force, arXiv:0711.4243"
+)
+PACKAGE = (
+    "granular-response: quasi-static response of two-dimensional granular solids to a localized force, "
+    f"version {__version__}"
+)
+BIBTEX = f"""\
+@misc{{goldenberg-goldhirsch,
+  author = {{Goldenberg, C. and Goldhirsch, I.}},
+  title  = {{Effects of Friction and Disorder on the Quasi-Static Response of Granular Solids
+            to a Localized Force}},
+  year   = {{2007}},
+  month  = nov,
+  eprint = {{0711.4243}},
+  archiveprefix = {{arXiv}},
+  url    = {{https://arxiv.org/abs/0711.4243}}
+}}
+
+@software{{granular-response,
+  author  = {{{{The granular-response authors}}}},
+  title   = {{granular-response: quasi-static response of two-dimensional granular solids
+             to a localized force}},
+  version = {{{__version__}}}
+}}"""
+
+app = typer.Typer(
+    name="granular-response",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,  # plain help answers twice as fast
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _loaded() -> None:
+    """A command has what it needs: start collecting garbage, but not among what the imports have made."""
+    if not gc.isenabled():
+        gc.freeze()
+        gc.enable()
+
+
+def _examples(*lines: str) -> str:
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        print_version()
+        raise typer.Exit
+
+
+@app.callback(
+    epilog=_examples(
+        "granular-response run examples/slab.yaml -o slab.nc",
+        "granular-response show slab.nc",
+        "granular-response simulate pile_dip && granular-response draw pile_dip",
+    )
+)
+def start(
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Print the version and stop.", callback=_print_version, is_eager=True),
+    ] = False,
+) -> None:
+    """Quasi-static response of two-dimensional granular solids to a localized force."""
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response run examples/slab.yaml -o slab.nc",
+        "granular-response run scene.yaml -o scene-by-dynamics.nc --method dynamics",
+    )
+)
+def run(
+    scene: Annotated[Path, typer.Argument(help="Scene file (YAML).", show_default=False)],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
+    method: Annotated[
+        str | None,
+        typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path or minimise."),
+    ] = None,
+) -> None:
+    """Solve a scene and store the result.
+
+    It settles under gravity and is then loaded; both states are stored with their certificate.
+    """
+    import time
+
+    from ..scene import Scene
+    from ..store import files as store
+    from .terminal import TerminalProgress
+
+    started = time.perf_counter()
+    described = Scene.from_yaml(scene)
+    if method is not None:
+        described = described.updated({"protocol.method": method})
+    store.check_writable(output)
+
+    from ..solve import SOLVE_ERRORS, solve_scene
+    from ..store.result import to_labelled
+
+    _loaded()
+
+    try:
+        with TerminalProgress() as progress:
+            solution = solve_scene(described, progress=progress)
+    except SOLVE_ERRORS as error:
+        if not str(error).startswith(str(scene)):
+            error.args = (f"{scene}: {error}", *error.args[1:])
+        raise
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
+    typer.echo(f"{output}: {solution.problem.n} disks, {time.perf_counter() - started:.1f} s")
+
+
+@app.command(
+    "continue",
+    epilog=_examples(
+        "granular-response continue slab.nc --to 2 -o slab-to-twice-the-load.nc",
+        "granular-response continue slab.nc --to 1.5 --to 2 --to 4 -o slab-further.nc",
+    ),
+)
+def continue_(
+    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    to: Annotated[
+        list[float],
+        typer.Option(help="Multiple of the scene's loads to go to; repeated, growing.", show_default=False),
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
+    folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
+) -> None:
+    """Raise the loads of a result further.
+
+    The states so far are kept. The new ones are, to the last bit, those of a run that was never interrupted.
+    """
+    import time
+
+    from ..store import files as store
+    from .terminal import TerminalProgress
+
+    started = time.perf_counter()
+    stored = store.read(result).get("")
+    store.check_writable(output)
+
+    from ..scene import SceneError
+    from ..solve import continue_solution
+    from ..store.result import ResultError, solution_from, to_labelled
+
+    _loaded()
+
+    try:
+        if stored is None:
+            raise ResultError("holds no states, must be a result of granular-response run")
+        solution = solution_from(stored, folder=folder)
+        with TerminalProgress() as progress:
+            solution = continue_solution(solution, to, progress=progress)
+    except (ResultError, SceneError) as error:
+        raise ResultError(f"{result}: {error}") from error
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
+    factors = ", ".join(f"{factor:g}" for factor in solution.load_factors)
+    typer.echo(f"{output}: load factors {factors}, {time.perf_counter() - started:.1f} s")
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response simulate frictionless_crossover",
+        "granular-response simulate polydisperse_averages --workers 8",
+        "granular-response simulate phase_diagram --scheduler tcp://10.0.0.5:8786",
+        "granular-response simulate pile_dip --params other.yaml -o other.nc",
+    )
+)
+def simulate(
+    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
+    workers: Annotated[int | None, typer.Option(min=1, help="Local processes; all cores if not given.")] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a running Dask scheduler, in place of local processes.")
+    ] = None,
+    params: Annotated[Path, typer.Option(help="Parameter file with the sections common and GROUP.")] = Path(
+        "params.yaml"
+    ),
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Datasets (netCDF); data/GROUP.nc if not given.")
+    ] = None,
+) -> None:
+    """Run the simulations of a figure group.
+
+    A run that was interrupted continues where it was.
+    """
+    from ..paper.pipeline import simulation
+    from .terminal import TerminalProgress
+
+    _loaded()
+
+    with TerminalProgress() as progress:
+        path = simulation.simulate(
+            group,
+            output,
+            parameter_file=params,
+            workers=workers,
+            scheduler=scheduler,
+            progress=progress,
+        )
+    typer.echo(str(path))
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response draw pile_dip",
+        "granular-response draw pile_dip --data other.nc -o other-figures",
+    )
+)
+def draw(
+    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
+    data: Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder of the figures; figures/GROUP if not given.")
+    ] = None,
+) -> None:
+    """Draw the figures of a group."""
+    from ..paper.pipeline import drawing
+
+    _loaded()
+
+    for path in drawing.draw(group, data, output):
+        typer.echo(str(path))
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response show slab.nc",
+        "granular-response show data/pile_dip.nc",
+    )
+)
+def show(
+    file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).", show_default=False)],
+) -> None:
+    """Summarise a stored file.
+
+    Scene, certificate and floor response of a result; groups and dimensions of a study.
+    """
+    from rich.console import Console
+    from rich.text import Text
+
+    from ..store.summary import summarise
+
+    console = Console(highlight=False)
+    for part in summarise(file):
+        console.print(part, soft_wrap=isinstance(part, Text))
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response keys",
+        "granular-response keys protocol",
+        "granular-response keys --page docs/scene-reference.md",
+    )
+)
+def keys(
+    part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.", show_default=False)] = "",
+    page: Annotated[
+        Path | None, typer.Option(help="Renew the tables in this file in place of printing.", show_default=False)
+    ] = None,
+) -> None:
+    """Print the keys of a scene file: default, what is allowed, unit and meaning."""
+    from . import scene_reference
+
+    if page is None:
+        typer.echo(scene_reference.plain(part))
+    else:
+        scene_reference.renew(page)
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response export slab.nc -o slab.gsd",
+        "granular-response export slab.nc -o rest.vtu --state 0",
+    )
+)
+def export(
+    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="File to make: .gsd or .xyz (OVITO), .vtu (ParaView).")
+    ],
+    state: Annotated[int, typer.Option(help="State in a .vtu file: 0 at rest, -1 the last one.")] = -1,
+) -> None:
+    """Write a result as a file for OVITO or ParaView."""
+    from ..store import export as exporting
+
+    typer.echo(str(exporting.export(result, output, state=state)))
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response claims",
+        "granular-response claims --list",
+        "granular-response claims --readme README.md",
+    )
+)
+def claims(
+    data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Table of claims (JSON).")] = Path(
+        "figures/claims.json"
+    ),
+    readme: Annotated[
+        Path | None, typer.Option(help="Renew the counts that this file quotes.", show_default=False)
+    ] = None,
+    every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
+) -> None:
+    """Compare the paper's claims with the stored datasets."""
+    from ..paper import claims as judging
+
+    _loaded()
+
+    found = judging.read(output) if every else judging.write(output, data)
+    if readme is not None:
+        judging.renew(readme, found)
+    for row in found["table"] if every else ():
+        typer.echo(f"{row['id']:4} {row['verdict']:15} {row['ours'] or row['reason']}")
+    typer.echo(f"{output}: {judging.sentence(found)}")
+
+
+@app.command(
+    epilog=_examples(
+        "granular-response report",
+        "granular-response report -o page.html",
+        "granular-response report --notes docs/reproduction-notes.md",
+    )
+)
+def report(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path("figures/report.html"),
+    root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
+    notes: Annotated[
+        Path | None, typer.Option(help="Renew the table of readings in this file.", show_default=False)
+    ] = None,
+) -> None:
+    """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
+    from ..paper import report as reporting
+
+    _loaded()
+
+    typer.echo(str(reporting.write(output, root)))
+    if notes is not None:
+        reporting.renew_notes(notes, root)
+
+
+@app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))
+def cite(
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
+) -> None:
+    """Print how to cite the paper and this package."""
+    typer.echo(BIBTEX if bibtex else f"The paper:\n  {PAPER}\n\nThis package:\n  {PACKAGE}")
+
+
+@app.command("version", epilog=_examples("granular-response version"))
+def print_version() -> None:
+    """Print the version."""
+    typer.echo(f"granular-response {__version__}")
+
+
+def _expected_errors() -> tuple[type[BaseException], ...]:
+    """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
+    names = {
+        "paper.claims": ["ClaimsError"],
+        "paper.pipeline": ["GroupError"],
+        "paper.report": ["ReportError"],
+        "scene": ["SceneError"],
+        "solve": ["SOLVE_ERRORS"],
+        "store.export": ["ExportError"],
+        "store.files": ["StoreError"],
+        "store.generated": ["GeneratedError"],
+        "store.result": ["ResultError"],
+        "sweep.sweep": ["SweepError"],
+    }
+    found: list[type[BaseException]] = []
+    for module, attributes in names.items():
+        loaded = sys.modules.get(f"granular_response.{module}")
+        for attribute in attributes:
+            errors = getattr(loaded, attribute, ())
+            found += errors if isinstance(errors, tuple) else (errors,)
+    return tuple(found)
+
+
+def main() -> None:
+    """Entry point. Expected errors are one line on standard error and exit code 2.
+
+    Importing makes many objects and no garbage, so the collector waits for :func:`_loaded`; and what there is in the
+    end goes with the process. Both take a tenth of a second and more off every command.
+    """
+    gc.disable()
+    try:
+        app()
+    except Exception as error:
+        expected = _expected_errors()
+        cause = error.__cause__
+        programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
+        if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
+            typer.echo(f"granular-response: {error.filename}: {error.strerror}", err=True)
+            sys.exit(2)
+        if not isinstance(error, expected) or programming:
+            raise
+        typer.echo(f"granular-response: {error}", err=True)
+        sys.exit(2)
+    finally:
+        gc.freeze()
+        gc.enable()

@@ -1,0 +1,171 @@
+"""The keys of a scene file, read from the descriptions themselves: key, default, what is allowed, unit, meaning.
+
+What is allowed is not written down a second time either: it is what the message says when a key has a wrong value.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any, get_args
+
+from ..scene import (
+    Contact,
+    FilePacking,
+    Load,
+    PilePacking,
+    Preparation,
+    Protocol,
+    RowSelector,
+    Scene,
+    SceneError,
+    SlabPacking,
+    Wall,
+)
+from ..scene import text as yaml_text
+from ..scene.base import Description
+from ..scene.lattice import LatticePacking
+from ..store import generated
+
+#: Name of the generated lines.
+BLOCK = "keys"
+#: Units of all keys that hold a number with a decimal point; the empty one is that of a plain number.
+UNITS = {
+    "polydispersity": "",
+    "lattice_constant": "mean radius",
+    "width": "that of the file",
+    "normal_stiffness": "disk weight / mean radius",
+    "stiffness_ratio": "",
+    "friction": "",
+    "damping_ratio": "",
+    "force": "disk weight",
+    "torque": "disk weight × mean radius",
+    "time_step": "sqrt(R/g)",
+    "ramp_time": "sqrt(R/g)",
+    "stop_kinetic_energy": "disk weight × mean radius",
+}
+#: No key accepts this.
+_WRONG: Any = [[]]
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a scene file; all texts are for people."""
+
+    path: str  #: contact.friction, loads[].force
+    default: str  #: as YAML; empty where the key must be given
+    allowed: str
+    unit: str  #: empty without one
+    meaning: str
+
+    def words(self) -> tuple[str, str, str]:
+        """What is allowed, the unit, the meaning."""
+        return self.allowed, self.unit, self.meaning
+
+
+@dataclass(frozen=True)
+class Section:
+    """The keys of one part of a scene."""
+
+    title: str
+    place: str  #: of the part in a scene
+    model: type[Description]
+    given: dict[str, Any] = field(default_factory=dict)  #: keys that must be there, with values that are allowed
+    left_out: frozenset[str] = frozenset()  #: keys that another section has
+
+    def listed(self) -> list[Key]:
+        """The keys in the order of the description."""
+        found = []
+        for name, info in self.model.model_fields.items():
+            if name in self.left_out:
+                continue
+            if info.description is None:
+                raise TypeError(f"{self.model.__name__}.{name} has no description")
+            required = info.is_required() or name == "kind"
+            found.append(
+                Key(
+                    path=f"{self.place}.{name}",
+                    default="" if required else _spelled(info.get_default(call_default_factory=True)),
+                    allowed=self._allowed(name),
+                    unit=UNITS[name] if _holds_float(info.annotation) else "",
+                    meaning=info.description,
+                )
+            )
+        return found
+
+    def _allowed(self, name: str) -> str:
+        """What the message about a wrong value says."""
+        try:
+            self.model(**{**self.given, name: _WRONG})
+        except SceneError as error:
+            rule = str(error).split(": ", 1)[1].removeprefix("must be ")
+        else:
+            raise TypeError(f"{self.model.__name__}.{name} takes anything")
+        return f"{rule}, or null" if type(None) in get_args(self.model.model_fields[name].annotation) else rule
+
+
+_BOTH = frozenset(LatticePacking.model_fields) - {"kind", "layers"}
+SECTIONS = (
+    Section("Slab", "packing", SlabPacking, left_out=_BOTH),
+    Section("Pile", "packing", PilePacking, left_out=_BOTH),
+    Section("Slab or pile", "packing", SlabPacking, left_out=frozenset(SlabPacking.model_fields) - _BOTH),
+    Section("Packing from a file", "packing", FilePacking, {"kind": "file", "path": "disks.csv", "width": 1.0}),
+    Section("Contacts between disks", "contact", Contact),
+    Section("Floor and side walls", "wall", Wall),
+    Section("Loads", "loads[]", Load, {"disk": "top-centre", "force": (0.0, 0.0)}),
+    Section("A disk by its row", "loads[].disk", RowSelector, {"row": "top"}),
+    Section("Preparation", "preparation", Preparation),
+    Section("Protocol", "protocol", Protocol),
+)
+
+
+def every() -> list[Key]:
+    """All keys, section by section."""
+    return [key for section in SECTIONS for key in section.listed()]
+
+
+def lines() -> str:
+    """All keys as Markdown: the parts of a scene, then a table for each."""
+    parts = [_table(("part", "meaning"), [(f"`{n}`", f.description or "") for n, f in Scene.model_fields.items()])]
+    for section in SECTIONS:
+        rows: list[tuple[str, ...]] = [
+            (f"`{key.path}`", f"`{key.default}`" if key.default else "must be given", *key.words())
+            for key in section.listed()
+        ]
+        parts += [f"## {section.title}", _table(("key", "default", "allowed", "unit", "meaning"), rows)]
+    return "\n\n".join(parts)
+
+
+def plain(part: str = "") -> str:
+    """The keys whose path begins with ``part``, for a terminal. Raises SceneError if there is none."""
+    paragraphs = []
+    for section in SECTIONS:
+        chosen = [key for key in section.listed() if key.path.startswith(part)]
+        if chosen:
+            paragraphs.append(f"{section.title}:")
+        for key in chosen:
+            unit = f" [{key.unit}]" if key.unit else ""
+            default = f"default {key.default}" if key.default else "must be given"
+            paragraphs.append(f"  {key.path}{unit}: {default}\n    {key.allowed}\n    {key.meaning}")
+    if not paragraphs:
+        raise SceneError(f"no key of a scene begins with {part}, parts are {', '.join(Scene.model_fields)}")
+    return "\n".join(paragraphs)
+
+
+def renew(file: str | os.PathLike[str]) -> None:
+    """Renew the tables in a page. Raises GeneratedError if it has no place for them."""
+    generated.renew(file, BLOCK, lines())
+
+
+def _spelled(value: Any) -> str:
+    return yaml_text.write(value).removesuffix("...\n").strip()
+
+
+def _holds_float(annotation: Any) -> bool:
+    return annotation is float or any(_holds_float(part) for part in get_args(annotation))
+
+
+def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    """A Markdown table; a bar within a cell would end it."""
+    texts = [head, ("---",) * len(head), *(tuple(cell.replace("|", "\\|") for cell in row) for row in rows)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in texts)

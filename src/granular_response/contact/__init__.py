@@ -1,0 +1,1 @@
+"""Contact laws: the force of one contact from its overlap and motion (Sec. III.A)."""

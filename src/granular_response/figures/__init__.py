@@ -1,1 +1,0 @@
-"""One module per figure group: datasets to figures; one shared style."""

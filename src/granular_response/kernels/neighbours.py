@@ -1,0 +1,171 @@
+"""Candidate contacts: pairs close enough to touch before the list is made again, stored as runs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..machine.machine_code import kernel
+
+#: Runs with fewer pairs than this are not worth a vector loop of their own.
+SHORTEST_RUN = 24
+#: Close pairs per disk for which room is made at first.
+USUAL_PAIRS = 6
+#: Cells per disk, and cells in a row or column, before cells are made larger than the reach of a disk.
+MOST_CELLS, MOST_IN_A_ROW = 64, 100_000
+#: Missing pairs bridged to keep a run together; they cost less than a new run.
+LONGEST_GAP = 3
+
+
+@kernel
+def _grid_pairs(x, z, radius, skin, column, row, columns, rows, order, start, first, second):
+    """Fill ``first`` and ``second`` as far as they reach; returns how many pairs there are."""
+    count = 0
+    for i in range(x.size):
+        for c in range(max(column[i] - 1, 0), min(column[i] + 2, columns)):
+            for r in range(max(row[i] - 1, 0), min(row[i] + 2, rows)):
+                home = c * rows + r
+                for k in range(start[home], start[home + 1]):
+                    j = order[k]
+                    if j <= i:
+                        continue
+                    dx = x[i] - x[j]
+                    dz = z[i] - z[j]
+                    reach = radius[i] + radius[j] + skin
+                    if dx * dx + dz * dz < reach * reach:
+                        if count < first.size:
+                            first[count] = i
+                            second[count] = j
+                        count += 1
+    return count
+
+
+def close_pairs(position, radius, skin):
+    """All pairs of disks whose gap is less than ``skin``.
+
+    Parameters
+    ----------
+    position : (n, 2) disk centres; ``radius`` : (n,); ``skin`` : largest gap listed.
+
+    Returns
+    -------
+    first, second : (m,) int32 with ``first < second``, sorted by ``(first, second)``.
+    """
+    x = np.ascontiguousarray(position[:, 0])
+    z = np.ascontiguousarray(position[:, 1])
+    cell = 2.0 * float(radius.max()) + skin
+    cells = float(np.ptp(x) / cell + 1.0) * float(np.ptp(z) / cell + 1.0)
+    cell *= max(1.0, (cells / (MOST_CELLS * len(radius))) ** 0.5)  # disks far apart: fewer cells, and larger ones
+    cell = max(cell, float(np.ptp(x)) / MOST_IN_A_ROW, float(np.ptp(z)) / MOST_IN_A_ROW)
+    column = ((x - x.min()) / cell).astype(np.int64)
+    row = ((z - z.min()) / cell).astype(np.int64)
+    columns, rows = int(column.max()) + 1, int(row.max()) + 1
+    home = column * rows + row
+    order = np.argsort(home, kind="stable")
+    start = np.searchsorted(home[order], np.arange(columns * rows + 1))
+    count = USUAL_PAIRS * len(radius)
+    while True:
+        first, second = np.empty(count, np.int64), np.empty(count, np.int64)
+        room = count
+        count = _grid_pairs(x, z, radius, skin, column, row, columns, rows, order, start, first, second)
+        if count <= room:
+            break
+    first, second = first[:count], second[:count]
+    by = np.argsort(first * len(radius) + second)
+    return first[by].astype(np.int32), second[by].astype(np.int32)
+
+
+def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_RUN, multiple=1):
+    """Store pairs as runs of constant index difference.
+
+    Parameters
+    ----------
+    first, second : (m,) int pairs with ``first < second``, each listed once, sorted by ``(first, second)``;
+        ``n`` : number of disks; ``longest_gap`` : number of missing pairs bridged inside a run;
+        ``shortest_run`` : runs that hold fewer of the pairs are taken apart; ``multiple`` : runs are lengthened to a
+        multiple of it where there are disks enough.
+
+    Returns
+    -------
+    runs : (r, 4) int64 ``first disk, second disk, count, first slot``, single pairs last in their given order;
+        ``slot`` : (m,) int64 slot of each given pair. There are ``runs[-1, 2] + runs[-1, 3]`` slots; those of no
+        given pair fill gaps and ends, and may belong to a pair that is given elsewhere.
+    """
+    m = len(first)
+    if m == 0:
+        return np.zeros((0, 4), np.int64), np.zeros(0, np.int64)
+    i, j = first.astype(np.int64), second.astype(np.int64)
+    by = np.lexsort((i, j - i))
+    a, b = i[by], j[by]
+    new = (np.diff(b - a) != 0) | (np.diff(a) > longest_gap + 1)
+    begin = np.concatenate([[0], np.flatnonzero(new) + 1])
+    members = np.diff(np.concatenate([begin, [m]]))
+    alone = np.empty(m, bool)
+    shortest_run = max(shortest_run, 2)  # a run of one would stand before the single pairs, which come last
+    alone[by] = np.repeat(members < shortest_run, members)
+    kept = members >= shortest_run
+    begin, members = begin[kept], members[kept]
+    i0, j0 = a[begin], b[begin]
+    count = a[begin + members - 1] - i0 + 1
+    up = np.minimum(-count % multiple, n - j0 - count)
+    down = np.minimum((-count - up) % multiple, i0)
+    fits = (count + up + down) % multiple == 0
+    i0, j0, count = i0 - down * fits, j0 - down * fits, count + (up + down) * fits
+    first_slot = np.cumsum(count) - count
+    slot = np.empty(m, np.int64)
+    which = np.repeat(np.arange(len(begin)), members)
+    in_run = by[~alone[by]]
+    slot[in_run] = first_slot[which] + i[in_run] - i0[which]
+    single = np.flatnonzero(alone)
+    slot[single] = int(count.sum()) + np.arange(len(single))
+    ones = np.ones(len(single), np.int64)
+    runs = np.concatenate(
+        [
+            np.stack([i0, j0, count, first_slot], axis=1),
+            np.stack([i[single], j[single], ones, slot[single]], axis=1),
+        ]
+    )
+    return runs, slot
+
+
+def run_pairs(runs):
+    """The pairs ``(first, second)`` of all slots of the runs, each (slots,) int64."""
+    if len(runs) == 0:
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    which = np.repeat(np.arange(len(runs)), runs[:, 2])
+    along = np.arange(runs[-1, 2] + runs[-1, 3]) - runs[which, 3]
+    return runs[which, 0] + along, runs[which, 1] + along
+
+
+@kernel
+def mark_closed(q, reference, radius, first, second, wall_disk, wall_normal, wall_gap, closed):
+    """Fill ``closed``: which listed pairs overlap, then which listed wall contacts do.
+
+    ``reference`` (n, 2): centres when the list was made, ``wall_gap``: gaps at that time; ``q`` : displacements since.
+    """
+    pairs = len(first)
+    n = len(radius)
+    for k in range(pairs):
+        i, j = first[k], second[k]
+        dx = (reference[i, 0] + q[i]) - (reference[j, 0] + q[j])
+        dz = (reference[i, 1] + q[n + i]) - (reference[j, 1] + q[n + j])
+        reach = radius[i] + radius[j]
+        closed[k] = dx * dx + dz * dz < reach * reach
+    for k in range(len(wall_disk)):
+        i = wall_disk[k]
+        shift_x = (reference[i, 0] + q[i]) - reference[i, 0]
+        shift_z = (reference[i, 1] + q[n + i]) - reference[i, 1]
+        closed[pairs + k] = wall_gap[k] + (wall_normal[k, 0] * shift_x + wall_normal[k, 1] * shift_z) < 0.0
+
+
+@kernel
+def count_closed(closed, first, second, wall_disk, count):
+    """Fill ``count`` (n,): closed contacts of each disk, from what :func:`mark_closed` has marked."""
+    count[:] = 0
+    pairs = len(first)
+    for k in range(pairs):
+        if closed[k]:
+            count[first[k]] += 1
+            count[second[k]] += 1
+    for k in range(len(wall_disk)):
+        if closed[pairs + k]:
+            count[wall_disk[k]] += 1

@@ -1,0 +1,1 @@
+"""What is done for the processor: explicit vectors, kept machine code, the same digits on every machine."""

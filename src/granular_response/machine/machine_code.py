@@ -1,0 +1,75 @@
+"""How kernels are compiled, and where their machine code is kept.
+
+Numba keeps machine code by the file of a kernel, but a kernel also holds code inlined from other files. So the folder
+is named after all sources that kernels are made of: what was compiled from others is never found again. Nothing is
+ever deleted here.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import numba as nb
+
+_PACKAGE = Path(__file__).parents[1]
+#: Folders of the package whose files make kernels or are inlined into them.
+SOURCES = ("contact", "kernels", "machine", "solve/linear", "state")
+
+
+def kernel(function: Callable | None = None, **options: Any) -> Any:
+    """Decorator: compile with Numba on first use, without Python's division errors, and keep the machine code.
+
+    ``options`` are those of ``numba.njit`` beside that.
+    """
+    if function is None:
+        return partial(kernel, **options)
+    folder = cache_folder()
+    before = nb.config.CACHE_DIR
+    if folder is not None:
+        nb.config.CACHE_DIR = str(folder)  # asked for when a function is decorated, so others keep their own
+    try:
+        return nb.njit(cache=folder is not None, error_model="numpy", **options)(function)
+    finally:
+        nb.config.CACHE_DIR = before
+
+
+@cache
+def cache_folder() -> Path | None:
+    """The folder for machine code of these sources; None where nothing may be written.
+
+    In ``NUMBA_CACHE_DIR`` if that is set, else in the package's ``__pycache__``, else in the user's cache.
+    """
+    name = source_digest()
+    for base in _bases():
+        folder = base / name
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            continue
+        if os.access(folder, os.W_OK | os.X_OK):
+            return folder
+    return None
+
+
+def _bases() -> Iterator[Path]:
+    if nb.config.CACHE_DIR:
+        yield Path(nb.config.CACHE_DIR)
+    yield _PACKAGE / "__pycache__" / "machine_code"
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    if os.path.isabs(home):
+        yield Path(home) / "granular_response"
+
+
+def source_digest() -> str:
+    """Name of the present state of the sources."""
+    digest = hashlib.sha256()
+    for part in SOURCES:
+        for path in sorted((_PACKAGE / part).rglob("*.py")):
+            digest.update(path.relative_to(_PACKAGE).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]

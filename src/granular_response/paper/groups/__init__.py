@@ -1,0 +1,1 @@
+"""One folder for each figure group: ``simulate`` (parameters to datasets) and ``draw`` (datasets to figures)."""

@@ -1,0 +1,1 @@
+"""Figure group ``friction_fields``."""

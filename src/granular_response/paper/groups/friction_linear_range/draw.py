@@ -1,0 +1,160 @@
+"""Figs. 6 to 9, 12 and 16: the response of a slab with friction, and what the force does to its contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+from granular_response.state import SLIDING
+
+#: Forces of the profiles (Fig. 7), of the pictures of contacts (Figs. 8 and 9) and of the large forces (Fig. 16).
+PROFILE_FORCES = {0.2: (4.0, 10.0, 20.0, 30.0, 50.0), 1.0: (4.0, 10.0, 20.0, 30.0, 50.0)}
+CONTACT_FORCES = (6.0, 12.0, 20.0)
+LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
+DYNAMIC_FORCES = (91.0, 93.0, 95.0, 100.0)
+#: Frictions of Fig. 12.
+AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
+
+#: Part of the slab that profiles show, to both sides of the load (radii): beyond it the walls matter.
+REACH = 40.0
+
+
+POSITION_LABEL = "$x/R$"
+RESPONSE_LABEL = r"floor response$\,/\,F_\mathrm{ext}$"
+FORCE_LABEL = r"$F_\mathrm{ext}/mg$"
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """Figures by file stem, from the datasets of the study of the same name."""
+    response = datasets["response"]
+    figures = {
+        "fig06_linear_range": _linear_range(response),
+        "fig07_friction_response": _profiles(response),
+        "fig12_friction_crossover": _friction_axis(datasets["friction_axis"]),
+    }
+    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
+        states = datasets.get(f"states_mu_{friction:g}")
+        if states is not None:
+            figures[stem] = _contacts(states, friction)
+    if "large_forces" in datasets:
+        figures["fig16_large_forces"] = _large_forces(response, datasets["large_forces"])
+    return figures
+
+
+def _linear_range(response: xr.Dataset) -> Figure:
+    """Fig. 6."""
+    figure, axes = style.figure(height=2.6)
+    panel = axes[0, 0]
+    frictions = response["friction"].values
+    for index, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True)):
+        curve = response["response_at_centre"].sel(friction=friction).dropna("force")
+        look = {**style.marked_line(index, colour=colour), "markersize": 3.0}
+        panel.plot(curve["force"], curve, label=f"{friction:g}", **look)
+    panel.set_xscale("log")
+    panel.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    panel.set_ylim(bottom=0.0)
+    panel.set(xlabel=FORCE_LABEL, ylabel=r"response at $x=0$, per $F_\mathrm{ext}$")
+    panel.legend(title=r"$\mu$", loc="lower left")
+    return figure
+
+
+def _profiles(response: xr.Dataset) -> Figure:
+    """Fig. 7."""
+    figure, axes = style.figure(1, 2, width="double", height=2.5, sharey=True)
+    extents = []
+    for panel, name, (friction, forces) in zip(axes[0], "ab", PROFILE_FORCES.items(), strict=True):
+        curves = _at_forces(response.sel(friction=friction), forces)
+        extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), FORCE_LABEL))
+        style.letter(panel, name, text=rf"$\mu={friction:g}$")
+    _fit(axes[0, 0], *extents)
+    axes[0, 0].set_ylabel(RESPONSE_LABEL)
+    return figure
+
+
+def _friction_axis(axis: xr.Dataset) -> Figure:
+    """Fig. 12."""
+    figure, axes = style.figure(height=2.6)
+    stored = axis["friction"].values
+    curves = axis.sel(friction=[mu for mu in AXIS_FRICTIONS if mu in stored] or stored)
+    _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), r"$\mu$"))
+    axes[0, 0].set_ylabel(RESPONSE_LABEL)
+    return figure
+
+
+def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
+    """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
+    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    left, right = axes[0]
+    curves = _at_forces(response.sel(friction=0.2), LARGE_FORCES)
+    _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), FORCE_LABEL))
+    style.letter(left, "a", text=r"$\mu=0.2$")
+    curves = _at_forces(dynamic, DYNAMIC_FORCES)
+    _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), FORCE_LABEL, categorical=True))
+    style.letter(right, "b", text=rf"$\mu={float(dynamic['friction']):g}$")
+    right.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    for panel in (left, right):
+        panel.set_ylabel(RESPONSE_LABEL)
+    return figure
+
+
+def _labels(values: xr.DataArray) -> list[str]:
+    return [f"{value:g}" for value in values.values]
+
+
+def _at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
+    """The given forces as far as they are stored; all of them if none is."""
+    stored = dataset.dropna("force", subset=["response_at_centre"])
+    shown = [force for force in forces if force in stored["force"].values]
+    return stored.sel(force=shown) if shown else stored
+
+
+def _plot_profiles(
+    panel: Axes, curves: xr.Dataset, labels: Sequence[str], title: str, *, categorical: bool = False
+) -> tuple[float, float]:
+    """Response against position, one curve for each label along the dimension that is not the floor's.
+
+    Returns the smallest and the largest response shown.
+    """
+    colours = style.ordered_colours(len(labels))
+    dimension = next(str(dim) for dim in curves["floor_response"].dims if dim != "floor_disk")
+    for index, (label, colour) in enumerate(zip(labels, colours, strict=True)):
+        look: dict[str, Any] = style.marked_line(index, colour=None if categorical else colour)
+        look["markersize"] = 2.6
+        panel.plot(curves["x"], curves["floor_response"].isel({dimension: index}), label=label, **look)
+    panel.set(xlabel=POSITION_LABEL, xlim=(-REACH, REACH))
+    panel.legend(title=title, loc="upper right")
+    shown = curves["floor_response"].where(abs(curves["x"]) <= REACH)
+    return float(shown.min()), float(shown.max())
+
+
+def _fit(panel: Axes, *extents: tuple[float, float]) -> None:
+    """Limits of the vertical axis that leave a margin around all ``extents``."""
+    low, high = min(low for low, _ in extents), max(high for _, high in extents)
+    panel.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
+
+
+def _contacts(states: xr.Dataset, friction: float) -> Figure:
+    """Figs. 8 and 9: the central third, one panel for each force."""
+    stored = states["force"].values
+    shown = [force for force in CONTACT_FORCES if force in stored] or stored[1:4].tolist()
+    figure, axes = style.figure(len(shown), 1, height=2.15 * len(shown))
+    rest = states.isel(state=0)
+    handles: dict[str, Any] = {}
+    for index, force in enumerate(shown):
+        loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
+        panel = axes[index, 0]
+        drawn = draw_state_changes(panel, rest, loaded, loaded["contact_status"].values == SLIDING)
+        handles.update({name: line for name, line in drawn.items() if name not in handles})
+        style.letter(
+            panel, "abcdefgh"[index], place="above", text=rf"$\mu={friction:g}$, $F_\mathrm{{ext}}={force:g}\,mg$"
+        )
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)
+    return figure

@@ -1,0 +1,382 @@
+"""The response of an ordered slab with friction against the force (Secs. V.A, V.B, V.D and V.E).
+
+Figs. 6 to 9 (linear range, profiles, contact changes), Fig. 12 (friction at one force), Fig. 16 (large
+forces), and the forces at which things happen, by bisection. One load path per coefficient of friction
+serves every force, and a bisection continues it from the state below. At large forces with much friction
+symmetric equilibria lose their stability, and which one is reached depends on the transient: there the
+paper's protocol is followed literally, with dynamics from rest to each force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe import events
+from granular_response.paper.slab_response import (
+    Event,
+    LoadPath,
+    Measured,
+    Measures,
+    events_dataset,
+    first_change,
+    locate,
+    measured_dataset,
+    states_picture,
+)
+from granular_response.scene import Scene
+from granular_response.solve import Problem
+from granular_response.solve.path import Crossing
+from granular_response.state import State
+from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.sweep.sweep import Progress, map_tasks
+
+#: The linear range ends where the response at x = 0 differs by this fraction from that to the smallest force.
+LINEARITY = 0.01
+
+
+@dataclass(frozen=True)
+class PathResult:
+    """What a load path leaves behind."""
+
+    friction: float
+    forces: tuple[float, ...]
+    measured: Measured
+    events: tuple[Event, ...]
+    crossings: tuple[Crossing, ...]  #: of the path, without its bisections
+    method: str
+    rest: State
+    states: tuple[State, ...]  #: at ``forces``, or none
+
+
+@dataclass(frozen=True)
+class PathTask:
+    """A load path through ``forces``, with its events."""
+
+    scene: Scene
+    forces: tuple[float, ...]
+    tolerance: tuple[tuple[str, float], ...] = ()  #: see ``simulate``; none: no events
+    all_events: bool = False
+    keep_states: bool = False
+
+    def run(self) -> PathResult:
+        path = LoadPath.of(self.scene)
+        states = path.through(self.forces)
+        crossings = tuple(path.crossings)
+        measures = Measures(path)
+        return PathResult(
+            self.scene.contact.friction,
+            self.forces,
+            Measured.of(measures, states),
+            tuple(self._events(path, measures)) if self.tolerance else (),
+            crossings,
+            path.method,
+            path.rest,
+            tuple(states) if self.keep_states else (),
+        )
+
+    def _events(self, path: LoadPath, measures: Measures) -> list[Event]:
+        tolerance = dict(self.tolerance)
+        smallest = measures.centre(path.known[self.forces[0]])
+
+        def nonlinear(state: State) -> bool:
+            return abs(measures.centre(state) / smallest - 1.0) > LINEARITY
+
+        found = [
+            locate(
+                "first_opening",
+                path,
+                self.forces,
+                lambda state: measures.opened(state) > 0,
+                tolerance["first_opening"],
+                "a contact of disks in the central third of the slab is open that touches at rest",
+            ),
+            locate(
+                "linear_range",
+                path,
+                self.forces,
+                nonlinear,
+                tolerance["linear_range"],
+                f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {self.forces[0]:g}",
+            ),
+        ]
+        if not self.all_events:
+            return found
+        shape = tolerance["shape"]
+        return [
+            *found,
+            locate(
+                "crossover",
+                path,
+                self.forces,
+                measures.double_peaked,
+                shape,
+                "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
+            ),
+            locate(
+                "reaches_floor",
+                path,
+                self.forces,
+                lambda state: measures.region(state).reaches_floor,
+                shape,
+                "the region of opened contacts below the load contains a contact of the bottom row",
+            ),
+            locate(
+                "third_peak",
+                path,
+                self.forces,
+                measures.third_peak,
+                shape,
+                "the double-peaked floor response has a further peak at x = 0",
+            ),
+            locate(
+                "loss_of_symmetry_path",
+                path,
+                self.forces,
+                lambda state: measures.asymmetry(state) > tolerance["asymmetry"],
+                shape,
+                f"along the load path, the asymmetry of the floor response exceeds {tolerance['asymmetry']:g}",
+            ),
+        ]
+
+
+@dataclass(frozen=True)
+class DynamicsTask:
+    """One force applied to the packing at rest by dynamics."""
+
+    scene: Scene
+    rest: State
+    force: float
+
+    def run(self) -> tuple[State, Measured]:
+        path = LoadPath.of(self.scene, self.rest)
+        state = path.at(self.force)
+        return state, Measured.of(Measures(path), [state])
+
+
+@dataclass(frozen=True)
+class FrictionTask:
+    """The coefficient of friction, above ``low`` and not above ``high``, from which there is one peak."""
+
+    scene: Scene
+    force: float
+    low: float
+    high: float
+    tolerance: float
+
+    def run(self) -> Event:
+        def single_peaked(friction: float) -> bool:
+            path = LoadPath.of(self.scene.updated({"contact.friction": friction}))
+            return not Measures(path).double_peaked(path.at(self.force))
+
+        found = events.bisect_event(single_peaked, self.low, self.high, self.tolerance, at_low=False, at_high=True)
+        return _friction_crossover(self.force, found.low, found.high, self.tolerance, found.evaluations)
+
+
+Task = PathTask | DynamicsTask | FrictionTask
+
+
+def _run(task: Task) -> Any:
+    return task.run()
+
+
+def simulate(
+    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+) -> dict[str, xr.Dataset]:
+    """Datasets of Figs. 6 to 9, 12 and 16.
+
+    Parameters
+    ----------
+    parameters
+        ``method`` of the protocol; ``scene``, changes to the default scene by paths of keys; ``frictions``
+        and ``forces`` of Fig. 6; ``extra_forces``, a list of further ``forces`` of one ``friction``;
+        ``ends``, a list of the last ``force`` of the path of one ``friction``, if below the last of ``forces``;
+        ``states_of``, the frictions whose states are stored and whose events are all located; ``tolerance``
+        of the events (``first_opening``, ``linear_range``, ``shape``: widths of brackets; ``asymmetry``: what
+        counts as lost symmetry); ``friction_axis`` of Fig. 12
+        (``frictions``, ``force``, ``tolerance``); ``dynamics`` of Fig. 16b (``friction``, ``forces``,
+        ``ramp_time``, ``time_step``; no ``forces``: left out).
+    workers, progress
+        As of ``map_tasks``.
+
+    Returns
+    -------
+    ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
+    ``large_forces`` (force) with ``large_force_states``, ``events`` and ``crossings``.
+    """
+    base = Scene().updated(
+        {
+            "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
+            "protocol.method": parameters["method"],
+            **parameters.get("scene", {}),
+        }
+    )
+    frictions = [float(mu) for mu in parameters["frictions"]]
+    axis = parameters["friction_axis"]
+    axis_frictions = sorted(float(mu) for mu in axis["frictions"])
+    axis_force = float(axis["force"])
+    tasks = _path_tasks(parameters, base, frictions, axis_frictions, axis_force)
+    results: list[PathResult] = map_tasks(_run, tasks, workers=workers, progress=progress, what="load paths")
+    paths = {result.friction: result for result in results}
+
+    on_axis = {mu: _at_force(paths[mu], axis_force) for mu in axis_frictions}
+    double = [bool(measured.scalars["double_peaked"][0]) for measured in on_axis.values()]
+    low, high = first_change(axis_frictions, [not two for two in double])
+    refine = [FrictionTask(base, axis_force, low, high, float(axis["tolerance"]))]
+    if not (double[0] and np.isfinite(high)):
+        refine = []
+    dynamics = _dynamics_tasks(parameters["dynamics"], base, paths)
+    later: list[Task] = [*refine, *dynamics]
+    done = map_tasks(_run, later, workers=workers, progress=progress, what="large forces")
+    crossover = done[0] if refine else _friction_crossover(axis_force, low, high, float(axis["tolerance"]), 0)
+    shaken: list[tuple[State, Measured]] = done[len(refine) :]
+
+    main = [paths[mu] for mu in frictions]
+    found = [*(event for result in main for event in result.events), crossover]
+    datasets = {
+        "response": _response_dataset(main),
+        "friction_axis": measured_dataset(
+            ("friction",), [([k], m) for k, m in enumerate(on_axis.values())], (len(on_axis),)
+        ).assign_coords(friction=_friction(axis_frictions)),
+        "crossings": _crossings_dataset(main),
+    }
+    datasets["friction_axis"]["force"] = variable((), axis_force, f"applied force {FORCE}")
+    for result in main:
+        if result.states:
+            datasets[f"states_mu_{result.friction:g}"] = _picture(base, [result.rest, *result.states])
+    if dynamics:
+        mu = float(parameters["dynamics"]["friction"])
+        large = _large_forces_dataset(mu, dynamics, [measured for _, measured in shaken])
+        datasets["large_forces"] = large
+        datasets["large_force_states"] = _picture(base, [paths[mu].rest, *(state for state, _ in shaken)])
+        found.append(_loss_of_symmetry(mu, large, float(parameters["tolerance"]["asymmetry"])))
+    datasets["events"] = events_dataset(found)
+    for dataset in datasets.values():
+        dataset.attrs.update(scene=base.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
+    return datasets
+
+
+def _path_tasks(
+    parameters: Mapping[str, Any],
+    base: Scene,
+    frictions: Sequence[float],
+    axis_frictions: Sequence[float],
+    axis_force: float,
+) -> list[Task]:
+    keep = {float(mu) for mu in parameters["states_of"]}
+    tolerance = tuple((str(name), float(value)) for name, value in parameters["tolerance"].items())
+    further = {float(extra["friction"]): extra["forces"] for extra in parameters.get("extra_forces", [])}
+    largest = {float(end["friction"]): float(end["force"]) for end in parameters.get("ends", [])}
+
+    def task(mu: float) -> PathTask:
+        scene = base.updated({"contact.friction": mu})
+        if mu not in frictions:
+            return PathTask(scene, (axis_force,))
+        forces = {axis_force, *map(float, parameters["forces"]), *map(float, further.get(mu, []))}
+        reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
+        return PathTask(scene, reached, tolerance, mu in keep, mu in keep)
+
+    return [task(mu) for mu in [*frictions, *(mu for mu in axis_frictions if mu not in frictions)]]
+
+
+def _dynamics_tasks(given: Mapping[str, Any], base: Scene, paths: Mapping[float, PathResult]) -> list[DynamicsTask]:
+    if not given["forces"]:
+        return []
+    mu = float(given["friction"])
+    scene = base.updated(
+        {
+            "contact.friction": mu,
+            "protocol.method": "dynamics",
+            "protocol.ramp_time": given["ramp_time"],
+            "protocol.time_step": given["time_step"],
+        }
+    )
+    return [DynamicsTask(scene, paths[mu].rest, force) for force in sorted(map(float, given["forces"]))]
+
+
+def _at_force(result: PathResult, force: float) -> Measured:
+    return result.measured.only(result.forces.index(force))
+
+
+def _friction_crossover(force: float, low: float, high: float, tolerance: float, evaluations: int) -> Event:
+    text = f"along the axis of friction at force {force:g}, the floor response no longer has two peaks"
+    return Event("friction_crossover", float("nan"), low, high, tolerance, evaluations, text)
+
+
+def _loss_of_symmetry(friction: float, large: xr.Dataset, above: float) -> Event:
+    forces = large["force"].values
+    low, high = first_change(forces, (large["asymmetry"].values > above).tolist())
+    text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {above:g}"
+    return Event("loss_of_symmetry", friction, low, high, high - low, len(forces), text)
+
+
+def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
+    """Friction by force; nan where a friction has no state at a force."""
+    forces = sorted({force for result in results for force in result.forces})
+    parts = [
+        ((row, [forces.index(force) for force in result.forces]), result.measured) for row, result in enumerate(results)
+    ]
+    dims, shape = ("friction", "force"), (len(results), len(forces))
+    dataset = measured_dataset(dims, parts, shape).assign_coords(
+        friction=_friction([result.friction for result in results]), force=_force(forces)
+    )
+    crossed = np.full(shape, np.nan)
+    for (row, columns), result in zip((index for index, _ in parts), results, strict=True):
+        below = (0.0, *result.forces[:-1])
+        crossed[row, columns] = [
+            any(crossing.start < force and crossing.end > start for crossing in result.crossings)
+            for start, force in zip(below, result.forces, strict=True)
+        ]
+    text = "1 where dynamics carried the packing over part of the load since the force before"
+    dataset["crossed_by_dynamics"] = variable(dims, crossed, text)
+    dataset.attrs["method"] = ", ".join(f"friction {r.friction:g}: {r.method}" for r in results)
+    return dataset
+
+
+def _large_forces_dataset(friction: float, tasks: Sequence[DynamicsTask], measured: Sequence[Measured]) -> xr.Dataset:
+    parts = [([k], one) for k, one in enumerate(measured)]
+    dataset = measured_dataset(("force",), parts, (len(parts),)).assign_coords(
+        force=_force([task.force for task in tasks])
+    )
+    protocol = tasks[0].scene.protocol
+    dataset["friction"] = variable((), friction, "coefficient of friction between disks")
+    dataset["ramp_time"] = variable((), protocol.ramp_time, "duration of the load ramp in sqrt(radius/g)")
+    dataset["time_step"] = variable((), protocol.time_step, "time step in sqrt(radius/g)")
+    return dataset
+
+
+def _crossings_dataset(results: Sequence[PathResult]) -> xr.Dataset:
+    """Where dynamics carried a path on; empty if nowhere."""
+    found = [(result.friction, crossing) for result in results for crossing in result.crossings]
+
+    def column(values: list, long_name: str) -> xr.Variable:
+        return variable(("crossing",), np.array(values, dtype=float), long_name)
+
+    return xr.Dataset(
+        {
+            "friction": column([friction for friction, _ in found], "coefficient of friction of the path"),
+            "start": column([c.start for _, c in found], f"force from which dynamics took over {FORCE}"),
+            "end": column([c.end for _, c in found], f"force at which statics took over again {FORCE}"),
+            "unstable": column(
+                [c.reason == "unstable" for _, c in found],
+                "1 where the equilibrium had lost its stability, 0 where none was found",
+            ),
+            "displacement": column([c.displacement for _, c in found], f"largest on the way {LENGTH}"),
+        }
+    )
+
+
+def _picture(scene: Scene, states: Sequence[State]) -> xr.Dataset:
+    return states_picture(states, Problem.from_scene(scene).with_loads(states[0].position))
+
+
+def _friction(values: Sequence[float]) -> xr.Variable:
+    return variable(("friction",), np.array(values), "coefficient of friction between disks")
+
+
+def _force(values: Sequence[float]) -> xr.Variable:
+    return variable(("force",), np.array(values), f"applied force {FORCE}")

@@ -1,0 +1,295 @@
+"""Figs. 3, 4 and 5 and the stiffness study: ordered slabs without friction under a growing force.
+
+Profiles are drawn in the interior of the slab, ten radii from its side walls. The curves of Fig. 5 end where the
+region of opened contacts reaches the floor (open marker). The grey band of ``fig05b_stiffness`` is the change of
+2 % that Sec. IV.C speaks of; stiffnesses for which gravity alone rearranges the lattice are left out there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, FuncFormatter, MultipleLocator, NullFormatter
+
+from granular_response.plot import network as network_drawing
+from granular_response.plot import style
+
+#: Forces of the profiles and of the contact networks; the nearest stored ones are drawn.
+PROFILE_FORCES = (0.25, 2.0, 3.0, 3.5, 5.0, 15.0, 50.0)
+NETWORK_FORCES = (1.0, 2.0, 3.0, 3.5, 5.0, 15.0)
+#: Forces in the panels about stiffness and about the depth of the slab.
+STIFFNESS_FORCES = (0.25, 1.0, 2.0, 3.0, 15.0)
+TEARDROP_FORCES = (2.0, 3.0)
+COMPARED_FORCE = 5.0
+
+EVENTS = {
+    "first_opening": "first opening",
+    "crossover": "one peak to two",
+    "teardrop_reaches_floor": "region at the floor",
+}
+FORCE_LABEL = "$F_{\\mathrm{ext}}/mg$"
+RESPONSE_LABEL = "$F_{\\mathrm{floor}}/F_{\\mathrm{ext}}$"
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """The figures of Sec. IV from the datasets of the study of the same name."""
+    return {
+        "fig03_frictionless_response": _response(datasets["response"], datasets["events"]),
+        "fig04_frictionless_contacts": _contacts(datasets["rest"], datasets["states"]),
+        "fig05_teardrop": _teardrop(datasets["sizes"]),
+        "fig05b_stiffness": _stiffness(datasets["stiffness"]),
+        "fig05c_depth_and_width": _slabs(datasets["sizes"], datasets["widths"]),
+    }
+
+
+def nearest(stored: np.ndarray, wanted: Sequence[float]) -> list[int]:
+    """Indices of the stored values nearest to the wanted ones, each once."""
+    return sorted({int(np.argmin(np.abs(stored - value))) for value in wanted})
+
+
+def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
+    figure, ((profiles, centre),) = style.figure(
+        1, 2, width="double", height=2.7, gridspec_kw={"width_ratios": [1.45, 1.0]}
+    )
+    data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
+    x = data["x"].values
+    chosen = nearest(data["force"].values, PROFILE_FORCES)
+    colours = style.ordered_colours(len(chosen))
+    for at, (k, colour) in enumerate(zip(chosen, colours, strict=True)):
+        one = data.isel(force=k)
+        profiles.plot(
+            x,
+            one["floor_response"],
+            color=colour,
+            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
+            marker=style.MARKERS[at % len(style.MARKERS)],
+            markersize=2.2,
+            linewidth=0.9,
+            label=f"{float(one['force']):g}",
+        )
+    profiles.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    profiles.set(xlabel="$x/R$", ylabel=RESPONSE_LABEL, xlim=(x[0], x[-1]))
+    profiles.legend(title=FORCE_LABEL, loc="upper right")
+
+    centre.plot(data["force"], data["response_at_centre"], **style.marked_line(0), label="at $x=0$")
+    centre.plot(data["force"], data["peak_height"], **style.marked_line(1), label="largest")
+    highest = float(data["peak_height"].max())
+    for at, (name, low, high) in enumerate(zip(events["name"].values, events["low"], events["high"], strict=True)):
+        if np.isfinite(high):
+            middle = float(0.5 * (low + high))
+            centre.axvline(middle, color=style.MUTED, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
+            last = at == events.sizes["event"] - 1  # close to the one before, so its name goes to the other side
+            centre.annotate(
+                f"{EVENTS[str(name)]}, {middle:.2f}",
+                (middle, 1.0),
+                (2.0 if last else -1.5, -4.0),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                rotation=90,
+                ha="left" if last else "right",
+                va="top",
+                fontsize=7,
+                color=style.MUTED,
+            )
+    centre.set_ylim(0.0, 1.65 * highest)
+    centre.set(xscale="log", xlabel=FORCE_LABEL, ylabel=RESPONSE_LABEL)
+    centre.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
+    style.letters(np.array([profiles, centre]), place="above")
+    return figure
+
+
+def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
+    chosen = nearest(states["force"].values, NETWORK_FORCES)
+    columns = min(3, len(chosen))
+    rows = -(-len(chosen) // columns)
+    figure, panels = style.figure(rows, columns, width="double", height=0.2 + 1.85 * rows)
+    before = rest["contact_status"].values[0] > 0
+    radius, width = rest["radius"].values, float(rest["width"])
+    loaded = int(rest["loaded_disk"])
+    drawn: dict[str, object] = {}
+    for at, axes in enumerate(panels.ravel()):
+        style.no_axes(axes)
+        if at >= len(chosen):
+            continue
+        one = states.isel(force=chosen[at])
+        position = one["position"].values
+        first, second = one["contact_disk"].values, one["contact_partner"].values
+        middle = 0.5 * (position[first, 0] + position[second, 0])
+        seen = np.abs(middle - 0.5 * width) <= width / 6.0
+        drawn |= network_drawing.draw_contact_changes(
+            axes,
+            position,
+            first[seen],
+            second[seen],
+            touching_before=before[seen],
+            touching=one["contact_status"].values[seen] > 0,
+        )
+        network_drawing.draw_disks(
+            axes, position[[loaded]], radius[[loaded]], edgecolor=style.VERMILION, linewidth=0.9, zorder=6
+        )
+        top = position[loaded] + (0.0, radius[loaded])
+        network_drawing.draw_load(axes, (float(top[0]), float(top[1])), length=3.5)
+        axes.plot([width / 3.0, 2.0 * width / 3.0], [0.0, 0.0], color=style.MUTED, linewidth=0.8, solid_capstyle="butt")
+        axes.set(xlim=(width / 3.0 - 1.5, 2.0 * width / 3.0 + 1.5), ylim=(-0.6, top[1] + 4.0))
+        force = float(one["force"])
+        style.letter(axes, chr(ord("a") + at), place="above", text=f"$F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$")
+    names = {"opened": "opened by the load", "closed": "closed by the load", "unchanged": "not changed"}
+    handles = [
+        Line2D([], [], color=look["color"], linewidth=look["linewidth"], label=names[kind])
+        for kind, look in network_drawing.CONTACT_LINES.items()
+        if kind in drawn
+    ]
+    figure.legend(handles=handles[::-1], loc="outside lower center", ncols=len(handles))
+    return figure
+
+
+def _teardrop(sizes: xr.Dataset) -> Figure:
+    stiffnesses = np.unique(sizes["normal_stiffness"].values)
+    figure, panels = style.figure(
+        len(stiffnesses), 2, width="double", height=0.3 + 2.2 * len(stiffnesses), sharex=True, sharey="col"
+    )
+    for row, stiffness in zip(panels, stiffnesses, strict=True):
+        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
+        for axes, name, label in zip(
+            row, ("teardrop_depth", "teardrop_width"), ("depth$/R$", "width$/R$"), strict=True
+        ):
+            _growth(axes, slabs, name, lambda one: f"{int(one['layers'])}")
+            axes.set_ylabel(label)
+        row[0].legend(title="layers", loc="upper right")
+        row[0].annotate(f"$k_N = {_power(stiffness)}\\,mg/R$", (0.03, 0.86), xycoords="axes fraction", fontsize=8)
+    for axes in panels[-1]:
+        axes.set_xlabel(FORCE_LABEL)
+        axes.xaxis.set_major_locator(MultipleLocator(5.0))
+    style.letters(panels)
+    return figure
+
+
+def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Dataset], str]) -> None:
+    """A measure of the teardrop against the force, up to where it reaches the floor (open marker)."""
+    colours = style.ordered_colours(slabs.sizes["slab"])
+    for at, colour in enumerate(colours):
+        one = slabs.isel(slab=at)
+        reached = np.flatnonzero(one["reaches_floor"].values > 0)
+        end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
+        force, values = one["force"].values[:end], one[name].values[:end]
+        axes.plot(force, values, **style.marked_line(at, colour=colour), label=label(one))
+        if len(reached):
+            axes.plot(
+                force[-1:],
+                values[-1:],
+                linestyle="none",
+                marker=style.MARKERS[at % len(style.MARKERS)],
+                markerfacecolor="white",
+                markeredgecolor=colour,
+                markersize=5.0,
+                zorder=4,
+            )
+
+
+def _stiffness(data: xr.Dataset) -> Figure:
+    figure, ((centre, size, events),) = style.figure(1, 3, width="double", height=2.5)
+    k = data["normal_stiffness"].values
+    held = data["new_neighbours"].values == 0
+
+    for at, index in enumerate(nearest(data["force"].values, STIFFNESS_FORCES)):
+        response = data["response_at_centre"].isel(force=index).values
+        look = style.marked_line(at)
+        centre.plot(k[held], (response / response[-1])[held], **look, label=f"{data['force'].values[index]:g}")
+    centre.fill_between([1e3, 1e5], 0.98, 1.02, color=style.FAINT, alpha=0.6, linewidth=0.0, zorder=0)
+    centre.set_ylabel("response at $x=0$, over that of the stiffest")
+    centre.legend(title=FORCE_LABEL)
+
+    for at, index in enumerate(nearest(data["force"].values, TEARDROP_FORCES)):
+        force = data["force"].values[index]
+        for kind, (name, filled) in enumerate((("depth", True), ("width", False))):
+            look = style.marked_line(2 * at + kind)
+            if not filled:
+                look |= {"markerfacecolor": "white", "markeredgewidth": 0.8, "linestyle": (0, (4, 1.5))}
+            size.plot(
+                k[held],
+                data[f"teardrop_{name}"].isel(force=index).values[held],
+                **look,
+                label=f"{name}, $F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$",
+            )
+    size.set_ylabel("size of the region$/R$")
+    size.legend()
+
+    for at, (name, label) in enumerate(EVENTS.items()):
+        bracket = data[f"{name}_bracket"].values
+        known = held & np.isfinite(bracket).all(axis=1)
+        events.plot(k[known], bracket[known].mean(axis=1), **style.marked_line(at), label=label)
+    events.set(ylabel=f"force of the event, {FORCE_LABEL}", yscale="log")
+    events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
+    events.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    events.yaxis.set_minor_formatter(NullFormatter())
+    events.legend()
+    for axes in (centre, size, events):
+        axes.set(xscale="log", xlabel="$k_N R/mg$")
+    style.letters(np.array([centre, size, events]), place="above")
+    return figure
+
+
+def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
+    figure, ((box, profiles, events),) = style.figure(1, 3, width="double", height=2.6)
+    stiffnesses = np.unique(sizes["normal_stiffness"].values)
+    stiffest = widths.isel(slab=np.flatnonzero(widths["normal_stiffness"].values == stiffnesses[-1]))
+    _growth(box, stiffest, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
+    box.set(xlabel=FORCE_LABEL, ylabel="depth$/R$")
+    box.legend(title="layers $\\times$ disks", loc="lower right", fontsize=7)
+
+    softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
+    at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
+    colours = style.ordered_colours(softest.sizes["slab"])
+    for at, colour in enumerate(colours):
+        one = at_force.isel(slab=at)
+        height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
+        seen = np.abs(one["x"].values) <= 1.5 * height
+        profiles.plot(
+            one["x"].values[seen] / height,
+            one["floor_response"].values[seen] * height,
+            color=colour,
+            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
+            label=f"{int(one['layers'])}",
+        )
+    profiles.set(xlabel="$x/h$", ylabel="$(F_{\\mathrm{floor}}/F_{\\mathrm{ext}})\\,h/R$", xlim=(-1.5, 1.5))
+    profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
+
+    index = 0
+    for stiffness in stiffnesses:
+        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
+        for name in ("crossover", "teardrop_reaches_floor"):
+            bracket = slabs[f"{name}_bracket"].values
+            known = np.isfinite(bracket).all(axis=1)
+            events.plot(
+                slabs["layers"].values[known],
+                bracket[known].mean(axis=1),
+                **style.marked_line(index),
+                label=f"{EVENTS[name]}, $k_N = {_power(stiffness)}$",
+            )
+            index += 1
+    events.set(xlabel="layers", ylabel=f"force of the event, {FORCE_LABEL}")
+    events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
+    events.legend(fontsize=7, loc="upper left")
+    force = float(at_force["force"])
+    style.letter(box, "a", place="above", text=f"$k_N = {_power(stiffnesses[-1])}$")
+    style.letter(
+        profiles,
+        "b",
+        place="above",
+        text=f"$F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$, $k_N = {_power(stiffnesses[0])}$",
+    )
+    style.letter(events, "c", place="above")
+    return figure
+
+
+def _power(value: float) -> str:
+    """A number for a label: 3000, 10^5."""
+    exponent = round(np.log10(value))
+    return f"10^{{{exponent}}}" if value >= 1e4 and np.isclose(value, 10.0**exponent) else f"{value:g}"

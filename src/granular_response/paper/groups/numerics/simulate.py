@@ -1,0 +1,311 @@
+"""What the paper says about its numerics, measured: claims N1 to N6 (Secs. III, III.B and III.C).
+
+``stop_energy`` is the error that a stopping energy leaves in the floor forces; ``restart`` the kinetic energy after
+a static finish; ``at_rest`` the other criteria of rest; ``time_step`` and ``integrators`` responses to compare;
+``damping`` the time to rest against the damping ratio. All are runs of the dynamics on the default slab, without
+the static finish unless that is what is measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from granular_response.observe.floor import floor_force
+from granular_response.scene import Scene
+from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
+from granular_response.solve.timestep import resolve_time_step
+from granular_response.state import State
+from granular_response.store.result import FORCE, variable
+from granular_response.sweep.memory import rest_state
+from granular_response.sweep.sweep import Progress, map_tasks
+
+FloatArray = NDArray[np.float64]
+
+#: Steps between two readings of the kinetic energy of a restarted state.
+READ_EVERY = 100
+
+
+@dataclass(frozen=True)
+class StopTask:
+    """Rest and one load by dynamics alone, stopped at several energies, against the statically finished states."""
+
+    scene: Scene
+    stop_energies: tuple[float, ...]
+
+    def run(self) -> list[dict[str, float]]:
+        """The errors at each stopping energy; the finish starts from the smallest."""
+        finished = self.scene.updated({"protocol.stop_kinetic_energy": min(self.stop_energies)})
+        exact_rest, exact_loaded, _ = rest_and_loaded(finished)
+        return [self._errors(energy, exact_rest, exact_loaded) for energy in self.stop_energies]
+
+    def _errors(self, stop_energy: float, exact_rest: State, exact_loaded: State) -> dict[str, float]:
+        bare = self.scene.updated({"protocol.stop_kinetic_energy": stop_energy, "protocol.static_finish": False})
+        rest, loaded, disks = rest_and_loaded(bare)
+        force, exact = floor_force(rest, disks), floor_force(exact_rest, disks)
+        under, exactly = floor_force(loaded, disks), floor_force(exact_loaded, disks)
+        response, true = under - force, exactly - exact
+        total = float(np.abs(true.sum()))
+        return {
+            "rest_error": float(np.abs(force - exact).max() / exact.max()),
+            "loaded_error": float(np.abs(under - exactly).max() / exactly.max()),
+            "response_error": float(np.abs(response - true).max() / np.abs(true).max()),
+            "sum_error": float(abs(response.sum() - true.sum()) / total),
+        }
+
+
+@dataclass(frozen=True)
+class RestartTask:
+    """A statically finished frictionless state, put back into the dynamics."""
+
+    scene: Scene
+    force: float
+    steps: int
+
+    def run(self) -> FloatArray:
+        """Kinetic energy per disk at every reading."""
+        problem = Problem.from_scene(self.scene)
+        state = rest_state(problem)
+        problem = problem.with_loads(state.position)
+        if self.force:
+            state = loaded_states(problem, state, [self.force])[1][0]
+        still = replace(
+            state, velocity=np.zeros_like(state.velocity), angular_velocity=np.zeros_like(state.angular_velocity)
+        )
+        dynamics = Dynamics(problem, still, self.scene.protocol.integrator, resolve_time_step(problem))
+        dynamics.set_ramps(load=(self.force, self.force, 0.0))
+        energy = []
+        for _ in range(self.steps // READ_EVERY):
+            dynamics.advance(READ_EVERY)
+            energy.append(dynamics.kinetic_energy())
+        return np.array(energy)
+
+
+@dataclass(frozen=True)
+class ResponseTask:
+    """The response to one load by the paper's protocol, and what its stop criteria read."""
+
+    scene: Scene
+
+    def run(self) -> tuple[FloatArray, dict[str, float]]:
+        rest, loaded, disks = rest_and_loaded(self.scene)
+        response = (floor_force(loaded, disks) - floor_force(rest, disks)) / abs(loaded.load_factor)
+        names = ("network_fixed_steps", "sliding_contacts", "mean_acceleration", "loose_disks", "kinetic_energy")
+        return response, {name: float(loaded.information[name]) for name in names}
+
+
+@dataclass(frozen=True)
+class DampingTask:
+    """Relaxation under gravity with one damping ratio."""
+
+    scene: Scene
+    time_step: float
+
+    def run(self) -> tuple[float, float]:
+        """Time to rest, and whether it came to rest."""
+        problem = Problem.from_scene(self.scene)
+        protocol = self.scene.protocol
+        dynamics = Dynamics(problem, problem.bare_state(), protocol.integrator, self.time_step)
+        stop = Stop(protocol.stop_kinetic_energy, "envelope", protocol.maximum_steps)
+        information = relax(dynamics, stop).information
+        return float(information["time"]), float(information["settled"])
+
+
+Task = StopTask | RestartTask | ResponseTask | DampingTask
+
+
+def _run(task: Task) -> Any:
+    return task.run()
+
+
+def rest_and_loaded(scene: Scene) -> tuple[State, State, NDArray[np.intp]]:
+    """The packing at rest and under the scene's load, both by dynamics, and the disks of its lowest row.
+
+    The ``load_factor`` of the loaded state is the total force, so that responses are per applied force.
+    """
+    literal = scene.updated({"protocol.method": "dynamics"})
+    problem = Problem.from_scene(literal)
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    force = float(np.abs(problem.load[:, 1]).sum())
+    (loaded,) = loaded_states(problem, rest, [1.0])[1]
+    disks = np.flatnonzero(problem.packing.row == 0)
+    return rest, replace(loaded, load_factor=force), disks
+
+
+def simulate(
+    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+) -> dict[str, xr.Dataset]:
+    """Datasets ``stop_energy``, ``restart``, ``at_rest``, ``time_step``, ``integrators`` and ``damping``.
+
+    Parameters
+    ----------
+    parameters
+        ``scene``, changes to the default scene by paths of keys; ``force``; ``frictions`` of ``stop_energy`` with its
+        ``stop_energies``; ``restart`` (``forces``, 0 for gravity alone, and ``steps``); ``friction`` of the other
+        datasets; ``time_steps``, the first one the paper's; ``integrators`` with their common
+        ``integrator_time_step``; ``damping`` (``ratios``, ``time_step``, ``stop_kinetic_energy``).
+        ``method`` is not read: this is about the dynamics.
+    workers, progress
+        As of ``map_tasks``.
+
+    Raises
+    ------
+    ValueError
+        If fewer than two time steps or integrators are given.
+    """
+    for key in ("time_steps", "integrators"):
+        if len(parameters[key]) < 2:
+            raise ValueError(f"{key} = {parameters[key]}: must be at least two, to compare")
+    force = float(parameters["force"])
+    base = Scene().updated(parameters.get("scene", {}))
+    loaded = base.updated({"loads": [{"disk": "top-centre", "force": [0.0, -force]}]})
+    frictions = [float(mu) for mu in parameters["frictions"]]
+    energies = [float(energy) for energy in parameters["stop_energies"]]
+    friction = float(parameters["friction"])
+    with_friction = loaded.updated({"contact.friction": friction})
+    restart, damping = parameters["restart"], parameters["damping"]
+    restart_forces = [float(f) for f in restart["forces"]]
+    steps = [float(step) for step in parameters["time_steps"]]
+    integrators = [str(name) for name in parameters["integrators"]]
+    ratios = [float(ratio) for ratio in damping["ratios"]]
+
+    frictionless = base.updated({"contact.friction": 0.0, "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}]})
+    tasks: dict[str, list[Task]] = {
+        "damping": [
+            DampingTask(
+                base.updated(
+                    {
+                        "contact.friction": friction,
+                        "contact.damping_ratio": ratio,
+                        "protocol.integrator": "verlet",
+                        "protocol.stop_kinetic_energy": damping["stop_kinetic_energy"],
+                    }
+                ),
+                float(damping["time_step"]),
+            )
+            for ratio in ratios
+        ],
+        "stop_energy": [StopTask(loaded.updated({"contact.friction": mu}), tuple(energies)) for mu in frictions],
+        "restart": [RestartTask(frictionless, f, int(restart["steps"])) for f in restart_forces],
+        "time_step": [ResponseTask(with_friction.updated({"protocol.time_step": step})) for step in steps],
+        "integrators": [
+            ResponseTask(
+                with_friction.updated(
+                    {"protocol.integrator": name, "protocol.time_step": parameters["integrator_time_step"]}
+                )
+            )
+            for name in integrators
+        ],
+    }
+    results = iter(
+        map_tasks(_run, [t for ts in tasks.values() for t in ts], workers=workers, progress=progress, what="runs")
+    )
+    found = {name: [next(results) for _ in several] for name, several in tasks.items()}
+
+    packing = base.packing.build()
+    disks = np.flatnonzero(packing.row == 0)
+    x = packing.position[disks, 0] - 0.5 * packing.width
+    datasets = {
+        "stop_energy": _stop_energy(frictions, energies, [one for several in found["stop_energy"] for one in several]),
+        "restart": _restart(restart_forces, found["restart"]),
+        "time_step": _responses("time_step", np.array(steps), "time step in sqrt(radius/g)", x, found["time_step"]),
+        "integrators": _responses("integrator", np.array(integrators), "integrator", x, found["integrators"]),
+        "damping": _damping(ratios, found["damping"]),
+    }
+    datasets["at_rest"] = datasets["time_step"].drop_vars(["floor_response", "difference"]).isel(time_step=0)
+    for dataset in datasets.values():
+        dataset["force"] = variable((), force, f"applied force {FORCE}")
+        dataset.attrs.update(scene=with_friction.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
+    return datasets
+
+
+def _stop_energy(frictions: list[float], energies: list[float], found: list[dict[str, float]]) -> xr.Dataset:
+    shape = (len(frictions), len(energies))
+    texts = {
+        "rest_error": "largest error of a floor force at rest, per largest floor force",
+        "loaded_error": "largest error of a floor force under load, per largest floor force",
+        "response_error": "largest error of the floor response, per largest response",
+        "sum_error": "error of the sum of the floor response",
+    }
+    return xr.Dataset(
+        {
+            name: variable(("friction", "stop_kinetic_energy"), np.array([f[name] for f in found]).reshape(shape), text)
+            for name, text in texts.items()
+        },
+        coords={
+            "friction": variable(("friction",), np.array(frictions), "coefficient of friction between disks"),
+            "stop_kinetic_energy": variable(
+                ("stop_kinetic_energy",), np.array(energies), "kinetic energy per disk at which the dynamics stops"
+            ),
+        },
+    )
+
+
+def _restart(forces: list[float], found: list[FloatArray]) -> xr.Dataset:
+    return xr.Dataset(
+        {
+            "kinetic_energy": variable(
+                ("load", "reading"), np.stack(found), "kinetic energy per disk after a restart of a finished state"
+            ),
+            "load": variable(("load",), np.array(forces), f"load of the restarted state {FORCE}"),
+        },
+        coords={
+            "step": variable(("reading",), READ_EVERY * np.arange(1, found[0].size + 1), "time steps since the restart")
+        },
+    )
+
+
+def _responses(
+    dimension: str, values: NDArray, text: str, x: FloatArray, found: list[tuple[FloatArray, dict[str, float]]]
+) -> xr.Dataset:
+    response = np.stack([one for one, _ in found])
+    largest = np.abs(response[0]).max()
+    texts = {
+        "network_fixed_steps": "time steps for which the contact network had not changed, at least",
+        "sliding_contacts": "contacts at the Coulomb limit",
+        "mean_acceleration": "mean acceleration of disks with two contacts or more, in g",
+        "loose_disks": "disks with fewer than two contacts",
+        "kinetic_energy": "kinetic energy per disk at the stop",
+    }
+    return xr.Dataset(
+        {
+            "floor_response": variable(
+                (dimension, "floor_disk"), response, "vertical floor force that the load adds, per applied force"
+            ),
+            "difference": variable(
+                (dimension,),
+                np.abs(response - response[0]).max(axis=1) / largest,
+                "largest difference of the floor response from that of the first entry, per largest response",
+            ),
+            **{name: variable((dimension,), np.array([i[name] for _, i in found]), t) for name, t in texts.items()},
+        },
+        coords={
+            dimension: variable((dimension,), values, text),
+            "x": variable(("floor_disk",), x, "position from the loaded disk in mean disk radii"),
+        },
+    )
+
+
+def _damping(ratios: list[float], found: list[tuple[float, float]]) -> xr.Dataset:
+    values = np.array(found)
+    return xr.Dataset(
+        {
+            "relaxation_time": variable(
+                ("damping_ratio",),
+                values[:, 0],
+                "time until the kinetic energy's envelope is at rest, in sqrt(radius/g)",
+            ),
+            "settled": variable(("damping_ratio",), values[:, 1].astype(np.int8), "1 if it came to rest"),
+        },
+        coords={
+            "damping_ratio": variable(
+                ("damping_ratio",), np.array(ratios), "dashpot over its critical value, nu / (2 sqrt(k))"
+            )
+        },
+    )

@@ -1,0 +1,110 @@
+"""Fig. 17: forces, vertical stress and contact network of a pile without and with friction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response.plot.network import (
+    draw_contacts,
+    draw_disks,
+    draw_force_chains,
+    draw_force_key,
+    force_scale,
+    pair_points,
+    wall_points,
+)
+
+#: Cases that are drawn, left and right; of the two frictionless minima one, the other is its mirror image.
+DRAWN = {"frictionless": "without friction", "frictional": "with friction"}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``fig17_pile`` and ``fig17_pile_profiles`` from the datasets of the study of the same name."""
+    piles, stress = datasets["piles"], datasets["stress"]
+    return {"fig17_pile": _pile(piles, stress), "fig17_pile_profiles": _profiles(piles, stress)}
+
+
+def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
+    figure, panels = style.figure(3, 2, width="double", height=3.9)
+    shown = piles.sel(case=list(DRAWN))
+    scale = force_scale(shown["contact_force"].values.reshape(-1, 2), longest=3.4, widest=2.8)
+    fields = stress["stress_zz"].sel(case=list(DRAWN))
+    largest = float(fields.max())
+    width = float(piles["width"])
+    top = float(piles["position"].values[..., 1].max()) + 1.0
+    for column, (case, name) in enumerate(DRAWN.items()):
+        forces, map_axes, network = panels[:, column]
+        one = piles.sel(case=case)
+        _forces(forces, one, scale)
+        style.letter(forces, "ab"[column], place="above", text=f"forces, {name}")
+        field = fields.sel(case=case)
+        image = map_axes.pcolormesh(
+            stress["x"], stress["z"], field, vmin=0.0, vmax=largest, shading="gouraud", rasterized=True
+        )
+        map_axes.contour(
+            stress["x"], stress["z"], field, largest * np.arange(0.1, 1.0, 0.1), colors="white", linewidths=0.4
+        )
+        map_axes.set(aspect="equal", xlabel="$x/R$", ylabel="$z/R$" if column == 0 else "")
+        style.letter(map_axes, "cd"[column], place="above", text="$\\sigma_{zz}$")
+        _network(network, one)
+        style.letter(network, "ef"[column], place="above", text="contacts")
+        for axes in (forces, network):
+            axes.plot([0.0, width], [0.0, 0.0], color=style.MUTED, linewidth=0.8, linestyle="-")
+            style.no_axes(axes)
+            axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
+        map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
+    draw_force_key(panels[0, 1], (0.8 * width, 0.9 * top), 5.0, **scale)
+    bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02)
+    bar.set_label("$\\sigma_{zz} R/mg$")
+    return figure
+
+
+def _forces(axes: Axes, one: xr.Dataset, scale: Mapping[str, float]) -> None:
+    position, radius = one["position"].values, one["radius"].values
+    draw_disks(axes, position, radius, edgecolor="#E0E0E0")
+    touching = one["contact_status"].values != 0
+    pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
+    force = one["contact_force"].values[touching]
+    draw_force_chains(axes, pair_points(position, radius, *pairs), force, **scale)
+    at_wall = wall_points(position, radius, one["wall_disk"].values, one["wall_index"].values)
+    draw_force_chains(axes, at_wall, one["wall_force"].values, **scale)
+
+
+def _network(axes: Axes, one: xr.Dataset) -> None:
+    touching = one["contact_status"].values != 0
+    draw_disks(axes, one["position"].values, one["radius"].values, edgecolor="#E8E8E8", linewidth=0.3)
+    pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
+    draw_contacts(axes, one["position"].values, *pairs, linewidth=0.6)
+
+
+def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
+    """Not in the paper: the stress at one height, and the floor forces, of all three states."""
+    figure, ((line, floor),) = style.figure(1, 2, width="double", height=2.5)
+    names = {
+        "frictionless": "without friction",
+        "mirrored": "without friction, its mirror image",
+        "frictional": "with friction",
+    }
+    for index, (case, name) in enumerate(names.items()):
+        one = stress["profile_zz"].sel(case=case)
+        line.plot(stress["x"], one, **style.line(index), label=name)
+        look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
+        floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
+    line.set(xlabel="$x/R$", ylabel="$\\sigma_{zz} R/mg$")
+    line.set_ylim(0.0, 1.32 * float(stress["profile_zz"].max()))
+    line.legend(loc="upper right", borderaxespad=0.3)
+    style.letter(line, "a", text=f"$z = {float(stress['dip_height']):g}\\,R$")
+    floor.set(xlabel="$x/R$", ylabel="floor force $/mg$")
+    floor.set_ylim(0.0, 1.15 * float(piles["floor_force"].max()))
+    style.letter(floor, "b")
+    half = 0.5 * float(piles["width"])
+    for axes in (line, floor):
+        axes.set_xlim(-half, half)
+    return figure

@@ -1,0 +1,212 @@
+"""The response to a small force beside that of an elastic slab, as the number of layers grows (Sec. II.A, Fig. 1a).
+
+A lattice of equal bonds is isotropic in the long run, so the floor response of a packing that loses no contact must
+approach the elastic solution of its own moduli and floor. ``slabs`` holds both for packings of growing depth and their
+distance; the distance to the solution with the other kind of floor says how much a distance means.
+
+What keeps a packing from it is stored too: contacts that are open at rest (beside smooth walls gravity opens some,
+in a part of the slab that does not shrink with depth; a sudden fall on a rough floor can open a row in the middle)
+and contacts that slide (gravity that grows slowly leaves some at the Coulomb limit).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from granular_response.observe import network
+from granular_response.paper.slab_response import LoadPath, Measures
+from granular_response.scene import Scene
+from granular_response.state import SLIDING, State
+from granular_response.store.result import LENGTH, certificates_dataset, variable
+from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.theory import lattice
+from granular_response.theory.lattice import Springs
+from granular_response.theory.slab import Floor, response_of_layers
+
+FloatArray = NDArray[np.float64]
+
+FLOORS: tuple[Floor, ...] = ("smooth", "rough")
+GRAVITY = ("at-once", "slow")
+
+#: Floor disks within this many slab heights of the load are compared; the walls are farther off.
+COMPARED = 1.5
+
+
+@dataclass(frozen=True)
+class Case:
+    """One material and shape, at several depths."""
+
+    friction: float
+    floor: Floor  #: rough: as much friction on floor and walls as between disks
+    gravity: str  #: one of ``GRAVITY``
+    disks_per_layer: int  #: disks of a row over number of rows
+    layers: tuple[int, ...]
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> Case:
+        """From an entry of the parameters; raises ValueError for what it cannot be."""
+        missing = {"friction", "floor", "gravity", "disks_per_layer", "layers"} - set(entry)
+        if missing:
+            raise ValueError(f"cases: {', '.join(sorted(missing))} is missing in {dict(entry)}")
+        friction, floor, gravity = float(entry["friction"]), entry["floor"], entry["gravity"]
+        layers, shape = tuple(entry["layers"]), entry["disks_per_layer"]
+        if floor not in FLOORS or (floor == "rough" and not friction > 0.0):
+            raise ValueError(f"cases: floor = {floor!r}: must be smooth, or rough with friction above 0")
+        if gravity not in GRAVITY:
+            raise ValueError(f"cases: gravity = {gravity!r}: must be one of {', '.join(GRAVITY)}")
+        if not layers or not all(isinstance(n, int) and n >= 2 for n in layers):
+            raise ValueError(f"cases: layers = {list(layers)}: must be whole numbers from 2 on")
+        if not isinstance(shape, int) or shape < 2:
+            raise ValueError(f"cases: disks_per_layer = {shape!r}: must be a whole number from 2 on")
+        return cls(friction, floor, gravity, shape, layers)
+
+
+@dataclass(frozen=True)
+class Task:
+    """One slab."""
+
+    scene: Scene  #: with one load, of unit force
+    force: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    width: float  #: distance of the side walls
+    x: FloatArray  #: (floor_disk,)
+    response: FloatArray  #: (floor_disk,)
+    curvature: float  #: largest difference to the response to half the force, per largest response
+    open_at_rest: int
+    opened: int
+    sliding: int
+    state: State
+
+
+def compute(task: Task) -> Outcome:
+    """The response to the force and to half of it; raises what the solvers raise."""
+    path = LoadPath.of(task.scene)
+    half, full = path.through([0.5 * task.force, task.force])
+    measures = Measures(path)
+    response, at_half = measures.response(full), measures.response(half)
+    pairs, position = path.rest.pairs, path.problem.packing.position
+    # all candidates but the pairs of neighbours on the lattice are farther apart
+    distance = np.linalg.norm(position[pairs.first] - position[pairs.second], axis=1)
+    neighbours = distance < 1.01 * measures.lattice_constant
+    return Outcome(
+        width=measures.width,
+        x=measures.x,
+        response=response,
+        curvature=float(np.abs(response - at_half).max() / response.max()),
+        open_at_rest=int(np.count_nonzero(neighbours & ~pairs.touching)),
+        opened=int(np.count_nonzero(network.contact_changes(pairs, full.pairs).opened)),
+        sliding=int(np.count_nonzero(full.pairs.status == SLIDING)),
+        state=full,
+    )
+
+
+def simulate(
+    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+) -> dict[str, xr.Dataset]:
+    """Dataset ``slabs``.
+
+    Parameters
+    ----------
+    parameters
+        ``method`` (of ``protocol``); ``force``, small; ``stiffness_ratio`` k_T/k_N of packings with friction;
+        ``cases``, mappings with ``friction``, ``floor`` (smooth or rough), ``gravity`` (at-once or slow),
+        ``disks_per_layer`` and ``layers``.
+    workers, progress
+        As of ``map_tasks``.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range.
+    """
+    force, ratio = float(parameters["force"]), float(parameters["stiffness_ratio"])
+    for key, value in (("force", force), ("stiffness_ratio", ratio)):
+        if not value > 0.0:
+            raise ValueError(f"{key} = {value}: must be above 0")
+    cases = [Case.of(entry) for entry in parameters["cases"]]
+    if not cases:
+        raise ValueError("cases = []: must name at least one case")
+    slabs = [(case, layers) for case in cases for layers in case.layers]
+    scenes = [_scene(case, layers, ratio, str(parameters["method"])) for case, layers in slabs]
+    outcomes = map_tasks(compute, [Task(scene, force) for scene in scenes], workers=workers, progress=progress)
+    return {"slabs": _dataset(slabs, outcomes, ratio, force)}
+
+
+def _scene(case: Case, layers: int, ratio: float, method: str) -> Scene:
+    """A slab with the loaded disk in the middle: rows and disks of a row both odd or both even."""
+    disks = case.disks_per_layer * layers
+    return Scene().updated(
+        {
+            "packing.layers": layers,
+            "packing.disks_per_row": disks + (disks + layers) % 2,
+            "contact.friction": case.friction,
+            "contact.stiffness_ratio": ratio,
+            "wall.friction": case.friction if case.floor == "rough" else 0.0,
+            "preparation.gravity": case.gravity,
+            "protocol.method": method,
+            "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
+        }
+    )
+
+
+def _dataset(slabs: list[tuple[Case, int]], outcomes: list[Outcome], ratio: float, force: float) -> xr.Dataset:
+    longest = max(len(outcome.x) for outcome in outcomes)
+
+    def padded(values: list[FloatArray]) -> FloatArray:
+        """(slab, floor_disk), nan behind the last disk of a row."""
+        return np.stack([np.pad(v, (0, longest - len(v)), constant_values=np.nan) for v in values])
+
+    own, distance, other = [], [], []
+    for (case, layers), outcome in zip(slabs, outcomes, strict=True):
+        solid = lattice.moduli(Springs.uniform(1.0, ratio if case.friction > 0.0 else 0.0), "free")
+        elastic = {
+            floor: response_of_layers(outcome.x, layers=layers, moduli=solid, floor=floor, width=outcome.width)
+            for floor in FLOORS
+        }
+        near = np.abs(outcome.x) <= COMPARED * np.sqrt(3.0) * layers
+        apart = {
+            floor: float(np.abs(outcome.response - values)[near].max() / values.max())
+            for floor, values in elastic.items()
+        }
+        own.append(elastic[case.floor])
+        distance.append(apart[case.floor])
+        other.append(apart["rough" if case.floor == "smooth" else "smooth"])
+
+    def column(values: list[Any], long_name: str) -> xr.Variable:
+        return variable(("slab",), np.array(values), long_name)
+
+    along = ("slab", "floor_disk")
+    compared = f"largest difference within {COMPARED:g} slab heights of the load, per largest elastic response"
+    certificates = certificates_dataset([outcome.state for outcome in outcomes], "slab")
+    return xr.Dataset(
+        {
+            "floor_response": variable(along, padded([o.response for o in outcomes]), "floor response per force"),
+            "elastic": variable(along, padded(own), "share of the elastic slab with the same moduli, floor and walls"),
+            "x": variable(along, padded([o.x for o in outcomes]), f"position from the loaded disk {LENGTH}"),
+            "distance": column(distance, f"packing and elastic slab: {compared}"),
+            "distance_other_floor": column(other, f"packing and elastic slab with the other floor: {compared}"),
+            "nonlinearity": column(
+                [o.curvature for o in outcomes], "largest change from half the force, per largest response"
+            ),
+            "response_sum": column([float(o.response.sum()) for o in outcomes], "sum of the floor response"),
+            "open_at_rest": column([o.open_at_rest for o in outcomes], "neighbours that do not touch at rest"),
+            "opened": column([o.opened for o in outcomes], "contacts that the force opens"),
+            "sliding": column([o.sliding for o in outcomes], "contacts of disks that slide under the force"),
+            "layers": column([layers for _, layers in slabs], "number of layers"),
+            "disks_per_layer": column([case.disks_per_layer for case, _ in slabs], "disks of a row per layer"),
+            "friction": column([case.friction for case, _ in slabs], "coefficient of friction"),
+            "floor": column([case.floor for case, _ in slabs], "smooth, or rough: friction on floor and walls too"),
+            "gravity": column([case.gravity for case, _ in slabs], "how gravity was applied"),
+            **certificates.data_vars,
+        },
+        attrs={"force": force, "stiffness_ratio": ratio, "units": "reduced: mean disk radius, mean disk mass, g"},
+    )

@@ -1,0 +1,360 @@
+"""Where the dynamics and the solvers stop working, and that they say so.
+
+``time_step_*``: which time steps settle, cycle or blow up, against the predicted limit. ``drift``, ``collisions``,
+``rolling``: energy and motion against what is known in closed form. ``rounding``: rest states disturbed in their last
+digits. ``random_scenes``: what became of random scenes, each result checked from its positions alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from granular_response.paper.trials import closed_forms, random_scenes, time_steps
+from granular_response.paper.trials.rounding import Disturbed, disturb
+from granular_response.scene import Scene
+from granular_response.solve import Problem
+from granular_response.solve.timestep import stability_limit
+from granular_response.store.result import FORCE, variable
+from granular_response.sweep.sweep import Progress, map_tasks
+
+#: Axes of the time-step maps: what each one changes in the scene, and what it is.
+AXES: dict[str, tuple[str, str]] = {
+    "normal_stiffness": ("contact.normal_stiffness", "normal stiffness in mean disk weights per mean radius"),
+    "stiffness_ratio": ("contact.stiffness_ratio", "tangential over normal stiffness"),
+    "damping_ratio": ("contact.damping_ratio", "dashpot over its critical value"),
+    "friction": ("contact.friction", "coefficient of friction between disks"),
+    "wall_friction": ("wall.friction", "coefficient of friction of the walls"),
+    "wall_stiffness": ("wall.normal_stiffness", "normal stiffness of walls in mean disk weights per mean radius"),
+    "polydispersity": ("packing.polydispersity", "polydispersity"),
+    "load": ("loads", f"applied force {FORCE}"),
+}
+
+
+def simulate(
+    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+) -> dict[str, xr.Dataset]:
+    """Datasets ``time_step_AXIS`` for each of ``time_steps.axes``, ``drift``, ``collisions``, ``rolling``, ``rounding``
+    and ``random_scenes``.
+
+    Parameters
+    ----------
+    parameters
+        ``seed`` of everything random, and the sections of ``params.yaml`` with the names of the datasets.
+    workers, progress
+        As of ``map_tasks``.
+    """
+    seed = int(parameters["seed"])
+    groups: dict[str, tuple[list[Task], Callable[[list[Any]], dict[str, xr.Dataset]]]] = {
+        "time_steps": _time_steps(parameters["time_steps"], seed),
+        "drift": _drift(parameters["drift"], seed),
+        "collisions": _collisions(parameters["collisions"]),
+        "rolling": _rolling(parameters["rolling"]),
+        "rounding": _rounding(parameters["rounding"], seed),
+        "random_scenes": _random_scenes(parameters["random_scenes"], seed),
+    }
+    tasks = [task for several, _ in groups.values() for task in several]
+    results = iter(map_tasks(_run, tasks, workers=workers, progress=progress, what="stability trials"))
+    datasets: dict[str, xr.Dataset] = {}
+    for several, collect in groups.values():
+        datasets |= collect([next(results) for _ in several])
+    for dataset in datasets.values():
+        dataset.attrs["units"] = "reduced: mean disk radius, mean disk mass, g"
+    return datasets
+
+
+Task = Callable[[], Any]
+
+
+def _run(task: Task) -> Any:
+    return task()
+
+
+Plan = tuple[list[Task], Callable[[list[Any]], dict[str, xr.Dataset]]]
+
+
+def _time_steps(parameters: Mapping[str, Any], seed: int) -> Plan:
+    base, ratios = parameters["scene"], tuple(float(r) for r in parameters["ratios"])
+    integrators = [str(name) for name in parameters["integrators"]]
+    steps = int(parameters["steps"])
+    axes = {name: [float(value) for value in values] for name, values in parameters["axes"].items()}
+    tasks: list[Task] = []
+    for name, values in axes.items():
+        for integrator in integrators:
+            for value in values:
+                changes: dict[str, Any] = {"protocol.integrator": integrator}
+                if name == "load":
+                    changes["loads"] = [{"disk": "top-centre", "force": [0.0, -value]}] if value else []
+                else:
+                    changes[AXES[name][0]] = value
+                scene = time_steps.scene_of(base, changes)
+                tasks.append(time_steps.StepTrial(scene, ratios, steps, seed).run)
+
+    def collect(found: list[tuple[float, list[int]]]) -> dict[str, xr.Dataset]:
+        datasets = {}
+        rest = iter(found)
+        for name, values in axes.items():
+            shape = (len(integrators), len(values))
+            several = [next(rest) for _ in range(len(integrators) * len(values))]
+            datasets[f"time_step_{name}"] = xr.Dataset(
+                {
+                    "limit": variable(
+                        ("integrator", name),
+                        np.array([limit for limit, _ in several]).reshape(shape),
+                        "predicted largest stable time step in sqrt(radius/g)",
+                    ),
+                    "outcome": variable(
+                        ("integrator", name, "ratio"),
+                        np.array([outcomes for _, outcomes in several], np.int8).reshape(*shape, len(ratios)),
+                        "what becomes of a kick: "
+                        + ", ".join(f"{code} {text}" for code, text in enumerate(time_steps.OUTCOMES)),
+                    ),
+                },
+                coords={
+                    "integrator": variable(("integrator",), np.array(integrators), "integrator"),
+                    name: variable((name,), np.array(values), AXES[name][1]),
+                    "ratio": variable(("ratio",), np.array(ratios), "time step over the predicted limit"),
+                },
+            )
+        return datasets
+
+    return tasks, collect
+
+
+@dataclass(frozen=True)
+class DriftTask:
+    """An undamped system in motion: a disk that bounces on the floor, or a slab at rest that is kicked.
+
+    The kick is strong enough for contacts to open and slide. Springs are ahead of positions by half a time step, so
+    in a feeble motion about large forces the total energy cannot be read off.
+    """
+
+    scene: Scene
+    system: str
+    integrator: str
+    part: float
+    time: float
+    kick: float
+    seed: int
+
+    def run(self) -> tuple[np.ndarray, np.ndarray]:
+        undamped = self.scene.updated({"contact.damping_ratio": 0.0, "wall.damping_ratio": 0.0})
+        if self.system == "bouncing disk":
+            still = np.zeros(1)
+            problem, state = closed_forms.free_disks(undamped, np.array([(0.0, 1.5)]), np.zeros((1, 2)), still)
+        else:
+            problem, state, _ = time_steps.prepared(Problem.from_scene(undamped))
+            state = time_steps.kick(problem, state, self.seed, self.kick)
+        step = self.part * stability_limit(problem, "verlet")
+        times, change = closed_forms.energy_change(problem, state, self.integrator, step, self.time)
+        return times, change / (0.5 if self.system == "bouncing disk" else closed_forms.kinetic_energy(state, problem))
+
+
+def _drift(parameters: Mapping[str, Any], seed: int) -> Plan:
+    systems = {
+        "bouncing disk": (0.0, float(parameters["time"])),
+        "slab": (0.0, float(parameters["time"])),
+        "slab with friction": (float(parameters["friction"]), float(parameters["friction_time"])),
+    }
+    integrators = [str(name) for name in parameters["integrators"]]
+    base = Scene.from_dict(parameters["scene"])
+    part, kick = float(parameters["part_of_limit"]), float(parameters["kick"])
+    tasks: list[Task] = [
+        DriftTask(base.updated({"contact.friction": mu}), system, name, part, time, kick, seed).run
+        for system, (mu, time) in systems.items()
+        for name in integrators
+    ]
+
+    def collect(found: list[tuple[np.ndarray, np.ndarray]]) -> dict[str, xr.Dataset]:
+        shape = (len(systems), len(integrators), -1)
+        dims = ("system", "integrator", "reading")
+        dataset = xr.Dataset(
+            {
+                "time": variable(dims, np.array([t for t, _ in found]).reshape(shape), "time in sqrt(radius/g)"),
+                "energy_change": variable(
+                    dims,
+                    np.array([e for _, e in found]).reshape(shape),
+                    "change of the total energy of an undamped system, per energy that it moves with",
+                ),
+            },
+            coords={
+                "system": variable(("system",), np.array(list(systems)), "what moves"),
+                "integrator": variable(("integrator",), np.array(integrators), "integrator"),
+            },
+        )
+        return {"drift": dataset}
+
+    return tasks, collect
+
+
+def _collisions(parameters: Mapping[str, Any]) -> Plan:
+    bodies, laws = ["floor", "disk"], ["cut", "literal"]
+    damping = [float(z) for z in parameters["damping_ratios"]]
+    frictions = [float(mu) for mu in parameters["frictions"]]
+    angles = [float(angle) for angle in parameters["angles"]]
+    spins = [float(spin) for spin in parameters["spins"]]
+    step = float(parameters["time_step"])
+    tasks: list[Task] = []
+    for body in bodies:
+        for law in laws:
+            for ratio in damping:
+                for mu in frictions:
+                    changes = {"contact.friction": mu, "wall.friction": mu, "contact.damping_ratio": ratio}
+                    scene = Scene().updated({**changes, "protocol.friction_law": law, "loads": []})
+                    tasks.append(CollisionTask(scene, tuple(angles), tuple(spins), step, body == "disk").run)
+
+    def collect(found: list[list[list[float]]]) -> dict[str, xr.Dataset]:
+        shape = (len(bodies), len(laws), len(damping), len(frictions), len(angles), len(spins))
+        dims = ("body", "friction_law", "damping_ratio", "friction", "angle", "spin")
+        dataset = xr.Dataset(
+            {
+                "energy_ratio": variable(
+                    dims, np.array(found).reshape(shape), "kinetic energy after a collision over that before"
+                )
+            },
+            coords={
+                "body": variable(("body",), np.array(bodies), "what the disk hits"),
+                "friction_law": variable(("friction_law",), np.array(laws), "protocol.friction_law"),
+                "damping_ratio": variable(("damping_ratio",), np.array(damping), AXES["damping_ratio"][1]),
+                "friction": variable(("friction",), np.array(frictions), "coefficient of friction"),
+                "angle": variable(("angle",), np.array(angles), "angle of incidence from grazing in degrees"),
+                "spin": variable(("spin",), np.array(spins), "spin of the hitting disk, rim speed over speed"),
+            },
+        )
+        return {"collisions": dataset}
+
+    return tasks, collect
+
+
+@dataclass(frozen=True)
+class CollisionTask:
+    """Collisions at all angles and spins under one contact law."""
+
+    scene: Scene
+    angles: tuple[float, ...]
+    spins: tuple[float, ...]
+    step: float
+    pair: bool
+
+    def run(self) -> list[list[float]]:
+        return [
+            [closed_forms.collision(self.scene, angle, spin, self.step, pair=self.pair) for spin in self.spins]
+            for angle in self.angles
+        ]
+
+
+def _rolling(parameters: Mapping[str, Any]) -> Plan:
+    friction, step = float(parameters["friction"]), float(parameters["time_step"])
+    starts = [(float(speed), float(spin)) for speed, spin in parameters["starts"]]
+    scene = Scene().updated({"wall.friction": friction, "loads": []})
+    times = [1.5 * abs(speed + spin) / (3.0 * friction) for speed, spin in starts]
+    tasks: list[Task] = [
+        partial(closed_forms.sliding_to_rolling, scene, speed, spin, step, time)
+        for (speed, spin), time in zip(starts, times, strict=True)
+    ]
+
+    def collect(found: list[tuple[np.ndarray, ...]]) -> dict[str, xr.Dataset]:
+        exact = [
+            closed_forms.rolling_speed(t, friction, *start) for (t, _, _), start in zip(found, starts, strict=True)
+        ]
+        dims = ("start", "reading")
+        dataset = xr.Dataset(
+            {
+                "time": variable(dims, np.stack([t for t, _, _ in found]), "time in sqrt(radius/g)"),
+                "velocity": variable(dims, np.stack([v for _, v, _ in found]), "velocity of the disk, x"),
+                "rim_speed": variable(
+                    dims, np.stack([r for _, _, r in found]), "rim speed, positive for rolling along x"
+                ),
+                "exact_velocity": variable(dims, np.stack([v for v, _ in exact]), "velocity in closed form"),
+                "exact_rim_speed": variable(dims, np.stack([r for _, r in exact]), "rim speed in closed form"),
+            },
+            coords={
+                "speed": variable(("start",), np.array([v for v, _ in starts]), "velocity at first"),
+                "spin": variable(("start",), np.array([w for _, w in starts]), "spin at first, counter-clockwise"),
+            },
+        )
+        dataset["friction"] = variable((), friction, "coefficient of friction of the floor")
+        return {"rolling": dataset}
+
+    return tasks, collect
+
+
+def _rounding(parameters: Mapping[str, Any], seed: int) -> Plan:
+    cases: dict[str, Any] = parameters["cases"]
+    size, kicks = float(parameters["displacement"]), int(parameters["kicks"])
+    base = Scene.from_dict(parameters["scene"])
+    tasks: list[Task] = [
+        partial(disturb, base.updated(changes), size, range(seed, seed + kicks)) for changes in cases.values()
+    ]
+    texts = {
+        "rest_change": "largest displacement left after the disturbed rest state is back in equilibrium, in mean radii",
+        "response_change": "largest change of the floor response by the disturbance, per its largest value",
+        "excess_coordination": "contacts per bearing disk beyond the isostatic number",
+        "loose_disks": "disks with fewer than two contacts",
+        "negative_modes": "negative modes of the rest state",
+        "crossings": "stretches of load that dynamics crossed",
+    }
+
+    def collect(several: list[list[Disturbed]]) -> dict[str, xr.Dataset]:
+        found = [one for ones in several for one in ones]
+        dataset = xr.Dataset(
+            {
+                name: variable(
+                    ("case", "kick"), np.array([getattr(f, name) for f in found]).reshape(len(cases), kicks), text
+                )
+                for name, text in texts.items()
+            },
+            coords={"case": variable(("case",), np.array(list(cases)), "packing and load")},
+        )
+        dataset["displacement"] = variable((), size, "largest displacement of the rest state, in mean radii")
+        return {"rounding": dataset}
+
+    return tasks, collect
+
+
+def _random_scenes(parameters: Mapping[str, Any], seed: int) -> Plan:
+    number, chunk, steps = int(parameters["number"]), int(parameters["chunk"]), int(parameters["maximum_steps"])
+    starts = range(0, number, chunk)
+    tasks: list[Task] = [partial(_random_chunk, steps, seed, begin, min(begin + chunk, number)) for begin in starts]
+
+    def collect(found: list[list[random_scenes.Trial]]) -> dict[str, xr.Dataset]:
+        trials = [trial for several in found for trial in several]
+        texts = {
+            "friction": "coefficient of friction between disks",
+            "disks": "number of disks, 0 after an error",
+            "states": "states that were checked",
+            "force_residual": "largest unbalanced force, summed anew from positions, in mean disk weights",
+            "torque_residual": "largest unbalanced torque",
+            "coulomb_excess": "largest friction force beyond Coulomb's limit",
+        }
+        dataset = xr.Dataset(
+            {
+                key: variable(("scene",), np.array([getattr(t, key) for t in trials]), text)
+                for key, text in texts.items()
+            }
+        )
+        words = {
+            "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
+            "kind": (("slab", "pile", "file"), "packing"),
+            "method": (("auto", "dynamics", "path", "minimise"), "method asked for"),
+            "integrator": (("beeman", "verlet", "gear"), "integrator"),
+        }
+        for name, (values, text) in words.items():
+            codes = np.array([values.index(getattr(t, name)) for t in trials], np.int8)
+            legend = ", ".join(f"{code} {value}" for code, value in enumerate(values))
+            dataset[name] = variable(("scene",), codes, f"{text}: {legend}")
+        # what a wrong result was, for whoever has to look at it
+        wrong = [f"{k}: {t.message}" for k, t in enumerate(trials) if t.outcome == "wrong"]
+        dataset.attrs["wrong"] = "; ".join(wrong)
+        return {"random_scenes": dataset}
+
+    return tasks, collect
+
+
+def _random_chunk(steps: int, seed: int, begin: int, end: int) -> list[random_scenes.Trial]:
+    return [random_scenes.run(steps, seed, index) for index in range(begin, end)]

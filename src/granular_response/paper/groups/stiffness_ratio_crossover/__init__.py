@@ -1,0 +1,1 @@
+"""Figure group ``stiffness_ratio_crossover``."""

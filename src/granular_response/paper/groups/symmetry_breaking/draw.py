@@ -1,0 +1,114 @@
+"""The loss of symmetry beside Fig. 16: when, to which side, and what it does to the contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+
+#: A contact is marked when its tangential force is within this fraction of the Coulomb limit.
+MARGIN = 0.05
+#: Part of the slab that profiles show, to both sides of the load (radii).
+REACH = 30.0
+#: Most copies of the packing in one panel.
+COPIES = 4
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """Figures by file stem, from the datasets of the study of the same name."""
+    states, copies = datasets["states"], datasets["copies"]
+    with_states = states.sizes["state"] == 3
+    rows = 2 if with_states else 1
+    figure, axes = style.figure(
+        rows, 2, width="double", height=2.6 + 2.4 * (rows - 1), height_ratios=[1.25, 1.0][:rows]
+    )
+    _protocols(axes[0, 0], datasets["runs"], datasets["held"])
+    style.letter(axes[0, 0], "a", place="above", text="after loading to one force")
+    _copies(axes[0, 1], copies)
+    force = float(copies["force"])
+    style.letter(axes[0, 1], "b", place="above", text=rf"copies of the packing, $F_\mathrm{{ext}}={force:g}\,mg$")
+    handles: dict[str, Any] = {}
+    if with_states:
+        for index in (0, 1):
+            panel, loaded = axes[1, index], states.isel(state=index + 1)
+            _network(panel, states.isel(state=0), loaded, handles)
+            force = float(loaded["force"])
+            style.letter(panel, "cd"[index], place="above", text=rf"$F_\mathrm{{ext}}={force:.4g}\,mg$")
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+    return {"fig16s_symmetry_breaking": figure}
+
+
+def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
+    """Asymmetry against force: colours for ramps, full and hollow markers for time steps."""
+    ramps = sorted(set(runs["ramp_time"].values))
+    steps = sorted(set(runs["time_step"].values), reverse=True)
+    for row, ramp in enumerate(ramps):
+        for column, step in enumerate(steps):
+            chosen = (runs["ramp_time"].values == ramp) & (runs["time_step"].values == step)
+            curve = runs.isel(run=np.flatnonzero(chosen)).sortby("force")
+            colour = style.COLOURS[row % len(style.COLOURS)]
+            panel.plot(
+                curve["force"],
+                curve["asymmetry"],
+                color=colour,
+                linestyle="-" if column == 0 else "none",
+                linewidth=0.9,
+                marker=style.MARKERS[row % len(style.MARKERS)],
+                markersize=3.2 if column == 0 else 6.0,
+                markerfacecolor=colour if column == 0 else "none",
+                markeredgewidth=0.8,
+                label=rf"ramp {ramp:g}, step {step:g}",
+            )
+    size = float(held["displacement"])
+    panel.plot(
+        held["force"],
+        held["asymmetry"],
+        color=style.BLACK,
+        linestyle="none",
+        marker="x",
+        markersize=4.5,
+        label=f"path, then displaced by {_power(size)}",
+    )
+    panel.set_yscale("log")
+    panel.set(xlabel=r"$F_\mathrm{ext}/mg$", ylabel="asymmetry of the floor response")
+    low, high = panel.get_ylim()
+    panel.set_ylim(low * (low / high) ** 0.62, high)  # room for the legend
+    panel.legend(loc="lower right", fontsize=7)
+
+
+def _copies(panel: Axes, copies: xr.Dataset) -> None:
+    """Profiles of some copies; those that lie on each other have markers of different size."""
+    names = copies["name"].values
+    shown = [0, 1, *(k for k, name in enumerate(names) if "displaced" in name)][:COPIES]
+    for index, k in enumerate(shown):
+        look = style.marked_line(index)
+        look |= {"markersize": 2.6} if index < 2 else {"markersize": 5.0, "markerfacecolor": "none"}
+        look["markeredgewidth"] = 0.0 if index < 2 else 0.8
+        panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=names[k], **look)
+    panel.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    panel.set(xlabel="$x/R$", ylabel=r"floor response$\,/\,F_\mathrm{ext}$", xlim=(-REACH, REACH))
+    low, high = panel.get_ylim()
+    panel.set_ylim(low - 0.62 * (high - low), high)  # room for the legend
+    panel.legend(loc="lower center", fontsize=7)
+
+
+def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset, handles: dict[str, Any]) -> None:
+    """The central third of the contact network, contacts near the Coulomb limit marked."""
+    limit = (1.0 - MARGIN) * float(rest["friction_coefficient"]) * loaded["contact_normal_force"].values
+    drawn = draw_state_changes(panel, rest, loaded, np.abs(loaded["contact_tangential_force"].values) >= limit)
+    names = {"sliding": f"within {MARGIN:.0%} of the Coulomb limit"}
+    handles.update({names.get(kind, kind): line for kind, line in drawn.items()})
+
+
+def _power(value: float) -> str:
+    """A power of ten as mathematics, another number as it is."""
+    exponent = np.log10(value)
+    return rf"$10^{{{exponent:.0f}}}R$" if abs(exponent - round(exponent)) < 1e-9 else rf"${value:g}R$"

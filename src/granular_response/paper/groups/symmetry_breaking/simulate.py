@@ -1,0 +1,347 @@
+"""The loss of symmetry of the response at large friction, and what decides its sign (Sec. V.E).
+
+The paper's protocol is followed literally: from rest, a force is ramped up and the motion followed until it dies
+out. The force at which the response loses its symmetry is bracketed for several durations of the ramp and
+time steps. At one force beyond it, copies of the packing that differ in the order of the arithmetic or by
+rounding-sized displacements tell what the sign depends on. And equilibria of the symmetric branch are displaced
+a little under constant force, which tells a loss of stability from a growth of asymmetry during loading.
+
+Forces are in mean disk weights, lengths in mean radii, times in sqrt(R/g).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe import network
+from granular_response.observe.events import EventNotBracketed, bisect_event
+from granular_response.paper.slab_response import (
+    Event,
+    FloatArray,
+    LoadPath,
+    Measured,
+    Measures,
+    events_dataset,
+    measured_dataset,
+    states_picture,
+)
+from granular_response.scene import Packing, Scene
+from granular_response.solve import Dynamics, Problem, Stop, relax
+from granular_response.solve.timestep import resolve_time_step
+from granular_response.state import State
+from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.sweep.memory import rest_state
+from granular_response.sweep.sweep import Progress, map_tasks
+
+#: When a displaced equilibrium counts as settled, and how many steps it gets: growth from a small displacement
+#: shows long before.
+HELD_STOP = Stop(kinetic_energy=1e-15, rule="envelope", maximum_steps=200_000)
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """How a force is applied, and the forces between which the response loses its symmetry."""
+
+    ramp_time: float
+    time_step: float
+    low: float
+    high: float
+
+    def scene(self, base: Scene) -> Scene:
+        """``base`` under this protocol."""
+        return base.updated(
+            {
+                "protocol.method": "dynamics",
+                "protocol.ramp_time": self.ramp_time,
+                "protocol.time_step": self.time_step,
+            }
+        )
+
+
+@dataclass(frozen=True)
+class BracketResult:
+    """The bracket for one protocol, with all runs that it took."""
+
+    event: Event
+    forces: tuple[float, ...]
+    measured: Measured  #: at ``forces``
+    states: tuple[State, ...]  #: the last symmetric and the first asymmetric one, if there are both
+
+
+@dataclass(frozen=True)
+class BracketTask:
+    """Bracket the loss of symmetry for one protocol."""
+
+    base: Scene
+    rest: State
+    protocol: Protocol
+    tolerance: float
+    above: float  #: asymmetry that counts as lost symmetry
+
+    def run(self) -> BracketResult:
+        path = LoadPath.of(self.protocol.scene(self.base), self.rest)
+        measures = Measures(path)
+
+        def asymmetric(force: float) -> bool:
+            return measures.asymmetry(path.at(force)) > self.above
+
+        low, high = self.protocol.low, self.protocol.high
+        try:
+            bracket = bisect_event(asymmetric, low, high, self.tolerance)
+            low, high = bracket.low, bracket.high
+        except EventNotBracketed:
+            low, high = (0.0, low) if asymmetric(low) else (high, float("nan"))
+        forces = tuple(sorted(path.known))
+        text = (
+            f"dynamics with a ramp of {self.protocol.ramp_time:g} and a time step of "
+            f"{self.protocol.time_step:g}: the asymmetry of the floor response exceeds {self.above:g}"
+        )
+        event = Event("loss_of_symmetry", measures.friction, low, high, self.tolerance, len(forces), text)
+        ends = tuple(path.known[force] for force in (low, high) if force in path.known)
+        measured = Measured.of(measures, [path.known[force] for force in forces])
+        return BracketResult(event, forces, measured, ends if len(ends) == 2 else ())
+
+
+@dataclass(frozen=True)
+class CopyTask:
+    """One force on one copy of the packing, settled under gravity anew."""
+
+    scene: Scene
+    name: str
+    packing: Packing
+    force: float
+
+    def run(self) -> Measured:
+        path = LoadPath.of(self.scene, packing=self.packing)
+        return Measured.of(Measures(path), [path.at(self.force)])
+
+
+@dataclass(frozen=True)
+class HeldResult:
+    """Equilibria of the load path, each before and after a small displacement under constant force."""
+
+    branch: Measured
+    displaced: Measured
+    displacement: FloatArray  #: (force,) largest distance of a disk from its place before
+
+
+@dataclass(frozen=True)
+class HeldTask:
+    """Displace the equilibria at ``forces`` by up to ``displacement`` and let them settle."""
+
+    scene: Scene
+    rest: State
+    forces: tuple[float, ...]
+    displacement: float
+
+    def run(self) -> HeldResult:
+        path = LoadPath.of(self.scene, self.rest)
+        states = path.through(self.forces)
+        settled = [self._displaced(path.problem, state) for state in states]
+        measures = Measures(path)
+        moved = [
+            float(np.abs(after.position - before.position).max()) for before, after in zip(states, settled, strict=True)
+        ]
+        return HeldResult(Measured.of(measures, states), Measured.of(measures, settled), np.array(moved))
+
+    def _displaced(self, problem: Problem, state: State) -> State:
+        shift = _random_shift(state.position.shape, self.displacement, seed=0)
+        start = problem.with_static_forces(replace(state, position=state.position + shift))
+        protocol = problem.scene.protocol
+        dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
+        factor = state.load_factor
+        settled = relax(dynamics, HELD_STOP, load=(factor, factor, 0.0))
+        return replace(settled, information={**state.information, **settled.information})
+
+
+@dataclass(frozen=True)
+class RestTask:
+    """The packing settled under gravity."""
+
+    scene: Scene
+
+    def run(self) -> State:
+        return rest_state(Problem.from_scene(self.scene))
+
+
+Task = BracketTask | CopyTask | HeldTask | RestTask
+
+
+def _run(task: Task) -> Any:
+    return task.run()
+
+
+def simulate(
+    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+) -> dict[str, xr.Dataset]:
+    """Datasets of the loss of symmetry; which method finds the symmetric branch is ``method``.
+
+    Parameters
+    ----------
+    parameters
+        ``method`` (of the path of ``held``; all else is dynamics); ``scene``, changes to the default scene by
+        paths of keys; ``asymmetry``, above which symmetry counts as lost; ``tolerance`` of the brackets;
+        ``protocols``, each with ``ramp_time``, ``time_step`` and the forces ``between`` which to search, the
+        first one also for the copies; ``copies`` (``force``, ``displacement``, ``seeds``); ``held``
+        (``forces``, ``displacement``).
+    workers, progress
+        As of ``map_tasks``.
+
+    Returns
+    -------
+    ``brackets`` (event), ``runs`` (run), ``copies`` (copy), ``held`` (force), and ``states``: at rest, and the
+    last symmetric and the first asymmetric state of the first protocol.
+    """
+    base = Scene().updated({"loads": [{"disk": "top-centre", "force": [0.0, -1.0]}], **parameters.get("scene", {})})
+    protocols = [
+        Protocol(float(p["ramp_time"]), float(p["time_step"]), *map(float, p["between"]))
+        for p in parameters["protocols"]
+    ]
+    first = protocols[0].scene(base)
+    alone: list[Task] = [RestTask(first)]
+    (rest,) = map_tasks(_run, alone, workers=1, progress=progress, what="rest state")
+
+    brackets = [
+        BracketTask(base, rest, protocol, float(parameters["tolerance"]), float(parameters["asymmetry"]))
+        for protocol in protocols
+    ]
+    copies = _copy_tasks(parameters["copies"], first)
+    held = HeldTask(
+        base.updated({"protocol.method": parameters["method"]}),
+        rest,
+        tuple(sorted(map(float, parameters["held"]["forces"]))),
+        float(parameters["held"]["displacement"]),
+    )
+    # long ones first, so that no core waits for them in the end
+    longest = sorted(brackets, key=lambda t: -(100.0 + t.protocol.ramp_time) / t.protocol.time_step)
+    tasks: list[Task] = [*longest, held, *copies]
+    results = map_tasks(_run, tasks, workers=workers, progress=progress, what="loss of symmetry")
+    found: list[BracketResult] = [results[longest.index(task)] for task in brackets]
+
+    datasets = {
+        "brackets": _brackets_dataset(protocols, found),
+        "runs": _runs_dataset(protocols, found),
+        "held": _held_dataset(held, results[len(brackets)]),
+        "copies": _copies_dataset(copies, results[len(brackets) + 1 :]),
+    }
+    problem = Problem.from_scene(base).with_loads(rest.position)
+    datasets["states"] = states_picture([rest, *found[0].states], problem)
+    for dataset in datasets.values():
+        dataset["friction_coefficient"] = variable((), base.contact.friction, "coefficient of friction between disks")
+        dataset.attrs.update(scene=base.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
+    return datasets
+
+
+def _copy_tasks(given: Mapping[str, Any], scene: Scene) -> list[CopyTask]:
+    packing = scene.packing.build()
+    copies = {"as it is": packing, "numbered from right to left": mirrored(packing)}
+    for seed in given["seeds"]:
+        copies[f"numbered at random, seed {seed}"] = shuffled(packing, int(seed))
+    for seed in given["seeds"]:
+        shift = _random_shift(packing.position.shape, float(given["displacement"]), int(seed))
+        for image in (False, True):
+            name = f"displaced at random, seed {seed}" + (", mirror image" if image else "")
+            copies[name] = displaced(packing, shift, mirror_image=image)
+    return [CopyTask(scene, name, copy, float(given["force"])) for name, copy in copies.items()]
+
+
+def mirrored(packing: Packing) -> Packing:
+    """The mirror image of a packing, each disk with its number: for a symmetric lattice only the numbers change."""
+    position = packing.position * np.array([-1.0, 1.0]) + np.array([packing.width, 0.0])
+    return replace(packing, position=position)
+
+
+def shuffled(packing: Packing, seed: int) -> Packing:
+    """The same disks numbered at random.
+
+    As a packing from a file, since the neighbours on a lattice are known by the numbers of the disks.
+    """
+    order = np.random.default_rng(seed).permutation(packing.n)
+    return replace(
+        packing,
+        position=packing.position[order],
+        radius=packing.radius[order],
+        row=packing.row[order],
+        kind="file",
+    )
+
+
+def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
+    """The packing with its disks moved by ``shift`` (n, 2), or by the mirror image of it."""
+    if mirror_image:
+        image = network.mirror_disks(packing.position, 0.5 * packing.width)
+        shift = shift[image] * np.array([-1.0, 1.0])
+    return replace(packing, position=packing.position + shift)
+
+
+def _random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
+    return np.random.default_rng(seed).uniform(-size, size, shape)
+
+
+def _brackets_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult]) -> xr.Dataset:
+    dataset = events_dataset([result.event for result in found])
+    return dataset.assign(_protocol_columns("event", protocols))
+
+
+def _protocol_columns(dimension: str, protocols: Sequence[Protocol]) -> dict[str, xr.Variable]:
+    ramps = np.array([protocol.ramp_time for protocol in protocols])
+    steps = np.array([protocol.time_step for protocol in protocols])
+    return {
+        "ramp_time": variable((dimension,), ramps, "duration of the load ramp in sqrt(radius/g)"),
+        "time_step": variable((dimension,), steps, "time step in sqrt(radius/g)"),
+    }
+
+
+def _runs_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult]) -> xr.Dataset:
+    """Every run of every protocol, in the order of the protocols and then of the forces."""
+    counts = [len(result.forces) for result in found]
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    parts = [
+        (slice(int(start), int(start) + count), result.measured)
+        for start, count, result in zip(starts, counts, found, strict=False)
+    ]
+    dataset = measured_dataset(("run",), parts, (int(starts[-1]),))
+    of_run = [protocol for protocol, count in zip(protocols, counts, strict=True) for _ in range(count)]
+    forces = np.concatenate([result.forces for result in found])
+    return dataset.assign(
+        {**_protocol_columns("run", of_run), "force": variable(("run",), forces, f"applied force {FORCE}")}
+    )
+
+
+def _copies_dataset(tasks: Sequence[CopyTask], measured: Sequence[Measured]) -> xr.Dataset:
+    """The copies, and how far each is from the first one and from its mirror image."""
+    dataset = measured_dataset(("copy",), [([k], m) for k, m in enumerate(measured)], (len(measured),))
+    response = dataset["floor_response"].values
+    largest = response[0].max()
+    text = "largest difference of the floor response to {} of the first copy, per largest response"
+    return dataset.assign(
+        name=variable(("copy",), [task.name for task in tasks], "how the copy differs from the packing"),
+        force=variable((), tasks[0].force, f"applied force {FORCE}"),
+        difference=variable(("copy",), np.abs(response - response[0]).max(axis=1) / largest, text.format("that")),
+        mirror_difference=variable(
+            ("copy",),
+            np.abs(response[:, ::-1] - response[0]).max(axis=1) / largest,
+            text.format("the mirror image"),
+        ),
+    )
+
+
+def _held_dataset(task: HeldTask, result: HeldResult) -> xr.Dataset:
+    count = len(task.forces)
+    dataset = measured_dataset(("force",), [(slice(0, count), result.displaced)], (count,))
+    before = measured_dataset(("force",), [(slice(0, count), result.branch)], (count,))
+    return dataset.assign(
+        branch_asymmetry=variable(
+            ("force",), before["asymmetry"].values, "asymmetry of the floor response before the displacement"
+        ),
+        branch_response=variable(
+            ("force", "floor_disk"), before["floor_response"].values, "floor response before the displacement"
+        ),
+        moved=variable(("force",), result.displacement, f"largest distance from the place before {LENGTH}"),
+        displacement=variable((), task.displacement, f"largest random displacement {LENGTH}"),
+    ).assign_coords(force=variable(("force",), np.array(task.forces), f"applied force {FORCE}"))

@@ -1,0 +1,38 @@
+"""Fig. 1: pressure on the floor under a localized force, by the elliptic and the hyperbolic description."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``fig01_predictions`` from the dataset ``predictions`` of the study of the same name."""
+    data = datasets["predictions"]
+    figure, ((elliptic, hyperbolic),) = style.figure(1, 2, width="double", height=2.5, sharex=True)
+
+    x = data["x"].values
+    elliptic.plot(x, data["slab_rough"], **style.line(0), label="slab, rough floor")
+    elliptic.plot(x, data["slab_smooth"], **style.line(1), label="slab, smooth floor")
+    elliptic.plot(x, data["half_plane"], **style.line(2), label="half plane")
+    style.letter(elliptic, "a", text="elliptic")
+
+    depths = data["depth"].values
+    colours = style.ordered_colours(len(depths))
+    for index, (depth, colour) in enumerate(zip(depths, colours, strict=True)):
+        look = {"color": colour, "linestyle": style.LINE_STYLES[index % len(style.LINE_STYLES)]}
+        hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=f"$h = {depth:g}\\,R$")
+    style.letter(hyperbolic, "b", text="hyperbolic")
+
+    for axes in (elliptic, hyperbolic):
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+        axes.set(xlabel="$x/h$", xlim=(x[0], x[-1]))
+        axes.margins(y=0.08)
+        axes.legend(loc="upper right")
+    elliptic.set_ylabel("pressure on the floor, $p\\,h/F_{\\mathrm{ext}}$")
+    return {"fig01_predictions": figure}

@@ -1,0 +1,108 @@
+"""Fig. 18: force chains below an oblique force with torques, and how far the torques reach."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch
+
+from granular_response.plot import style
+from granular_response.plot.network import (
+    draw_disks,
+    draw_force_chains,
+    draw_force_key,
+    draw_load,
+    force_scale,
+    pair_points,
+)
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``fig18_torque`` and ``fig18_torque_reach`` from the datasets of the study of the same name."""
+    return {"fig18_torque": _chains(datasets["torques"]), "fig18_torque_reach": _reach(datasets["reach"])}
+
+
+def _chains(data: xr.Dataset) -> Figure:
+    """The central third of the upper half of the slab, all panels on one scale."""
+    torques = data["torque"].values
+    rows = (len(torques) + 2) // 3
+    figure, panels = style.figure(rows, 3, width="double", height=2.15 * rows)
+    width, disk = float(data["width"]), int(data["loaded_disk"])
+    added = data["contact_added_force"].values
+    scale = force_scale(added.reshape(-1, 2), longest=3.2, widest=4.6)
+    radius = data["radius"].values
+    pairs = data["contact_disk"].values, data["contact_partner"].values
+    low = 0.5 * float(data["position"].values[0, :, 1].max() + 1.0)
+    left, right = width / 3.0, 2.0 * width / 3.0
+    for index, axes in enumerate(panels.ravel()):
+        style.no_axes(axes)
+        if index >= len(torques):
+            continue
+        position = data["position"].values[index]
+        inside = (np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0) & (position[:, 1] >= low - 1.0)
+        draw_disks(axes, position[inside], radius[inside], edgecolor="#D8D8D8")
+        point = pair_points(position, radius, *pairs)
+        shown = (point[:, 0] >= left) & (point[:, 0] <= right) & (point[:, 1] >= low)
+        draw_force_chains(axes, point[shown], added[index][shown], **scale)
+        _loads(axes, position[disk], data["applied_force"].values, float(torques[index]))
+        axes.set(xlim=(left - 0.5, right + 0.5), ylim=(low - 0.5, float(position[disk, 1]) + 4.6))
+        style.letter(axes, chr(ord("a") + index), text=_torque(float(torques[index])))
+    draw_force_key(panels[0, 2], (right - 4.5, float(data["position"].values[0, disk, 1]) + 3.4), 5.0, **scale)
+    return figure
+
+
+def _loads(axes: Axes, centre: np.ndarray, force: np.ndarray, torque: float) -> None:
+    """The force as a straight arrow to the disk's centre, a clockwise torque as an arc over it."""
+    draw_load(axes, (float(centre[0]), float(centre[1])), (float(force[0]), float(force[1])), length=4.6)
+    if torque:
+        start, end = np.radians(150.0), np.radians(20.0)
+        if torque < 0.0:
+            start, end = end, start
+        ends = [(centre[0] + 1.7 * np.cos(a), centre[1] + 1.7 * np.sin(a)) for a in (start, end)]
+        axes.add_patch(
+            FancyArrowPatch(
+                ends[0],
+                ends[1],
+                # a circle through both ends: the bulge over half the chord is tan(angle / 4)
+                connectionstyle=f"arc3,rad={-2.0 * np.tan((start - end) / 4.0) * 0.5:.4f}",
+                arrowstyle="-|>",
+                mutation_scale=8.0,
+                color=style.BLUE,
+                linewidth=1.2,
+                shrinkA=0.0,
+                shrinkB=0.0,
+                zorder=11,
+            )
+        )
+
+
+def _reach(data: xr.Dataset) -> Figure:
+    """Not in the paper: what the torque changes, against the distance from the load."""
+    figure, panels = style.figure(1, 3, width="double", height=2.5, sharex=True)
+    torques = data["torque"].values
+    turned = np.flatnonzero(torques)
+    colours = style.ordered_colours(max(1, len(turned)))
+    panel_of = {
+        "force_change": "contact forces",
+        "stress_change": "stress tensor",
+        "antisymmetric_change": "antisymmetric stress",
+    }
+    top = 1.1 * max(float(data[name].max()) for name in panel_of)
+    for index, (axes, (name, text)) in enumerate(zip(panels[0], panel_of.items(), strict=True)):
+        for number, k in enumerate(turned):
+            look = {**style.marked_line(number), "color": colours[number]}
+            axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
+        axes.set(xlabel="distance from the load $/R$", xlim=(0.0, None), ylim=(0.0, top))
+        style.letter(axes, chr(ord("a") + index), place="above", text=text)
+    panels[0, 0].set_ylabel("relative change by the torque")
+    panels[0, 2].legend(title="torque $/mgR$", loc="upper right")
+    return figure
+
+
+def _torque(value: float) -> str:
+    return "no torque" if value == 0.0 else f"${value:g}\\,mgR$"

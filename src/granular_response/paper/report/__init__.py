@@ -1,0 +1,140 @@
+"""The page a reader opens: verdicts, figures, readings, benchmarks, and how to run each part again.
+
+One HTML file that needs no network: pictures, style and script are inside. It is made from files that the pipeline
+stored, and has the same bytes for the same files.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from granular_response import __version__
+from granular_response.store import atomic, generated
+from granular_response.store import files as store
+
+from . import benchmarks, explorer, pictures, readings
+
+#: Where the page is kept.
+OUTPUT = Path("figures") / "report.html"
+
+#: Figure group whose states the slider shows, and the one whose table the readings come from.
+EXPLORED, SENSITIVITY = "friction_linear_range", "sensitivity"
+
+__all__ = ["OUTPUT", "ReportError", "page", "renew_notes", "write"]
+
+
+class ReportError(Exception):
+    """Something the page is made from is missing or damaged. The message is one line."""
+
+
+def write(output: str | os.PathLike[str] = OUTPUT, root: str | os.PathLike[str] = ".") -> Path:
+    """Make the page from ``figures/``, ``data/`` and ``benchmarks/`` below ``root``; returns its path.
+
+    Raises
+    ------
+    ReportError
+        If ``figures/claims.json`` is missing or not JSON.
+    granular_response.store.StoreError
+        If a dataset cannot be read.
+    OSError
+        If the page cannot be written.
+    """
+    target = Path(output)
+    made = page(Path(root)).encode()
+    target.parent.mkdir(parents=True, exist_ok=True)
+    atomic.write_bytes(target, made)
+    return target
+
+
+def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the table of readings in ``notes`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    granular_response.generated.GeneratedError
+        If the file cannot be read or has no place for the table.
+    granular_response.store.StoreError
+        If the dataset is missing or cannot be read.
+    """
+    datasets = store.read(Path(root) / "data" / f"{SENSITIVITY}.nc")
+    generated.renew(notes, readings.BLOCK, readings.markdown(datasets))
+
+
+def page(root: Path) -> str:
+    """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing."""
+    claims = _claims(root / "figures" / "claims.json")
+    shown = pictures.collect(root / "figures")
+    data = root / "data"
+    explored, sensitivity = (data / f"{group}.nc" for group in (EXPLORED, SENSITIVITY))
+    states = explorer.payload(store.read(explored)) if explored.exists() else None
+    tried = readings.table(store.read(sensitivity)) if sensitivity.exists() else None
+    numbers: dict[str, set[int]] = {row["group"]: set() for row in claims["table"]}
+    for picture in shown.all():
+        numbers.setdefault(picture.group, set()).update([picture.number] if picture.number else [])
+    groups = [{"name": group, "figures": sorted(numbers[group])} for group in sorted(numbers)]
+    environment = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    template = environment.from_string(_resource("page.html.j2"))
+    return (
+        template.render(
+            version=__version__,
+            claims=claims,
+            verdicts=[(v, v.replace(" ", "_"), claims["counts"][v.replace(" ", "_")]) for v in _VERDICTS],
+            numbered=shown.numbered,
+            further=shown.further,
+            states=_json_in_html(states) if states else None,
+            explored=states is not None
+            and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
+            readings=tried,
+            benchmarks=benchmarks.collect(root / "benchmarks"),
+            goals=benchmarks.goals(root / "benchmarks"),
+            groups=groups,
+            versions=_versions(root / "requirements.lock"),
+            style=_resource("style.css"),
+            script=_resource("explorer.js"),
+        )
+        + "\n"
+    )
+
+
+#: What the digits and the pictures come from.
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")
+
+_VERDICTS = ("reproduced", "differs", "not reproduced", "not measured")
+
+
+def _claims(path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+        known = isinstance(found, dict) and {"counts", "table"} <= set(found)
+    except FileNotFoundError:
+        raise ReportError(f"{path}: no such file, make it with granular-response claims") from None
+    except (OSError, ValueError) as error:
+        raise ReportError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
+    if not known:
+        raise ReportError(f"{path}: is not a table of claims")
+    return found
+
+
+def _versions(lock: Path) -> list[tuple[str, str]]:
+    """Names and pinned versions of the libraries that results depend on, none without the file."""
+    if not lock.exists():
+        return []
+    pinned = dict(line.split("==") for line in lock.read_text(encoding="utf-8").split() if line.count("==") == 1)
+    return [(name, pinned[name]) for name in _LIBRARIES if name in pinned]
+
+
+def _resource(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _json_in_html(value: Any) -> str:
+    """JSON that cannot end the script element it stands in."""
+    return json.dumps(value, separators=(",", ":")).replace("<", "\\u003c")

@@ -1,0 +1,401 @@
+"""A slab under a growing force on one disk: its states along the force, what is measured on them, and events.
+
+What the studies of Sec. V share. Forces are in mean disk weights, lengths in mean radii.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from granular_response.observe import events, network, peaks
+from granular_response.observe.floor import floor_disks, floor_response, interior_mask
+from granular_response.observe.teardrop import OpenRegion, teardrop
+from granular_response.scene import Packing, Scene
+from granular_response.solve import Problem, loaded_states
+from granular_response.solve.path import Crossing
+from granular_response.state import State
+from granular_response.store.result import (
+    FORCE,
+    LENGTH,
+    certificates_dataset,
+    common_candidates,
+    states_dataset,
+    variable,
+)
+from granular_response.sweep.memory import rest_state
+
+FloatArray = NDArray[np.float64]
+
+#: A contact is mobilised when its tangential force is within one of these fractions of the Coulomb limit.
+#: Whether it slides is lost in the last vibrations before rest, which take it off the limit by a little.
+MARGINS = (0.01, 0.05)
+
+#: What :meth:`Measures.scalars` gives, with long names.
+SCALARS = {
+    "response_at_centre": "floor response below the loaded disk",
+    "central_dip": "how far the response at x = 0 is below the lower maximum beside it, per largest response",
+    "peak_count": "number of peaks of the floor response",
+    "double_peaked": "1 where the floor response has a peak on each side of x = 0 that exceeds it",
+    "third_peak": "1 where a double-peaked response has a further peak at x = 0",
+    "third_peak_prominence": "prominence of that third peak, per largest response; 0 without it",
+    "asymmetry": "largest difference of the response and its mirror image, per largest response",
+    "asymmetry_sign": "1 if the part of the response at x > 0 is the larger one, -1 if that at x < 0 is",
+    "peak_height": "largest floor response",
+    "half_maximum_width": f"full width at half maximum of the floor response {LENGTH}",
+    "opened_contacts": "contacts of disks in the central third that touch at rest and not under load",
+    "sliding_contacts": "contacts of disks at the Coulomb limit",
+    "teardrop_depth": f"depth of the region of opened contacts below the loaded disk {LENGTH}",
+    "teardrop_width": f"largest width of the region of opened contacts {LENGTH}",
+    "reaches_floor": "1 where the region of opened contacts reaches the bottom row",
+    "network_asymmetry": "fraction of the contacts of disks without a mirror image",
+}
+
+#: The parts of a state that a picture of its contact network and its response need.
+PICTURE = (
+    "position",
+    "angle",
+    "contact_disk",
+    "contact_partner",
+    "contact_status",
+    "contact_normal_force",
+    "contact_tangential_force",
+    "wall_disk",
+    "wall_index",
+    "wall_status",
+    "wall_normal_force",
+    "load_factor",
+)
+
+
+@dataclass
+class LoadPath:
+    """States of one scene under a growing load, each found from the one below it.
+
+    With dynamics as the protocol (``method: dynamics``) every state starts at rest instead, as in the paper.
+    """
+
+    scene: Scene  #: with one load, of unit force
+    problem: Problem  #: with the loaded disk chosen
+    rest: State
+    known: dict[float, State] = field(default_factory=dict)  #: by force
+    method: str = ""
+    crossings: list[Crossing] = field(default_factory=list)  #: stretches of force that dynamics crossed
+
+    @classmethod
+    def of(cls, scene: Scene, rest: State | None = None, packing: Packing | None = None) -> LoadPath:
+        """The path of ``scene``, settled under gravity unless its ``rest`` state is given.
+
+        ``packing`` replaces the one that the scene describes. Raises what ``rest_state`` raises.
+        """
+        problem = Problem.from_scene(scene, packing)
+        rest = rest_state(problem) if rest is None else rest
+        return cls(scene, problem.with_loads(rest.position), rest)
+
+    def at(self, force: float) -> State:
+        """The state under ``force``."""
+        return self.through([force])[0]
+
+    def through(self, forces: Iterable[float]) -> list[State]:
+        """States at increasing ``forces``; known ones are not computed again.
+
+        Raises what ``loaded_states`` raises.
+        """
+        forces = [float(force) for force in forces]
+        wanted = [force for force in forces if force not in self.known]
+        literal = self.scene.protocol.method == "dynamics"
+        while wanted:
+            below = max((f for f in self.known if f < wanted[0] and not literal), default=0.0)
+            above = min((f for f in self.known if f > wanted[0]), default=np.inf)
+            run = [force for force in wanted if force < above]
+            start = self.known[below] if below else self.rest
+            choice, states = loaded_states(self.problem, start, run)
+            self.method = choice.method
+            self.crossings += states[-1].information.get("crossings", [])
+            self.known.update(zip(run, states, strict=True))
+            wanted = wanted[len(run) :]
+        return [self.known[force] for force in forces]
+
+
+class Measures:
+    """What is measured on the loaded states of one slab."""
+
+    def __init__(self, path: LoadPath):
+        packing = path.problem.packing
+        self.rest, self.width = path.rest, packing.width
+        self.friction = path.scene.contact.friction
+        self.loaded_disk = int(path.problem.load_disk[0])
+        self.lattice_constant = float(packing.lattice_constant or 2.0)
+        self.disks = floor_disks([path.rest], np.flatnonzero(packing.row == 0))
+        middle = float(path.rest.position[self.loaded_disk, 0])
+        self.x: FloatArray = path.rest.position[self.disks, 0] - middle
+        margin = min(10.0, 0.2 * packing.width)
+        self.interior = interior_mask(self.x, packing.width, margin, left_wall=-middle)
+        # Near the load means the central third, as in Figs. 4, 8 and 9. Towards the upper corners some contacts
+        # carry almost nothing under gravity, so that they open under the least force.
+        self.near = network.interior_contacts(path.rest, packing.width, packing.width / 3.0)
+        self.mirror = network.mirror_disks(packing.position, 0.5 * packing.width)
+
+    def response(self, state: State) -> FloatArray:
+        """(floor_disk,) floor response per applied force."""
+        return floor_response(self.rest, state, self.disks, abs(state.load_factor))
+
+    def centre(self, state: State) -> float:
+        """Response at x = 0."""
+        return float(np.interp(0.0, self.x, self.response(state)))
+
+    def opened(self, state: State) -> int:
+        """Number of contacts of disks that the load opened in the central third."""
+        return int(np.count_nonzero(network.contact_changes(self.rest.pairs, state.pairs).opened & self.near))
+
+    def double_peaked(self, state: State) -> bool:
+        """Whether the response has two peaks in the sense of the paper's crossover."""
+        return peaks.is_double_peaked(self.x, self.response(state), interior=self.interior)
+
+    def third_peak(self, state: State) -> bool:
+        """Whether a double-peaked response has a further peak at x = 0."""
+        return peaks.has_third_peak(self.x, self.response(state), interior=self.interior)
+
+    def asymmetry(self, state: State) -> float:
+        """Largest difference of the response and its mirror image, per largest response."""
+        return peaks.asymmetry(self.x, self.response(state), interior=self.interior)
+
+    def region(self, state: State) -> OpenRegion:
+        """The opened contacts below the load."""
+        return teardrop(self.rest, state, self.loaded_disk, start=self.near, lattice_constant=self.lattice_constant)
+
+    def mobilised(self, state: State) -> list[int]:
+        """Number of contacts of disks within each of ``MARGINS`` of the Coulomb limit."""
+        return [mobilised_contacts(state, self.friction, margin) for margin in MARGINS]
+
+    def scalars(self, state: State) -> dict[str, float]:
+        """One value for each of ``SCALARS``."""
+        x, response = self.x, self.response(state)
+        largest = float(response[self.interior].max())
+        region = self.region(state)
+        return {
+            "response_at_centre": self.centre(state),
+            "central_dip": peaks.central_dip(x, response, interior=self.interior),
+            "peak_count": peaks.peak_count(x, response, interior=self.interior),
+            "double_peaked": self.double_peaked(state),
+            "third_peak": self.third_peak(state),
+            "third_peak_prominence": self._third_prominence(state) / largest,
+            "asymmetry": self.asymmetry(state),
+            "asymmetry_sign": asymmetry_sign(x, response),
+            "peak_height": largest,
+            "half_maximum_width": half_maximum_width(x, response),
+            "opened_contacts": self.opened(state),
+            "sliding_contacts": network.sliding_count(state, walls=False) if self.friction > 0.0 else 0,
+            "teardrop_depth": region.depth,
+            "teardrop_width": region.width,
+            "reaches_floor": region.reaches_floor,
+            "network_asymmetry": network.network_asymmetry(state.pairs, self.mirror),
+        }
+
+    def _third_prominence(self, state: State) -> float:
+        if not self.third_peak(state):
+            return 0.0
+        found = peaks.find_peaks(self.x, self.response(state), interior=self.interior)
+        return float(found.prominence[np.abs(found.position) <= 1.0].max())
+
+
+def mobilised_contacts(state: State, friction: float, margin: float) -> int:
+    """Contacts of disks with ``|f_t| >= (1 - margin) friction f_n``; none without friction."""
+    if not friction > 0.0:
+        return 0
+    pairs = state.pairs
+    limit = (1.0 - margin) * friction * pairs.normal_force
+    return int(np.count_nonzero(pairs.touching & (np.abs(pairs.tangential_force) >= limit)))
+
+
+def asymmetry_sign(x: FloatArray, response: FloatArray) -> int:
+    """On which side of x = 0 the response is larger: 1 right, -1 left, 0 if neither."""
+    return int(np.sign(response[x > 1e-6].sum() - response[x < -1e-6].sum()))
+
+
+def half_maximum_width(x: FloatArray, response: FloatArray) -> float:
+    """Distance of the outermost places where the response passes half of its maximum.
+
+    Linear between samples; nan where a side does not fall to half. Peaks that reach half count as one.
+    """
+    half = 0.5 * float(response.max())
+    above = np.flatnonzero(response >= half)
+    left, right = int(above[0]), int(above[-1])
+    if left == 0 or right == len(x) - 1:
+        return float("nan")
+
+    def passes(inside: int, outside: int) -> float:
+        part = (response[inside] - half) / (response[inside] - response[outside])
+        return float(x[inside] + part * (x[outside] - x[inside]))
+
+    return passes(right, right + 1) - passes(left, left - 1)
+
+
+@dataclass(frozen=True)
+class Event:
+    """Where along an axis something happens for the first time: above ``low`` and not above ``high``.
+
+    ``high`` is nan if it does not happen up to ``low``, the end of the axis; ``low`` is 0 if it has happened
+    at the first value of the axis already.
+    """
+
+    name: str
+    friction: float  #: nan for an event on the axis of friction
+    low: float
+    high: float
+    tolerance: float  #: asked width of the bracket
+    evaluations: int  #: states that the bisection took
+    definition: str
+
+
+def first_change(values: Sequence[float] | FloatArray, happened: Sequence[bool]) -> tuple[float, float]:
+    """The last of ``values`` before the first True and its own; see :class:`Event` for the ends."""
+    for k, yes in enumerate(happened):
+        if yes:
+            return (float(values[k - 1]) if k else 0.0), float(values[k])
+    return float(values[-1]), float("nan")
+
+
+def locate(
+    name: str,
+    path: LoadPath,
+    forces: Sequence[float],
+    happened: Callable[[State], bool],
+    tolerance: float,
+    definition: str,
+) -> Event:
+    """The first of ``forces`` (known on ``path``) at which something has happened, narrowed by bisection."""
+    low, high = first_change(forces, [happened(path.known[force]) for force in forces])
+    evaluations = 0
+    if np.isfinite(high) and high - low > tolerance:
+        bracket = events.bisect_event(
+            lambda force: happened(path.at(force)), low, high, tolerance, at_low=False, at_high=True
+        )
+        low, high, evaluations = bracket.low, bracket.high, bracket.evaluations
+    return Event(name, path.scene.contact.friction, low, high, tolerance, evaluations, definition)
+
+
+def events_dataset(found: Sequence[Event]) -> xr.Dataset:
+    """Events as a table along ``event``."""
+
+    def column(name: str, long_name: str) -> xr.Variable:
+        values = [getattr(event, name) for event in found]
+        text = name in ("name", "definition")
+        return variable(("event",), values if text else np.array(values, dtype=float), long_name)
+
+    return xr.Dataset(
+        {
+            "name": column("name", "what happens"),
+            "friction": column("friction", "coefficient of friction, nan if it is the axis"),
+            "low": column("low", f"value before the event: force {FORCE}, or coefficient of friction"),
+            "high": column("high", "value at which it has happened; nan if not up to the lower one"),
+            "tolerance": column("tolerance", "width asked of the bracket"),
+            "evaluations": column("evaluations", "states computed for the bracket"),
+            "definition": column("definition", "what counts as the event"),
+        }
+    )
+
+
+def states_picture(states: Sequence[State], problem: Problem, dimension: str = "state") -> xr.Dataset:
+    """What pictures of the contact network need of ``states``."""
+    packing = problem.packing
+    states = common_candidates(states, packing.radius)
+    dataset = states_dataset(states, dimension)[list(PICTURE)]
+    dataset["axis"].attrs.update(long_name="axis labels", units="1")
+    force = np.array([abs(state.load_factor) for state in states])
+    dataset["force"] = variable((dimension,), force, f"applied force {FORCE}")
+    dataset["radius"] = variable(("disk",), packing.radius, f"disk radius {LENGTH}")
+    dataset["width"] = variable((), packing.width, f"distance of the side walls {LENGTH}")
+    dataset["loaded_disk"] = variable((), int(problem.load_disk[0]), "index of the loaded disk")
+    return dataset
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Measurements on k loaded states of one material."""
+
+    x: FloatArray  #: (floor_disk,)
+    interior: NDArray[np.bool_]  #: (floor_disk,)
+    disks: NDArray[np.intp]  #: (floor_disk,)
+    response: FloatArray  #: (k, floor_disk)
+    scalars: Mapping[str, FloatArray]  #: each (k,)
+    mobilised: FloatArray  #: (k, margin)
+    certificates: xr.Dataset  #: along ``state``, of length k
+
+    @classmethod
+    def of(cls, measures: Measures, states: Sequence[State]) -> Measured:
+        """Everything measured on ``states``."""
+        rows = [measures.scalars(state) for state in states]
+        return cls(
+            x=measures.x,
+            interior=measures.interior,
+            disks=measures.disks,
+            response=np.stack([measures.response(state) for state in states]),
+            scalars={name: np.array([float(row[name]) for row in rows]) for name in SCALARS},
+            mobilised=np.array([measures.mobilised(state) for state in states], dtype=float),
+            certificates=certificates_dataset(states),
+        )
+
+    def only(self, k: int) -> Measured:
+        """The measurements on one of the states."""
+        one = slice(k, k + 1)
+        return Measured(
+            self.x,
+            self.interior,
+            self.disks,
+            self.response[one],
+            {name: values[one] for name, values in self.scalars.items()},
+            self.mobilised[one],
+            self.certificates.isel(state=one),
+        )
+
+
+def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, Measured]], shape: tuple) -> xr.Dataset:
+    """Measurements on a grid of ``dims``; nan where there are none.
+
+    ``parts`` are pairs of an index into the grid (for all of its dimensions, as numpy takes it) and the
+    measurements there, on slabs with the same floor disks.
+    """
+    first = parts[0][1]
+
+    def spread(values: Callable[[Measured], NDArray]) -> FloatArray:
+        grid = np.full((*shape, *values(first).shape[1:]), np.nan)
+        for index, measured in parts:
+            grid[index] = values(measured)
+        return grid
+
+    def scalar(name: str) -> Callable[[Measured], NDArray]:
+        return lambda measured: np.asarray(measured.scalars[name])
+
+    def certificate(name: str) -> Callable[[Measured], NDArray]:
+        return lambda measured: measured.certificates[name].values
+
+    data = {name: variable(dims, spread(scalar(name)), text) for name, text in SCALARS.items()}
+    for name, described in first.certificates.data_vars.items():
+        values = spread(certificate(str(name)))
+        data[str(name)] = variable(dims, values, described.attrs["long_name"])
+    data["floor_response"] = variable(
+        (*dims, "floor_disk"),
+        spread(lambda m: m.response),
+        "vertical floor force that the load adds, per applied force",
+    )
+    data["mobilised_contacts"] = variable(
+        (*dims, "margin"),
+        spread(lambda m: m.mobilised),
+        "contacts of disks whose tangential force is within a fraction of the Coulomb limit",
+    )
+    return xr.Dataset(data).assign_coords(
+        {
+            "floor_disk": variable(("floor_disk",), first.disks, "index of the floor disk"),
+            "x": variable(("floor_disk",), first.x, f"rest position from the loaded disk {LENGTH}"),
+            "interior": variable(
+                ("floor_disk",), first.interior.astype(np.int8), "1 for disks away from the side walls"
+            ),
+            "margin": variable(("margin",), np.array(MARGINS), "fraction below the Coulomb limit"),
+        }
+    )

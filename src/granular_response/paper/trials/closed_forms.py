@@ -1,0 +1,114 @@
+"""One or two disks whose motion is known in closed form, and bounds that no contact may break.
+
+Everything is free of gravity unless it says so, in reduced units: mass 1, radius 1, moment of inertia 1/2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from granular_response.scene import Packing, Scene
+from granular_response.solve import Dynamics, Problem
+from granular_response.state import State
+
+FloatArray = NDArray[np.float64]
+
+#: Distance of the side walls from what happens.
+FAR = 500.0
+#: No collision takes longer, its short flight included; time steps between two looks at whether it is over.
+LONGEST_COLLISION, LOOK_EVERY = 4.0, 20
+
+
+def free_disks(scene: Scene, position: FloatArray, velocity: FloatArray, spin: FloatArray) -> tuple[Problem, State]:
+    """Equal disks at given places, far from side walls, with a given motion."""
+    position = np.asarray(position, float) + np.array([FAR, 0.0])
+    n = len(position)
+    packing = Packing(position, np.ones(n), np.full(n, -1, np.int32), 2.0 * FAR, "file")
+    problem = Problem.from_scene(scene, packing)
+    state = problem.bare_state()
+    return problem, replace(state, velocity=np.array(velocity, float), angular_velocity=np.array(spin, float))
+
+
+def mechanical_energy(dynamics: Dynamics, gravity: float = 1.0) -> float:
+    """Kinetic energy, elastic energy of normal and tangential springs, and that of the weight."""
+    problem, state = dynamics.problem, dynamics.state()
+    total = dynamics.kinetic_energy() * problem.n + gravity * float(problem.weight @ state.position[:, 1])
+    for contacts, law in ((state.pairs, problem.pair_law), (state.walls, problem.wall_law)):
+        total += 0.5 * law[0] * float((np.maximum(contacts.overlap, 0.0) ** 2).sum())
+        total += 0.5 * law[2] * float((contacts.spring[contacts.touching] ** 2).sum()) if law[4] > 0 else 0.0
+    return total
+
+
+def collision(scene: Scene, angle: float, spin: float, step: float, *, pair: bool) -> float:
+    """Kinetic energy after over that before a disk of speed 1 hits the floor, or another disk that is at rest.
+
+    ``angle`` in degrees from grazing (0) to head-on (90); ``spin`` is the hitting disk's. Springs are not counted:
+    when the contact has opened they are gone.
+    """
+    a = np.radians(angle)
+    gap = min(0.01, 0.1 * np.sin(a) ** 2)  # a grazing disk starts so near that it touches before it has passed
+    flight = (np.cos(a), -np.sin(a))
+    if pair:
+        position, velocity, spins = [(0.0, 4.0 + gap), (0.0, 2.0)], [flight, (0.0, 0.0)], [spin, 0.0]
+    else:
+        position, velocity, spins = [(0.0, 1.0 + gap)], [flight], [spin]
+    problem, state = free_disks(scene, np.array(position), np.array(velocity), np.array(spins))
+    dynamics = Dynamics(problem, state, scene.protocol.integrator, step)
+    dynamics.set_ramps(gravity=(0.0, 0.0, 0.0))
+    before = dynamics.kinetic_energy()
+    touched = False
+    for _ in range(int(LONGEST_COLLISION / step) // LOOK_EVERY):
+        dynamics.advance(LOOK_EVERY)
+        touching = bool(dynamics.touching().any())
+        if touched and not touching:
+            return dynamics.kinetic_energy() / before
+        touched = touched or touching
+    return float("nan")
+
+
+def sliding_to_rolling(scene: Scene, speed: float, spin: float, step: float, time: float) -> tuple[FloatArray, ...]:
+    """Time, velocity and rim speed of a disk set on the floor with ``speed`` and ``spin``, with gravity."""
+    problem, state = free_disks(scene, np.array([(0.0, 1.0)]), np.array([(speed, 0.0)]), np.array([spin]))
+    down = state.position - [[0.0, 1.0 / problem.wall_law[0]]]
+    dynamics = Dynamics(problem, replace(state, position=down), scene.protocol.integrator, step)
+    dynamics.set_ramps()
+    readings = []
+    for _ in range(100):
+        dynamics.advance(max(1, round(0.01 * time / step)))
+        readings.append((dynamics.time, dynamics.v[0], -dynamics.v[2]))
+    return tuple(np.array(column) for column in zip(*readings, strict=True))
+
+
+def rolling_speed(time: FloatArray, friction: float, speed: float, spin: float) -> tuple[FloatArray, FloatArray]:
+    """Closed form of the same: friction ``mu g`` acts until velocity and rim speed ``-R w`` are equal, 3 mu g t after.
+
+    The rim speed changes twice as fast as the velocity, so both end at ``(2 v + rim) / 3``: 2/3 of the velocity
+    for a disk that does not turn at first.
+    """
+    rim = -spin
+    slip = speed - rim
+    slid = np.minimum(np.asarray(time), abs(slip) / (3.0 * friction))
+    return speed - np.sign(slip) * friction * slid, rim + 2.0 * np.sign(slip) * friction * slid
+
+
+def kinetic_energy(state: State, problem: Problem) -> float:
+    """Of all disks together."""
+    turning = float(problem.packing.inertia @ state.angular_velocity**2)
+    return 0.5 * (float(problem.weight @ (state.velocity**2).sum(axis=1)) + turning)
+
+
+def energy_change(
+    problem: Problem, state: State, integrator: str, step: float, time: float
+) -> tuple[FloatArray, FloatArray]:
+    """101 times from 0 to about ``time``, and the total energy then minus the first one."""
+    dynamics = Dynamics(problem, state, integrator, step)
+    dynamics.set_ramps()
+    times, energy = [0.0], [mechanical_energy(dynamics)]
+    for _ in range(100):
+        dynamics.advance(max(1, round(0.01 * time / step)))
+        times.append(dynamics.time)
+        energy.append(mechanical_energy(dynamics))
+    return np.array(times), np.array(energy) - energy[0]

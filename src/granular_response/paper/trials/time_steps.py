@@ -1,0 +1,113 @@
+"""Which time steps are stable: a packing at rest, kicked, in raw dynamics with no guard on the step.
+
+The rest state is solved with a safe step. It is then knocked about a little, so that contacts neither open nor slide
+at first: whether the kick dies out is the linear stability of the integrator in this packing. Beyond the limit the
+motion grows until contacts open and slide, and either goes on for ever or blows up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from granular_response.scene import Scene
+from granular_response.solve import SOLVE_ERRORS, Dynamics, DynamicsError, Problem, loaded_states, rest_state
+from granular_response.solve.timestep import stability_limit
+from granular_response.state import State
+
+#: What becomes of a kick.
+SETTLES, CYCLES, BLOWS_UP, NO_REST = 0, 1, 2, 3
+OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
+#: Largest velocity of the kick, in units of the mean overlap times the frequency of a contact.
+KICK = 1e-3
+#: Parts into which a run is divided to see whether the energy still falls.
+PARTS = 8
+#: A kick blows up when its energy reaches this multiple; it dies out when in the second half of the run the energy
+#: stays below this part (an unstable mode saturates far above 1, a slow one may not fall much lower).
+GROWN, FALLEN = 1e10, 0.3
+
+
+@dataclass(frozen=True)
+class StepTrial:
+    """One scene and the time steps to try, as parts of the predicted limit."""
+
+    scene: Scene
+    ratios: tuple[float, ...]
+    steps: int
+    seed: int
+
+    def run(self) -> tuple[float, list[int]]:
+        """The predicted limit (sqrt(R/g)), and what becomes of the kick at each time step."""
+        problem = Problem.from_scene(self.scene)
+        integrator = self.scene.protocol.integrator
+        limit = stability_limit(problem, integrator)
+        try:
+            problem, state, load = prepared(problem)
+        except SOLVE_ERRORS:
+            return limit, [NO_REST] * len(self.ratios)
+        kicked = kick(problem, state, self.seed)
+        return limit, [outcome(problem, kicked, load, integrator, ratio * limit, self.steps) for ratio in self.ratios]
+
+
+def prepared(problem: Problem) -> tuple[Problem, State, float]:
+    """The packing at rest under its loads, and their factor; settled with the dashpots that settle it fastest."""
+    scene = problem.scene
+    damped = Problem.from_scene(
+        scene.updated(
+            {"contact.damping_ratio": 0.5, "wall.damping_ratio": 0.5, "protocol.integrator": "verlet",
+             "protocol.maximum_steps": 400_000}
+        )
+    )  # fmt: skip
+    state = rest_state(damped)
+    problem, damped = problem.with_loads(state.position), damped.with_loads(state.position)
+    if not scene.loads:
+        return problem, state, 0.0
+    return problem, loaded_states(damped, state, [1.0])[1][0], 1.0
+
+
+def kick(problem: Problem, state: State, seed: int, part: float = KICK) -> State:
+    """The state with random velocities and spins of the disks that bear anything, up to ``part`` of the unit above."""
+    generator = np.random.default_rng(seed)
+    overlap = float(np.mean(state.pairs.overlap[state.pairs.touching]))
+    size = part * overlap * np.sqrt(problem.pair_law[0]) * (contact_count(problem.n, state) >= 2)
+    return replace(
+        state,
+        velocity=size[:, None] * generator.uniform(-1.0, 1.0, state.velocity.shape),
+        angular_velocity=size * generator.uniform(-1.0, 1.0, problem.n) * problem.rotations,
+    )
+
+
+def contact_count(n: int, state: State) -> np.ndarray:
+    """(n,) number of closed contacts of each disk."""
+    pairs, walls = state.pairs, state.walls
+    sides = (pairs.first[pairs.touching], pairs.second[pairs.touching], walls.first[walls.touching])
+    return np.sum([np.bincount(side, minlength=n) for side in sides], axis=0)
+
+
+def outcome(problem: Problem, kicked: State, load: float, integrator: str, step: float, steps: int) -> int:
+    """Run ``steps`` time steps and look at the kinetic energy."""
+    dynamics = Dynamics(problem, kicked, integrator, step)
+    dynamics.set_ramps(load=(load, load, 0.0))
+    start = dynamics.kinetic_energy(bearing_only=True)
+    bearing = int(0.9 * (dynamics.contact_count() >= 2).sum())
+    held = True  # once disks have come loose, theirs is what counts
+    energy: list[float] = []
+    for _ in range(PARTS):
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                dynamics.advance(steps // PARTS)
+        except (DynamicsError, ValueError):
+            return BLOWS_UP
+        now = dynamics.kinetic_energy(bearing_only=held)
+        if not now < GROWN * start:
+            return BLOWS_UP
+        held = held and int((dynamics.contact_count() >= 2).sum()) >= bearing
+        energy.append(now)
+    return SETTLES if max(energy[PARTS // 2 :]) < FALLEN * start else CYCLES
+
+
+def scene_of(base: dict[str, Any], changes: dict[str, Any]) -> Scene:
+    """The base scene with changes, solved with a time step that is safe for it."""
+    return Scene.from_dict(base).updated({**changes, "protocol.time_step": "auto"})

@@ -1,0 +1,1 @@
+"""Pictures in one style: for the figures of the paper and for own results."""

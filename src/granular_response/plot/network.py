@@ -1,0 +1,277 @@
+"""Pictures of packings: disks, rotation marks, contacts and force chains, drawn from plain arrays.
+
+Positions and radii are in mean radii, forces in mean disk weights. Everything takes the arrays of a
+``State`` or of the dataset it was stored in: positions (n, 2), radii (n,), pairs of disk indices (m,), forces
+(m, 2). All drawing is in data coordinates except line widths, which are in points.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection
+from numpy.typing import ArrayLike, NDArray
+
+from granular_response.plot import style
+from granular_response.state import OPEN, foot_points
+
+FloatArray = NDArray[np.float64]
+
+
+def draw_disks(
+    axes: Axes,
+    position: ArrayLike,
+    radius: ArrayLike,
+    *,
+    values: ArrayLike | None = None,
+    facecolor: Any = "none",
+    edgecolor: Any = style.FAINT,
+    linewidth: float = 0.4,
+    **collection: Any,
+) -> EllipseCollection:
+    """Draw n disks at ``position`` (n, 2) of ``radius`` (n,) or one radius for all.
+
+    With ``values`` (n,) they are filled by value: pass ``cmap`` and ``norm`` or ``clim``, and hand the
+    returned collection to ``colorbar``.
+    """
+    centre = _points(position, "position")
+    diameter = 2.0 * np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
+    if values is not None:
+        collection["array"] = np.asarray(values, dtype=float)
+    else:
+        collection["facecolor"] = facecolor
+    disks = EllipseCollection(
+        diameter,
+        diameter,
+        np.zeros(len(centre)),
+        units="xy",
+        offsets=centre,
+        offset_transform=axes.transData,
+        edgecolor=edgecolor,
+        linewidth=linewidth,
+        **collection,
+    )
+    axes.add_collection(disks, autolim=False)
+    _include(axes, np.concatenate([centre - 0.5 * diameter[:, None], centre + 0.5 * diameter[:, None]]))
+    return disks
+
+
+def draw_rotations(
+    axes: Axes, position: ArrayLike, radius: ArrayLike, angle: ArrayLike, **lines: Any
+) -> LineCollection:
+    """Mark the rotation of each disk by a diameter that was vertical at ``angle`` (n,) zero (Fig. 2)."""
+    centre, turn = _points(position, "position"), np.asarray(angle, dtype=float)
+    arm = np.stack([-np.sin(turn), np.cos(turn)], axis=1) * 0.8 * np.reshape(radius, (-1, 1))
+    return _segments(axes, centre - arm, centre + arm, {"color": style.MUTED, "linewidth": 0.4, **lines})
+
+
+def draw_contacts(axes: Axes, position: ArrayLike, first: ArrayLike, second: ArrayLike, **lines: Any) -> LineCollection:
+    """Connect the centres of the pairs ``first``, ``second`` (m,): thin black lines unless said otherwise."""
+    centre = _points(position, "position")
+    start, end = centre[np.asarray(first, dtype=int)], centre[np.asarray(second, dtype=int)]
+    return _segments(axes, start, end, {"color": style.BLACK, "linewidth": 0.35, **lines})
+
+
+#: How each kind of contact of :func:`draw_contact_changes` is drawn, and its name in a legend.
+CONTACT_LINES: dict[str, dict[str, Any]] = {
+    "unchanged": {"color": style.BLACK, "linewidth": 0.35, "zorder": 2},
+    "sliding": {"color": style.ORANGE, "linewidth": 1.3, "zorder": 3},
+    "closed": {"color": style.BLUE, "linewidth": 1.8, "zorder": 4},
+    "opened": {"color": style.VERMILION, "linewidth": 2.0, "zorder": 5},
+}
+
+
+def draw_contact_changes(
+    axes: Axes,
+    position: ArrayLike,
+    first: ArrayLike,
+    second: ArrayLike,
+    *,
+    touching_before: ArrayLike,
+    touching: ArrayLike,
+    sliding: ArrayLike | None = None,
+    **lines: Any,
+) -> dict[str, LineCollection]:
+    """What a load changes in the contact network (Figs. 4, 8, 9); the masks are over candidate pairs, (m,).
+
+    ``opened`` touched before and does not now (thick), ``closed`` the reverse, ``sliding`` touches and
+    slides now, ``unchanged`` touches before and after without sliding (thin black). Kinds that do not
+    occur are left out of the returned collections, which are labelled for a legend.
+    """
+    before, now = np.asarray(touching_before, dtype=bool), np.asarray(touching, dtype=bool)
+    slides = np.zeros(len(now), dtype=bool) if sliding is None else np.asarray(sliding, dtype=bool) & now
+    i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
+    masks = {
+        "unchanged": before & now & ~slides,
+        "sliding": before & slides,
+        "closed": ~before & now,
+        "opened": before & ~now,
+    }
+    drawn = {}
+    for name, mask in masks.items():
+        if mask.any():
+            look = {**CONTACT_LINES[name], "label": name, **lines}
+            drawn[name] = draw_contacts(axes, position, i[mask], j[mask], **look)
+    return drawn
+
+
+def draw_state_changes(
+    axes: Axes, rest: xr.Dataset, loaded: xr.Dataset, sliding: ArrayLike
+) -> dict[str, LineCollection]:
+    """Figs. 8, 9 and 16: the central third of a slab, what a load changes in its contacts, and the load.
+
+    ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts. Returns what
+    :func:`draw_contact_changes` does.
+    """
+    position = rest["position"].values
+    first, second = rest["contact_disk"].values, rest["contact_partner"].values
+    x, z = position[int(rest["loaded_disk"])]
+    reach = float(rest["width"]) / 6.0
+    shown = np.abs(0.5 * (position[first, 0] + position[second, 0]) - x) < reach + 2.0
+    drawn = draw_contact_changes(
+        axes,
+        position,
+        first[shown],
+        second[shown],
+        touching_before=rest["contact_status"].values[shown] != OPEN,
+        touching=loaded["contact_status"].values[shown] != OPEN,
+        sliding=np.asarray(sliding)[shown],
+    )
+    draw_load(axes, (float(x), float(z) + 0.4), length=3.0)
+    axes.set(xlim=(x - reach, x + reach), ylim=(0.0, float(position[:, 1].max()) + 4.0))
+    style.no_axes(axes)
+    return drawn
+
+
+def pair_points(position: ArrayLike, radius: ArrayLike, first: ArrayLike, second: ArrayLike) -> FloatArray:
+    """(m, 2) contact points: on the line of centres, dividing the overlap (or gap) evenly."""
+    centre = _points(position, "position")
+    i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
+    size = np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
+    between = centre[j] - centre[i]
+    distance = np.linalg.norm(between, axis=1)
+    from_first = 0.5 * (distance + size[i] - size[j])
+    return centre[i] + between * (from_first / distance)[:, None]
+
+
+def wall_points(position: ArrayLike, radius: ArrayLike, disk: ArrayLike, wall: ArrayLike) -> FloatArray:
+    """(w, 2) points where ``disk`` (w,) meets ``wall`` (w,): FLOOR, LEFT_WALL or RIGHT_WALL."""
+    centre, i = _points(position, "position"), np.asarray(disk, dtype=int)
+    size = np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
+    return foot_points(centre[i], size[i], wall)
+
+
+def draw_force_chains(
+    axes: Axes,
+    point: ArrayLike,
+    force: ArrayLike,
+    *,
+    length_per_force: float,
+    width_per_force: float,
+    smallest: float = 0.0,
+    **lines: Any,
+) -> LineCollection:
+    """Draw each force (m, 2) as a line along it, centred at its contact ``point`` (m, 2) (Figs. 2, 13, 18).
+
+    Length (radii) and width (points) are both proportional to the magnitude. Forces
+    below ``smallest`` are left out, which keeps the files of large packings small. Choose the factors with
+    :func:`force_scale`, one for all panels that are compared.
+    """
+    centre, vector = _points(point, "point"), _points(force, "force")
+    if len(centre) != len(vector):
+        raise ValueError(f"force: {len(vector)} given for {len(centre)} contact points")
+    magnitude = np.linalg.norm(vector, axis=1)
+    shown = magnitude > smallest
+    half = 0.5 * length_per_force * vector[shown]
+    keywords: dict[str, Any] = {"color": style.BLACK, "capstyle": "butt", **lines}
+    keywords["linewidths"] = width_per_force * magnitude[shown]
+    return _segments(axes, centre[shown] - half, centre[shown] + half, keywords)
+
+
+def force_scale(*forces: ArrayLike, longest: float = 2.0, widest: float = 3.0) -> dict[str, float]:
+    """``length_per_force`` and ``width_per_force`` for :func:`draw_force_chains`.
+
+    With them the largest of all ``forces``, each (m, 2), is ``longest`` radii long and ``widest`` points
+    wide. Raises ValueError if every force is zero.
+    """
+    largest = max(float(np.max(np.linalg.norm(_points(f, "force"), axis=1), initial=0.0)) for f in forces)
+    if not largest > 0.0:
+        raise ValueError("forces: at least one must differ from zero")
+    return {"length_per_force": longest / largest, "width_per_force": widest / largest}
+
+
+def draw_force_key(
+    axes: Axes, at: tuple[float, float], magnitude: float, *, length_per_force: float, width_per_force: float
+) -> None:
+    """A horizontal line that stands for a force of ``magnitude`` (mg), from ``at`` (data), and its value."""
+    length = length_per_force * magnitude
+    draw_force_chains(
+        axes,
+        [(at[0] + 0.5 * length, at[1])],
+        [(magnitude, 0.0)],
+        length_per_force=length_per_force,
+        width_per_force=width_per_force,
+        clip_on=False,
+    )
+    with style.context():
+        axes.annotate(
+            f"${magnitude:g}\\,mg$",
+            (at[0] + length, at[1]),
+            (4.0, 0.0),
+            textcoords="offset points",
+            va="center",
+            fontsize=8,
+            annotation_clip=False,
+        )
+
+
+def draw_load(
+    axes: Axes,
+    at: tuple[float, float],
+    direction: tuple[float, float] = (0.0, -1.0),
+    *,
+    length: float = 4.0,
+    colour: Any = style.VERMILION,
+) -> None:
+    """An arrow of ``length`` radii that ends at ``at`` and shows where, and which way, a force is applied."""
+    unit = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
+    tail = np.asarray(at, dtype=float) - length * unit
+    axes.annotate(
+        "",
+        xy=at,
+        xytext=(float(tail[0]), float(tail[1])),
+        arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0},
+        annotation_clip=False,
+        zorder=10,
+    )
+    _include(axes, np.stack([tail, np.asarray(at, dtype=float)]))
+
+
+def draw_box(axes: Axes, width: float, height: float, **lines: Any) -> LineCollection:
+    """The floor at z = 0 and the side walls at x = 0 and x = ``width``, up to ``height``."""
+    start = np.array([[0.0, 0.0], [0.0, 0.0], [width, 0.0]])
+    end = np.array([[width, 0.0], [0.0, height], [width, height]])
+    return _segments(axes, start, end, {"color": style.MUTED, "linewidth": 0.8, **lines})
+
+
+def _segments(axes: Axes, start: FloatArray, end: FloatArray, keywords: dict[str, Any]) -> LineCollection:
+    drawn = LineCollection(list(np.stack([start, end], axis=1)), **keywords)
+    axes.add_collection(drawn, autolim=False)
+    _include(axes, np.concatenate([start, end]))
+    return drawn
+
+
+def _include(axes: Axes, points: FloatArray) -> None:
+    if len(points):
+        axes.update_datalim(points)
+        axes.autoscale_view()
+
+
+def _points(values: ArrayLike, name: str) -> FloatArray:
+    array = np.asarray(values, dtype=float)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"{name}: must have shape (n, 2), not {array.shape}")
+    return array

@@ -1,0 +1,247 @@
+"""The one look of all figures: fonts, sizes, colours, panel letters, and files with reproducible bytes.
+
+A drawing function is decorated with ``@style.context()``, makes its figures with :func:`figure`, and they
+are written with :func:`save`: then all of it happens under :data:`RC`. Only fonts that matplotlib itself
+ships are used, ``pyplot`` is not, and so neither the machine's fonts nor a display change a byte.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Literal
+
+import matplotlib as mpl
+import numpy as np
+from cycler import cycler
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from granular_response.store import atomic
+
+#: Column widths of the journal in inches.
+SINGLE, DOUBLE = 3.4, 7.0
+
+#: Categorical colours (Okabe and Ito), told apart with every common kind of colour vision; each with a line
+#: style and a marker of its own, so that they survive a black-and-white print too.
+BLACK, BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
+    "#000000",
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+)
+COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+LINE_STYLES: tuple[Any, ...] = (
+    "-",
+    (0, (5, 1.6)),
+    (0, (1.2, 1.2)),
+    (0, (6, 1.4, 1.2, 1.4)),
+    (0, (3, 1, 1, 1, 1, 1)),
+    (0, (8, 2)),
+    (0, (2.5, 2.5)),
+)
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+
+#: Colour map of magnitudes.
+SEQUENTIAL = "viridis"
+
+#: Greys of things that are there for orientation only.
+FAINT, MUTED = "#C8C8C8", "#707070"
+
+RC: dict[str, Any] = {
+    "axes.axisbelow": True,
+    "axes.formatter.use_mathtext": True,
+    "axes.grid": False,
+    "axes.labelpad": 3.0,
+    "axes.labelsize": 9,
+    "axes.linewidth": 0.6,
+    "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=LINE_STYLES),
+    "axes.titlesize": 9,
+    "figure.constrained_layout.h_pad": 0.03,
+    "figure.constrained_layout.w_pad": 0.03,
+    "figure.dpi": 100,
+    "figure.facecolor": "white",
+    "font.family": "STIXGeneral",
+    "font.size": 9,
+    "image.cmap": SEQUENTIAL,
+    "legend.borderaxespad": 0.6,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "legend.handlelength": 2.2,
+    "legend.labelspacing": 0.3,
+    "legend.title_fontsize": 8,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 3.5,
+    "mathtext.fontset": "stix",
+    "patch.linewidth": 0.5,
+    "pdf.compression": 6,
+    "pdf.fonttype": 42,
+    "savefig.bbox": None,
+    "savefig.dpi": 200,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "granular_response",
+    "xtick.direction": "in",
+    "xtick.labelsize": 8,
+    "xtick.major.size": 3.0,
+    "xtick.major.width": 0.6,
+    "xtick.minor.size": 1.6,
+    "xtick.minor.width": 0.4,
+    "xtick.top": True,
+    "ytick.direction": "in",
+    "ytick.labelsize": 8,
+    "ytick.major.size": 3.0,
+    "ytick.major.width": 0.6,
+    "ytick.minor.size": 1.6,
+    "ytick.minor.width": 0.4,
+    "ytick.right": True,
+}
+
+
+@contextmanager
+def context() -> Iterator[None]:
+    """Where matplotlib's defaults and then :data:`RC` hold, whatever the user's own settings.
+
+    Legends, colour bars and texts take their looks when they are made, so the whole of a drawing function
+    belongs inside: decorate it with ``@style.context()``.
+    """
+    settings: dict[Any, Any] = {k: v for k, v in mpl.rcParamsDefault.items() if k not in _NOT_STYLE}
+    settings.update(RC)
+    with mpl.rc_context(settings):
+        yield
+
+
+#: Settings of the program rather than of a picture; resetting some of them warns or switches the backend.
+_NOT_STYLE = frozenset(
+    key
+    for key in mpl.rcParamsDefault
+    if key.partition(".")[0]
+    in {
+        "animation",
+        "backend",
+        "backend_fallback",
+        "docstring",
+        "interactive",
+        "keymap",
+        "macosx",
+        "timezone",
+    }
+    | {"tk", "toolbar", "webagg"}
+)
+
+
+def figure(
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    width: Literal["single", "double"] | float = "single",
+    height: float = 2.5,
+    **subplots: Any,
+) -> tuple[Figure, np.ndarray]:
+    """A figure with constrained layout and its (rows, columns) array of axes.
+
+    ``width`` is one of the journal's column widths or inches, ``height`` is in inches; ``subplots`` goes to
+    ``Figure.subplots`` (``sharex``, ``width_ratios``, ...).
+    """
+    with context():
+        inches = {"single": SINGLE, "double": DOUBLE}.get(width, width) if isinstance(width, str) else width
+        if isinstance(inches, str):
+            raise ValueError(f"width = {width!r}: must be 'single', 'double' or inches")
+        made = Figure(figsize=(inches, height), layout="constrained")
+        return made, made.subplots(rows, columns, squeeze=False, **subplots)
+
+
+def ordered_colours(count: int, *, colour_map: str = SEQUENTIAL) -> list[str]:
+    """``count`` colours for an ordered family of curves (forces, frictions), dark to light.
+
+    The palest end of the map is left out, as a thin line in it is not seen on white.
+    """
+    if count < 1:
+        raise ValueError(f"count = {count}: must be at least 1")
+    return [to_hex(colour) for colour in mpl.colormaps[colour_map](np.linspace(0.0, 0.86, count))]
+
+
+def line(index: int) -> dict[str, Any]:
+    """Colour and line style number ``index`` of the categorical cycle, as keywords of ``plot``."""
+    return {
+        "color": COLOURS[index % len(COLOURS)],
+        "linestyle": LINE_STYLES[index % len(LINE_STYLES)],
+    }
+
+
+def marked_line(index: int, *, colour: str | None = None) -> dict[str, Any]:
+    """As :func:`line`, solid and with a marker of its own: for curves through few points."""
+    return {
+        "color": colour or COLOURS[index % len(COLOURS)],
+        "linestyle": "-",
+        "linewidth": 0.9,
+        "marker": MARKERS[index % len(MARKERS)],
+        "markeredgewidth": 0.0,
+    }
+
+
+def letter(axes: Axes, name: str, *, place: Literal["inside", "above"] = "inside", text: str = "") -> None:
+    """Write the panel letter ``(name)`` in the upper left corner, with a short ``text`` behind it.
+
+    ``above`` puts it over the axes, for panels that are full of drawing.
+    """
+    label = f"({name})" + (f" {text}" if text else "")
+    with context():
+        if place == "above":
+            axes.set_title(label, loc="left", pad=3.0)
+        else:
+            axes.annotate(
+                label, (0.0, 1.0), (5.0, -5.0), xycoords="axes fraction", textcoords="offset points", va="top"
+            )
+
+
+def letters(axes: Sequence[Axes] | np.ndarray, **keywords: Any) -> None:
+    """Panel letters a, b, c, ... on ``axes`` in reading order; keywords as of :func:`letter`."""
+    for index, panel in enumerate(np.asarray(axes, dtype=object).ravel()):
+        letter(panel, chr(ord("a") + index), **keywords)
+
+
+def no_axes(axes: Axes) -> None:
+    """Leave only the drawing, with equal scales: for pictures of packings."""
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+#: What each format must not be told, for the same bytes every time.
+_METADATA: dict[str, dict[str, None]] = {
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+    "svg": {"Date": None, "Creator": None},
+}
+
+
+def render(drawn: Figure, file_format: str = "png", *, dpi: float = 200) -> bytes:
+    """The file of a figure in memory: ``png``, ``pdf`` or ``svg``, without date or program name."""
+    if file_format not in _METADATA:
+        raise ValueError(f"file_format = {file_format!r}: must be one of {', '.join(sorted(_METADATA))}")
+    buffer = io.BytesIO()
+    with context():
+        drawn.savefig(buffer, format=file_format, dpi=dpi, metadata=_METADATA[file_format])
+    return buffer.getvalue()
+
+
+def save(
+    drawn: Figure, stem: str, folder: str | os.PathLike[str], formats: Sequence[str] = ("png", "pdf")
+) -> list[Path]:
+    """Write ``folder/stem.png`` (200 dots per inch) and ``.pdf``, each whole or not at all.
+
+    Returns the paths. A missing folder is made. The same figure gives the same bytes. Raises OSError if a
+    file cannot be written.
+    """
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
+    files = {target / f"{stem}.{file_format}": render(drawn, file_format) for file_format in formats}
+    for path, data in files.items():
+        atomic.write_bytes(path, data)
+    return list(files)

@@ -1,0 +1,83 @@
+"""The state of a packing: the one description that observables, datasets and restarts read.
+
+Units are the reduced ones (mean disk radius, mean disk mass, g); the sign conventions are those of
+``docs/architecture.md``. Arrays are never modified once a state exists.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .box import Box, FloatArray, wall_normals
+from .status import OPEN, SLIDING
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Candidate contacts of one kind (between disks, or of disks with walls), each of length m.
+
+    ``overlap`` is positive in touch; ``normal_force`` is positive in compression; ``spring`` is the
+    elongation of the tangential spring (Sec. III.A); ``status`` is OPEN, STICKING or SLIDING.
+    Without friction ``tangential_force`` and ``spring`` are zero and a touching contact is STICKING.
+    """
+
+    first: NDArray[np.int32]  #: (m,) index of the disk the force acts on
+    second: NDArray[np.int32]  #: (m,) index of the other disk, or of the wall (FLOOR, LEFT_WALL, RIGHT_WALL)
+    overlap: FloatArray
+    normal_force: FloatArray
+    tangential_force: FloatArray
+    spring: FloatArray
+    status: NDArray[np.int8]
+
+    @property
+    def touching(self) -> NDArray[np.bool_]:
+        """(m,) whether the contact is closed."""
+        return self.status != OPEN
+
+    @property
+    def sliding(self) -> NDArray[np.bool_]:
+        """(m,) whether the contact is at the Coulomb limit."""
+        return self.status == SLIDING
+
+
+@dataclass(frozen=True)
+class State:
+    """Positions, motion and contacts of n disks at one load."""
+
+    position: FloatArray  #: (n, 2) disk centres x, z
+    angle: FloatArray  #: (n,) rotation since the start of the preparation
+    velocity: FloatArray  #: (n, 2)
+    angular_velocity: FloatArray  #: (n,)
+    pairs: Contacts  #: disk-disk candidates
+    walls: Contacts  #: disk-wall candidates
+    box: Box  #: what bounds the packing
+    load_factor: float = 0.0  #: multiplier of the scene's loads
+    information: dict = field(default_factory=dict, compare=False)  #: how the state was reached
+
+    def pair_separation(self) -> FloatArray:
+        """(m, 2) from the centres of ``second`` to those of ``first``."""
+        return self.box.separation(self.position[self.pairs.first], self.position[self.pairs.second])
+
+    def pair_normal(self) -> FloatArray:
+        """(m, 2) unit normals of the disk-disk candidates, from ``second`` to ``first``."""
+        d = self.pair_separation()
+        return d / np.linalg.norm(d, axis=1, keepdims=True)
+
+    def pair_force(self) -> FloatArray:
+        """(m, 2) force on ``pairs.first``."""
+        return contact_force(self.pair_normal(), self.pairs.normal_force, self.pairs.tangential_force)
+
+    def wall_force(self) -> FloatArray:
+        """(w, 2) force on ``walls.first``."""
+        return contact_force(
+            wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force
+        )
+
+
+def contact_force(normal: FloatArray, normal_force: FloatArray, tangential_force: FloatArray) -> FloatArray:
+    """(..., m, 2) forces from their parts along the unit ``normal`` (..., m, 2) and the tangent z × n (eq. 4)."""
+    tangent = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)
+    return normal_force[..., None] * normal + tangential_force[..., None] * tangent

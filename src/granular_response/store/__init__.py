@@ -1,0 +1,1 @@
+"""Results as labelled files, whole or not at all; exports and summaries of them."""

@@ -1,0 +1,242 @@
+"""Labelled datasets on disk: one netCDF-4 file, whole or not there, the same bytes for the same data.
+
+``write`` and ``read`` are the only way in and out. A file holds one dataset, or one group for each dataset
+of a study. Plain ``xarray.open_dataset(path, group=...)`` reads it without this package.
+
+The HDF5 library does not recover from running out of space: it keeps the file open and locked for the life
+of the process. So the file is made in memory and reaches the disk through ``atomic``, with plain writes and
+plain errors. Its bytes depend on the data alone.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import netCDF4
+import numpy as np
+
+from .. import __version__
+from . import atomic, hdf5_image
+from .labelled import Labelled, labelled
+
+if TYPE_CHECKING:  # whoever writes without reading does not wait for it
+    import xarray as xr
+
+#: Root attribute by which a file of ours is known; its number grows when the layout changes.
+FORMAT = "granular_response 1"
+
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_SEAL = b"granular_response sha256 "
+_GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
+
+
+class StoreError(Exception):
+    """A file that cannot be written or read as a dataset. The message is one line, first the path."""
+
+
+def _error(path: str | os.PathLike[str], problem: str) -> StoreError:
+    return StoreError(" ".join(f"{os.fspath(path)}: {problem}".split()))
+
+
+def write(
+    path: str | os.PathLike[str],
+    datasets: xr.Dataset | Labelled | Mapping[str, xr.Dataset],
+    attributes: Mapping[str, Any] | None = None,
+) -> None:
+    """Write datasets to one netCDF-4 file, compressed and with checksums.
+
+    Parameters
+    ----------
+    path
+        The file to make or to replace. Missing folders are made.
+    datasets
+        One dataset, of xarray or as its parts, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""``
+        is the root) to datasets. Every variable and coordinate has the attributes ``long_name`` and ``units``.
+    attributes
+        Attributes of the file as a whole. ``format`` and ``package_version`` are added.
+
+    Raises
+    ------
+    StoreError
+        If a variable lacks its labels, a value cannot be stored, or the file cannot be written. A file that
+        was there before is then as it was.
+    """
+    path = Path(path)
+    single = isinstance(datasets, Labelled) or hasattr(datasets, "data_vars")
+    given: Mapping[str, Any] = {"": datasets} if single else datasets  # type: ignore[assignment]
+    groups = {name: labelled(dataset) for name, dataset in given.items()}
+    for name, parts in groups.items():
+        _check(path, name, parts)
+    root = groups.pop("", Labelled())
+    marks = {"format": FORMAT, "package_version": __version__}
+    root = Labelled(root.variables, root.coordinates, {**root.attributes, **(attributes or {}), **marks})
+    groups = {"": root, **groups}
+    data = _image(path, groups)
+    data += _SEAL + hashlib.sha256(data).digest()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        atomic.write_bytes(path, data, check=lambda written: _verify(path, written, groups))
+    except OSError as error:
+        raise _error(path, f"cannot be written: {error.strerror or error}") from error
+
+
+def check_writable(path: str | os.PathLike[str]) -> None:
+    """Find out before a long computation whether ``path`` can be written. Raises StoreError if not."""
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        atomic.check_writable(path)
+    except OSError as error:
+        raise _error(path, f"cannot be written: {error.strerror or error}") from error
+
+
+def read(path: str | os.PathLike[str]) -> dict[str, xr.Dataset]:
+    """All datasets of a file, in memory, by the name of their group.
+
+    The root is there under ``""`` if it holds variables or if the file has no groups.
+
+    Raises
+    ------
+    StoreError
+        If the file is missing, truncated, damaged or not one of ours.
+    """
+    with _open(path) as file:
+        try:
+            groups = {name: _load(group) for name, group in _walk(file)}
+        except Exception as error:  # a damaged file can make its decoders raise anything
+            raise _error(path, f"is damaged: {error}") from error
+    return {name: dataset for name, dataset in groups.items() if dataset.variables or len(groups) == 1}
+
+
+def read_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Attributes of the file as a whole. Raises StoreError as ``read`` does."""
+    with _open(path) as file:
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+    return {name: v.item() if isinstance(v, np.generic) else v for name, v in attributes.items()}
+
+
+def _check(path: Path, group: str, parts: Labelled) -> None:
+    """Names and labels of one group."""
+    if group and not _GROUP.fullmatch(group):
+        raise _error(path, f"group name {group!r}: must be letters, digits, '_', '.', '+' or '-'")
+    for name, variable in parts.variables.items():
+        where = f"variable {group + '/' if group else ''}{name}"
+        for label in ("long_name", "units"):
+            value = variable.attributes.get(label)
+            if not isinstance(value, str) or not value.strip():
+                raise _error(path, f"{where} needs the attribute {label} (units: '1' in reduced units)")
+
+
+def _image(path: Path, groups: Mapping[str, Labelled]) -> bytes:
+    """The file as bytes."""
+    file = netCDF4.Dataset(path.name, mode="w", format="NETCDF4", memory=1)
+    try:
+        for name, parts in groups.items():
+            try:
+                _dump(parts, file.createGroup(name) if name else file)
+            except (RuntimeError, TypeError, ValueError, NotImplementedError) as error:
+                raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
+    finally:
+        image = file.close()
+    return hdf5_image.plain_bytes(image)
+
+
+def _dump(parts: Labelled, group: netCDF4.Dataset) -> None:
+    """Write a dataset as xarray would, by the CF conventions: the same bytes."""
+    for name, value in parts.encoded_attributes().items():
+        _set_attribute(group, name, value)
+    variables = parts.encoded_variables()
+    for variable in variables.values():
+        for dimension, size in zip(variable.dimensions, variable.values.shape, strict=True):
+            if dimension not in group.dimensions:
+                group.createDimension(dimension, size)
+    for name, variable in variables.items():
+        values, labels = variable.values, dict(variable.attributes)
+        numbers = values.dtype.kind != "U"
+        packed = numbers and bool(values.ndim and values.size)
+        written = group.createVariable(
+            name, values.dtype.newbyteorder("=") if numbers else str, variable.dimensions,
+            fill_value=labels.pop("_FillValue", None), zlib=packed, complevel=4, shuffle=True, fletcher32=packed,
+        )  # fmt: skip
+        written.setncatts(labels)
+        written[...] = values if numbers else values.astype(object)
+
+
+def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
+    several = np.asarray(value)
+    if several.dtype.kind in "US" and several.size > 1:
+        group.setncattr_string(name, value)
+    else:
+        group.setncattr(name, value)
+
+
+def _verify(path: Path, data: bytes, groups: Mapping[str, Labelled]) -> None:
+    """Decode every variable of every group once before the file counts."""
+    try:
+        with netCDF4.Dataset(path.name, mode="r", memory=data) as file:
+            for name, parts in groups.items():
+                group = file[name] if name else file
+                for key, variable in parts.variables.items():
+                    if group[key][...].shape != variable.values.shape:
+                        raise _error(path, f"variable {name}/{key} reads back with another shape")
+    except (OSError, RuntimeError, IndexError, KeyError) as error:
+        raise _error(path, f"does not read back: {error}") from error
+
+
+def _open(path: str | os.PathLike[str]) -> netCDF4.Dataset:
+    try:
+        data = Path(path).read_bytes()
+    except FileNotFoundError:
+        raise _error(path, "no such file") from None
+    except OSError as error:
+        raise _error(path, f"cannot be read: {error.strerror or error}") from None
+    if not data:
+        raise _error(path, "is empty")
+    if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
+        raise _error(path, "is not a netCDF-4 file")
+    _check_seal(path, data)
+    try:
+        dataset = netCDF4.Dataset(os.fspath(path), mode="r", memory=data)
+        attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
+    except Exception as error:  # damage can surface as nearly any kind of error
+        raise _error(path, "is truncated or damaged") from error
+    if attributes.get("format") != FORMAT:
+        dataset.close()
+        raise _error(path, f"has another layout, must have the attribute format = {FORMAT!r}")
+    return dataset
+
+
+def _check_seal(path: str | os.PathLike[str], data: bytes) -> None:
+    """Raise StoreError unless ``data`` is as ``write`` left it."""
+    start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
+    if data[start : start + len(_SEAL)] != _SEAL or start < 0:
+        if not hdf5_image.is_complete(data):
+            raise _error(path, "is truncated or damaged")
+        if FORMAT.encode() in data:
+            raise _error(path, "is truncated or damaged, or another program has written it anew")
+        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
+    if hashlib.sha256(memoryview(data)[:start]).digest() != data[start + len(_SEAL) :]:
+        raise _error(path, "is damaged: its digest differs from the one made when it was written")
+
+
+def _walk(file: netCDF4.Dataset, prefix: str = "") -> list[tuple[str, netCDF4.Dataset]]:
+    """All groups with their full names, the root first."""
+    found = [(prefix, file)]
+    for name, group in file.groups.items():
+        found += _walk(group, f"{prefix}/{name}".lstrip("/"))
+    return found
+
+
+def _load(group: netCDF4.Dataset) -> xr.Dataset:
+    import xarray as xr
+    from xarray.backends import NetCDF4DataStore
+
+    store = NetCDF4DataStore(group)
+    # seconds stay numbers: decoding them to time spans would lose digits
+    dataset = xr.open_dataset(store, decode_times=False, decode_timedelta=False).load()
+    return dataset.drop_encoding()

@@ -1,0 +1,333 @@
+"""Solutions as labelled datasets, and states back from them.
+
+A dataset is in reduced units: lengths in mean disk radii, masses in mean disk masses, forces in mean disk
+weights; ``units`` is "1" throughout and ``long_name`` names the normalisation.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import __version__
+from ..observe.difference import match_candidates, pair_force_difference, wall_force_difference
+from ..observe.floor import floor_disks, floor_force
+from ..scene import Packing, Scene
+from ..solve.choice import load_method, rest_method
+from ..solve.equilibrium import Certificate
+from ..solve.path import Crossing
+from ..solve.problem import Problem
+from ..solve.solution import Solution
+from ..state import Box, Contacts, State
+from .labelled import Labelled, Values
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
+
+_STATE_VARIABLES = {
+    "position": (("disk", "axis"), f"disk centre x, z {LENGTH}"),
+    "angle": (("disk",), "rotation since the start of the preparation, counter-clockwise, in radians"),
+    "velocity": (("disk", "axis"), "disk velocity in sqrt(radius g)"),
+    "angular_velocity": (("disk",), "angular velocity in sqrt(g/radius)"),
+}
+_CONTACT_VARIABLES = {
+    "overlap": f"overlap {LENGTH}; negative is a gap",
+    "normal_force": f"normal contact force {FORCE}, positive in compression",
+    "tangential_force": f"tangential contact force {FORCE}, along z cross n",
+    "spring": f"elongation of the tangential spring {LENGTH}",
+    "status": "contact status",
+}
+_FLAGS = {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
+_KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
+
+
+class ResultError(ValueError):
+    """A dataset that is not a result, or not one that can be continued. The message is one line."""
+
+
+def described(dims, values, long_name: str, **attributes) -> Values:
+    """Values with the attributes that every stored variable has."""
+    dimensions = (dims,) if isinstance(dims, str) else tuple(dims)
+    return Values(dimensions, np.asarray(values), {"long_name": long_name, "units": "1", **attributes})
+
+
+def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
+    """The same as a variable of xarray."""
+    import xarray as xr
+
+    # numpy's arrays are taken as they are: xarray need not find out whether they are Dask's
+    return xr.Variable(*described(dims, values, long_name, **attributes), fastpath=True)
+
+
+def common_candidates(states: Sequence[State], radius) -> list[State]:
+    """The states on one list of candidate contacts, so that they subtract contact by contact."""
+    states = list(states)
+    for _ in range(2):
+        for k in range(1, len(states)):
+            same = all(
+                np.array_equal(getattr(getattr(states[0], kind), side), getattr(getattr(states[k], kind), side))
+                for kind in ("pairs", "walls")
+                for side in ("first", "second")
+            )
+            if not same:
+                states[0], states[k] = match_candidates(states[0], states[k], radius)
+    return states
+
+
+def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
+    """States of one packing and one candidate list, stacked along ``dimension``."""
+    return Labelled(_states(states, dimension), frozenset({"axis"})).dataset()
+
+
+def _states(states: Sequence[State], dimension: str) -> dict[str, Values]:
+    data: dict[str, Values] = {}
+    for name, (dims, long_name) in _STATE_VARIABLES.items():
+        data[name] = described((dimension, *dims), np.stack([getattr(s, name) for s in states]), long_name)
+    for kind, (dim, prefix) in _KINDS.items():
+        contacts: list[Contacts] = [getattr(s, kind) for s in states]
+        second = "partner" if kind == "pairs" else "wall"
+        first_name = f"{prefix}_disk"
+        data[first_name] = described((dim,), contacts[0].first, "disk that the contact force acts on")
+        text = "other disk" if kind == "pairs" else "wall: 0 floor, 1 left, 2 right"
+        data[f"{prefix}_{second}" if kind == "pairs" else "wall_index"] = described((dim,), contacts[0].second, text)
+        for name, long_name in _CONTACT_VARIABLES.items():
+            values = np.stack([getattr(c, name) for c in contacts])
+            flags = _FLAGS if name == "status" else {}
+            data[f"{prefix}_{name}"] = described((dimension, dim), values, long_name, **flags)
+    data["load_factor"] = described(
+        (dimension,), np.array([s.load_factor for s in states]), "multiplier of the scene's loads"
+    )
+    return {**data, "axis": described("axis", ["x", "z"], "axis labels")}
+
+
+def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
+    """The certificates of states along ``dimension``."""
+    return Labelled(_certificates(states, dimension)).dataset()
+
+
+def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
+    names = {
+        "force_residual": f"largest unbalanced force on a disk {FORCE}",
+        "torque_residual": "largest unbalanced torque on a disk in mean weight times mean radius",
+        "coulomb_excess": f"largest excess of a tangential force over the Coulomb limit {FORCE}",
+        "smallest_normal_force": f"smallest normal force of a closed contact {FORCE}",
+        "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
+        "negative_modes": "unstable directions of the tangent stiffness (-1: not determined)",
+        "loose_disks": "disks with fewer than two contacts",
+    }
+    certificates: list[Certificate] = [s.information["certificate"] for s in states]
+    return {
+        f"certificate_{name}": described((dimension,), np.array([getattr(c, name) for c in certificates]), text)
+        for name, text in names.items()
+    }
+
+
+def _crossings(loaded: Sequence[State]) -> dict[str, Values]:
+    """Stretches of load that dynamics crossed on the way, none where there were none."""
+    found = list(dict.fromkeys(crossing for state in loaded for crossing in state.information.get("crossings", ())))
+    if not found:
+        return {}
+    texts = {
+        "start": "load factor at which statics ended",
+        "end": "load factor at which statics went on",
+        "displacement": f"largest displacement of a disk on the way {LENGTH}",
+        "reason": "why dynamics crossed",
+    }
+    return {
+        f"crossing_{name}": described(("crossing",), np.array([getattr(c, name) for c in found]), text)
+        for name, text in texts.items()
+    }
+
+
+def added_forces_dataset(
+    rest: Sequence[State], loaded: Sequence[State], packing: Packing, dimension: str
+) -> xr.Dataset:
+    """What loads add at every contact, for pairs of states on one candidate list, along ``dimension``.
+
+    Gravity is subtracted as a vector. With the geometry under load that pictures need, and the certificates.
+    """
+    import xarray as xr
+
+    pairs, walls = rest[0].pairs, rest[0].walls
+    both = list(zip(rest, loaded, strict=True))
+    text = f"contact force that the load adds, on the first disk {FORCE}"
+
+    def status(when: str, states: Sequence[State]) -> xr.Variable:
+        values = np.stack([state.pairs.status for state in states])
+        return variable((dimension, "contact"), values, f"contact status {when}", **_FLAGS)
+
+    return xr.Dataset(
+        {
+            "position": variable(
+                (dimension, "disk", "axis"),
+                np.stack([state.position for state in loaded]),
+                f"disk centre x, z under load {LENGTH}",
+            ),
+            "radius": variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
+            "contact_disk": variable(("contact",), pairs.first, "disk that the contact force acts on"),
+            "contact_partner": variable(("contact",), pairs.second, "other disk"),
+            "contact_added_force": variable(
+                (dimension, "contact", "axis"), np.stack([pair_force_difference(a, b) for a, b in both]), text
+            ),
+            "contact_status_rest": status("at rest", rest),
+            "contact_status": status("under load", loaded),
+            "wall_disk": variable(("wall_contact",), walls.first, "disk that the wall's force acts on"),
+            "wall_index": variable(("wall_contact",), walls.second, "wall: 0 floor, 1 left, 2 right"),
+            "wall_added_force": variable(
+                (dimension, "wall_contact", "axis"), np.stack([wall_force_difference(a, b) for a, b in both]), text
+            ),
+            "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
+        },
+        coords={"axis": variable(("axis",), ["x", "z"], "axis labels")},
+    ).merge(certificates_dataset(loaded, dimension))
+
+
+def to_dataset(solution: Solution) -> xr.Dataset:
+    """The labelled dataset of a solved scene, as :func:`to_labelled` describes it."""
+    return to_labelled(solution).dataset()
+
+
+def to_labelled(solution: Solution) -> Labelled:
+    """The labelled data of a solved scene.
+
+    Dimension ``state``: at rest first, then one entry for each load factor. ``floor_force`` and
+    ``floor_response`` have a dimension ``load`` only when there is more than one load factor.
+    """
+    problem = solution.problem
+    packing = problem.packing
+    states = common_candidates([solution.rest, *solution.loaded], packing.radius)
+    rest, loaded = states[0], states[1:]
+    disks = floor_disks(states, np.flatnonzero(packing.row == 0))
+    origin = float(rest.position[problem.load_disk[0], 0]) if len(problem.load_disk) == 1 else 0.5 * packing.width
+    at_rest = floor_force(rest, disks)
+    forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
+    applied = np.array([abs(f) * solution.total_force for f in solution.load_factors] or [np.nan])
+    response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
+    several = len(loaded) > 1
+    dims = ("load", "floor_disk") if several else ("floor_disk",)
+    data = {
+        **_states(states, "state"),
+        "floor_force_rest": described(("floor_disk",), at_rest, f"vertical floor force at rest {FORCE}"),
+        "floor_force": described(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
+        "floor_response": described(
+            dims,
+            response if several else response[0],
+            "vertical floor force that the load adds, per total magnitude of the applied forces",
+        ),
+        "radius": described(("disk",), packing.radius, f"disk radius {LENGTH}"),
+        "mass": described(("disk",), packing.mass, "disk mass in mean disk masses"),
+        "row": described(("disk",), packing.row, "row on the lattice from the bottom, -1 without lattice"),
+        "loaded_disk": described(("load_point",), problem.load_disk, "disks that carry the loads"),
+        "applied_load": described(
+            ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
+        ),
+        "total_force": described(
+            ("load",) if several else (),
+            applied if several else applied[0],
+            f"total magnitude of the applied forces {FORCE}",
+        ),
+        **_certificates(states, "state"),
+        **_crossings(loaded),
+        "floor_disk": described(("floor_disk",), disks, "index of the floor disk"),
+        "x": described(
+            ("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"
+        ),
+        "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
+    }
+    methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
+    reasons = {
+        "rest": solution.rest_choice.reason,
+        "load": getattr(solution.load_choice, "reason", "no loads"),
+    }
+    attributes = {
+        "title": "quasi-static response of a granular packing",
+        "package": "granular_response",
+        "package_version": __version__,
+        "scene": solution.scene.to_yaml(),
+        "scene_folder_note": "paths in the scene are relative to the folder of the scene file",
+        "width": packing.width,
+        "method": json.dumps(methods),
+        "method_reason": json.dumps(reasons),
+        "stable": int(all(s.information["certificate"].negative_modes == 0 for s in states)),
+        "settled": int(all(s.information.get("settled", True) for s in states)),
+        "units": "reduced: mean disk radius, mean disk mass, g",
+    }
+    return Labelled(data, frozenset({"axis", "floor_disk", "x", "component"}), attributes)
+
+
+def state_from(dataset: xr.Dataset, index: int = -1) -> State:
+    """A state back from a dataset, with its certificate, equal to the stored one to the last bit: a restart.
+
+    Raises
+    ------
+    ResultError
+        When the dataset holds no states.
+    """
+    if "contact_spring" not in dataset:
+        raise ResultError("the dataset holds no states (variable contact_spring is missing)")
+    one = dataset.isel(state=index)
+    stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
+    information = {}
+    if set(stored.values()) <= set(one.variables):
+        numbers: dict[str, Any] = {name: one[variable].values.item() for name, variable in stored.items()}
+        information["certificate"] = Certificate(**numbers)
+
+    def contacts(prefix: str, partner: str) -> Contacts:
+        values = [one[f"{prefix}_{name}"].values for name in _CONTACT_VARIABLES]
+        return Contacts(one[f"{prefix}_disk"].values.astype(np.int32), one[partner].values.astype(np.int32), *values)
+
+    return State(
+        position=one["position"].values.astype(float),
+        angle=one["angle"].values.astype(float),
+        velocity=one["velocity"].values.astype(float),
+        angular_velocity=one["angular_velocity"].values.astype(float),
+        pairs=contacts("contact", "contact_partner"),
+        walls=contacts("wall", "wall_index"),
+        box=Box(float(dataset.attrs["width"])),
+        load_factor=float(one["load_factor"]),
+        information=information,
+    )
+
+
+def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = None) -> Solution:
+    """The solution that a dataset was made from, to be continued (``solve.continue_solution``).
+
+    ``folder`` is that of the scene file, for a packing from a table.
+
+    Raises
+    ------
+    ResultError
+        When the dataset holds no states, or another packing than its scene describes.
+    granular_response.scene.SceneError
+        When the scene cannot be read.
+    """
+    rest = state_from(dataset, 0)
+    scene = scene_of(dataset, folder=folder)
+    problem = Problem.from_scene(scene).with_loads(rest.position)
+    if not np.array_equal(problem.packing.radius, dataset["radius"].values):
+        raise ResultError("the table of disks has changed since the result was made")
+    loaded = [state_from(dataset, k) for k in range(1, dataset.sizes["state"])]
+    if loaded and "crossing_start" in dataset:
+        columns = [dataset[f"crossing_{field.name}"].values.tolist() for field in fields(Crossing)]
+        loaded[0].information["crossings"] = [Crossing(*values) for values in zip(*columns, strict=True)]
+    return Solution(
+        scene=scene,
+        problem=problem,
+        rest=rest,
+        loaded=tuple(loaded),
+        load_factors=tuple(state.load_factor for state in loaded),
+        rest_choice=rest_method(problem),
+        load_choice=load_method(problem) if loaded else None,
+    )
+
+
+def scene_of(dataset: xr.Dataset, *, folder=None) -> Scene:
+    """The scene that a dataset was made from."""
+    return Scene.from_text(dataset.attrs["scene"], folder=folder)

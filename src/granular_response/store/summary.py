@@ -1,0 +1,130 @@
+"""What a stored file holds, for a reader at a terminal."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from os import PathLike
+
+import numpy as np
+import xarray as xr
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from . import files as store
+
+#: Attributes that a summary shows elsewhere or not at all.
+_HIDDEN = {
+    "format",
+    "scene",
+    "scene_folder_note",
+    "parameters",
+    "method",
+    "method_reason",
+    "stable",
+    "settled",
+}
+
+
+def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
+    """Parts of the summary of a file, in order.
+
+    Raises
+    ------
+    granular_response.store.StoreError
+        If the file cannot be read.
+    """
+    datasets, attributes = store.read(path), store.read_attributes(path)
+    yield Text(str(path), style="bold")
+    yield _table((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
+    root = datasets.get("")
+    if root is not None and "floor_response" in root:
+        yield from _result(root)
+    else:
+        yield from _study(datasets)
+    for name in ("scene", "parameters"):
+        if name in attributes:
+            yield Text(f"\n{name}", style="bold")
+            yield Text(str(attributes[name]).rstrip())
+
+
+def _result(result: xr.Dataset) -> Iterator[RenderableType]:
+    yield Text("\nhow it was solved", style="bold")
+    methods, reasons = (json.loads(result.attrs.get(name, "{}")) for name in ("method", "method_reason"))
+    rows = [(stage, f"{method} ({reasons.get(stage, '')})") for stage, method in methods.items()]
+    for name in ("stable", "settled"):
+        if name in result.attrs:
+            rows.append((name, "yes" if result.attrs[name] else "no"))
+    yield _table(rows)
+    if "crossing_start" in result:
+        yield Text("\nstretches of load that dynamics crossed", style="bold")
+        yield _crossings(result)
+    yield Text("\ncertificate", style="bold")
+    yield _certificate(result)
+    yield Text("\nfloor response", style="bold")
+    yield _response(result)
+
+
+def _crossings(result: xr.Dataset) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for title in ("from load factor", "to", "largest displacement", "why"):
+        table.add_column(title, justify="left" if title == "why" else "right")
+    for k in range(result.sizes["crossing"]):
+        start, end, moved = (float(result[f"crossing_{name}"][k]) for name in ("start", "end", "displacement"))
+        table.add_row(f"{start:.6g}", f"{end:.6g}", f"{moved:.3g}", str(result["crossing_reason"].values[k]))
+    return table
+
+
+def _certificate(result: xr.Dataset) -> Table:
+    table = Table(box=None, pad_edge=False)
+    table.add_column("at load factor", style="dim")
+    for factor in result["load_factor"].values:
+        table.add_column(f"{factor:g}", justify="right")
+    for name in map(str, result):
+        if name.startswith("certificate_"):
+            title = name.removeprefix("certificate_").replace("_", " ")
+            table.add_row(title, *(f"{value:.3g}" for value in result[name].values))
+    return table
+
+
+def _response(result: xr.Dataset) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for title in ("total force", "sum", "at x = 0", "largest", "at x"):
+        table.add_column(title, justify="right")
+    x = result["x"].values
+    responses = np.atleast_2d(result["floor_response"].values)
+    forces = np.atleast_1d(result["total_force"].values) if "total_force" in result else np.full(len(responses), np.nan)
+    for force, response in zip(forces, responses, strict=True):
+        if np.isnan(response).all():
+            table.add_row("none", *["-"] * 4)
+            continue
+        peak = np.nanmax(response)
+        places = ", ".join(f"{round(place, 9) + 0.0:.3g}" for place in x[np.isclose(response, peak, rtol=1e-6, atol=0)])
+        middle = response[np.argmin(np.abs(x))]
+        table.add_row(f"{force:g}", f"{response.sum():.9f}", f"{middle:.5f}", f"{peak:.5f}", places)
+    return table
+
+
+def _study(datasets: dict[str, xr.Dataset]) -> Iterator[RenderableType]:
+    table = Table(box=None, pad_edge=False)
+    for title in ("group", "dimensions", "variables"):
+        table.add_column(title, overflow="fold")
+    for name, dataset in datasets.items():
+        sizes = ", ".join(f"{dimension} {size}" for dimension, size in dataset.sizes.items())
+        table.add_row(name or "/", sizes, ", ".join(map(str, dataset.data_vars)))
+    yield Text("\ndatasets", style="bold")
+    yield table
+
+
+def _table(rows: Iterator[tuple[str, str]] | list[tuple[str, str]]) -> Table:
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="dim")
+    table.add_column(overflow="fold")
+    for name, value in rows:
+        table.add_row(name.replace("_", " "), value)
+    return table
+
+
+def _plain(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,1 +1,0 @@
-"""One module per figure group: parameters to datasets."""

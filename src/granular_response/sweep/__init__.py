@@ -1,0 +1,1 @@
+"""One function on many items: cores, Dask, checkpoints, and the rest states that they share."""
