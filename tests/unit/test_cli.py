@@ -269,7 +269,7 @@ class Study:
 def group(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "params.yaml").write_text("common: {count: 2, scale: 1e-3}\nsquares: {count: 4}\n")
-    monkeypatch.setattr(pipeline, "_modules", lambda verb: ["squares"])
+    monkeypatch.setattr(pipeline, "_names", lambda: ["squares"])
     monkeypatch.setattr(pipeline, "_verb", lambda verb, name: getattr(Study, verb))
     return "squares"
 

@@ -8,7 +8,7 @@ import pytest
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
 
 POSITION = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 1.0 + np.sqrt(3.0)], [4.2, 2.5]])
 RADIUS = np.array([1.0, 1.0, 1.0, 0.5])
@@ -70,7 +70,6 @@ def test_contact_points_lie_between_the_surfaces() -> None:
         distance = np.linalg.norm(point - POSITION[disk], axis=1) - RADIUS[disk]
         other = np.linalg.norm(POSITION[FIRST] - POSITION[SECOND], axis=1) - RADIUS[FIRST] - RADIUS[SECOND]
         np.testing.assert_allclose(distance, 0.5 * other, atol=1e-12)
-    np.testing.assert_array_equal(nd.WALL_NORMAL, WALL_NORMAL)
     walls = nd.wall_points(POSITION, RADIUS, [0, 0, 3], [FLOOR, LEFT_WALL, RIGHT_WALL])
     np.testing.assert_allclose(walls, [[1.0, 0.0], [0.0, 1.0], [4.7, 2.5]], atol=1e-15)
 
