@@ -90,6 +90,40 @@ def test_whole_numbers_serve_as_numbers_and_are_decimal():
     assert scene.packing.layers == 10
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"contact": {"stiffness_ratio": 0.5}, "contact.friction": 1.0},
+        {"contact.friction": 1.0, "contact": {"stiffness_ratio": 0.5}},
+        {"contact": {"friction": 1.0, "stiffness_ratio": 0.5}},
+        {"contact.stiffness_ratio": 0.5, "contact.friction": 1.0},
+    ],
+)
+def test_updated_never_resets_what_it_does_not_name(changes):
+    scene = Scene(contact={"normal_stiffness": 1e4, "stiffness_ratio": 0.3}, packing=SlabPacking(layers=7))
+    assert scene.updated(changes).contact == Contact(normal_stiffness=1e4, stiffness_ratio=0.5, friction=1.0)
+    assert scene.updated({"packing": {"disks_per_row": 9}}).packing == SlabPacking(layers=7, disks_per_row=9)
+    torque = scene.updated({"loads.0": {"torque": 1.0}})
+    assert torque.loads == (Load(disk="top-centre", force=(0.0, -15.0), torque=1.0),)
+    row = scene.updated({"loads.0.disk": {"row": "top"}}).updated({"loads.0.disk.offset": 2})
+    assert row.loads[0].disk == RowSelector(row="top", offset=2)
+
+
+def test_a_packing_of_another_kind_and_a_description_replace_what_is_there():
+    scene = Scene(packing=SlabPacking(layers=7, polydispersity=0.1), contact=Contact(friction=1.0))
+    assert scene.updated({"packing": {"kind": "pile"}}).packing == PilePacking()
+    assert scene.updated({"packing.layers": 5, "packing.kind": "pile"}).packing == PilePacking(layers=5)
+    assert scene.updated({"packing.layers": 5, "packing": PilePacking()}).packing == PilePacking(layers=5)
+    assert scene.updated({"contact": Contact(stiffness_ratio=0.5)}).contact == Contact(stiffness_ratio=0.5)
+
+
+def test_updated_takes_a_table_from_its_folder(tmp_path):
+    (tmp_path / "disks.csv").write_text("x,z,radius\n1,1,1\n")
+    (tmp_path / "scene.yaml").write_text("packing: {kind: file, path: disks.csv, width: 4}\nloads: []\n")
+    table = Scene.from_yaml(tmp_path / "scene.yaml").packing
+    assert Scene(loads=[]).updated({"packing": table}).packing.build().n == 1
+
+
 def test_updated_replaces_values_and_sections():
     scene = Scene()
     other = scene.updated(

@@ -154,41 +154,76 @@ class Scene(Description):
     def updated(self, changes: Mapping[str, Any]) -> Scene:
         """A copy with some values replaced: ``updated({"contact.friction": 1.0, "loads.0.force": [0, -4]})``.
 
-        A key is the path of a value or of a whole section; paths into loads have the number of the load
-        (``loads.0`` or ``loads[0]``). The copy is validated.
+        A key is the path of a value or of a section; paths into loads have the number of the load (``loads.0`` or
+        ``loads[0]``). A section given as a mapping, dotted or nested, keeps every value that is not named, with one
+        exception: a packing of another ``kind`` takes the place of the packing, with its own defaults. A description
+        (``Wall(friction=0.5)``) and a list are whole and replace what is there. The order of the keys means nothing.
+
+        Raises
+        ------
+        SceneError
+            If a value is named twice, in different spellings, or is not allowed: the copy is validated.
         """
-        data = self.to_dict()
-        for key, value in changes.items():
-            parts = [part for part in re.split(r"[.\[\]]+", key) if part]
+        named: dict[str, Any] = {}
+        # Descriptions first, so that paths lead into them.
+        for key, value in sorted(changes.items(), key=lambda item: not isinstance(item[1], Description)):
+            parts = [part for part in re.split(r"[.\[\]]+", key) if part] if isinstance(key, str) else []
             if not parts:
                 raise SceneError(f"{show(key)}: must be the path of a key, such as contact.friction")
-            target: Any = data
-            for depth, part in enumerate(parts):
-                last = depth == len(parts) - 1
-                if isinstance(target, list):
-                    if not part.isdecimal() or int(part) >= len(target):
-                        where = show_key(parts[:depth])
-                        raise SceneError(f"{key}: {where} has {len(target)} items, no item {show(part)}")
-                    place: Any = int(part)
-                elif isinstance(target, dict):
-                    place = part
-                    if not last and part not in target:
-                        keys = ", ".join(target)
-                        hint = suggestion(part, target)
-                        raise SceneError(f"{key}: unknown key {show(part)}{hint} (allowed: {keys})")
-                else:
-                    raise SceneError(f"{key}: {show_key(parts[:depth])} is a single value and has no keys")
-                if last:
-                    target[place] = _as_data(value)
-                else:
-                    target = target[place]
-        return type(self).from_dict(data, folder=self.folder)
+            nested = _as_data(value)
+            for part in reversed(parts):
+                nested = {str(int(part)) if part.isdecimal() else part: nested}
+            _name(named, nested, key)
+        folders = [value.folder for value in changes.values() if isinstance(value, FilePacking)]
+        return type(self).from_dict(_merged(self.to_dict(), named, ()), folder=(folders or [self.folder])[0])
+
+
+class _Whole(dict[str, Any]):
+    """The data of a description, and which of its keys its maker named."""
+
+    named: frozenset[str] = frozenset()
 
 
 def _as_data(value: Any) -> Any:
-    """Descriptions among the changes as plain data, so that a later path may lead into them."""
+    """Changes as plain data; a description stays whole."""
     if isinstance(value, Description):
-        return value.model_dump(mode="json")
+        whole = _Whole(value.model_dump(mode="json"))
+        whole.named = frozenset(value.model_fields_set)
+        return whole
+    if isinstance(value, Mapping):
+        return {key: _as_data(part) for key, part in value.items()}
     if isinstance(value, (list, tuple)):
         return [_as_data(part) for part in value]
     return value
+
+
+def _name(named: dict[str, Any], more: dict[str, Any], key: str) -> None:
+    """Add ``more`` values to those ``named`` already; ``key`` is what the caller called them."""
+    for name, value in more.items():
+        if name not in named or (isinstance(named, _Whole) and name not in named.named):
+            named[name] = value
+        elif isinstance(named[name], dict) and isinstance(value, dict):
+            _name(named[name], value, key)
+        else:
+            raise SceneError(f"{key}: {show(name)} is named twice, in different spellings; must be named once")
+
+
+def _merged(old: Any, change: Any, path: tuple[str, ...]) -> Any:
+    """``old`` with the values that ``change`` names."""
+    if isinstance(change, _Whole) or not isinstance(change, dict):
+        return change
+    if isinstance(old, list):
+        new = list(old)
+        for part, value in change.items():
+            if not str(part).isdecimal() or int(part) >= len(old):
+                raise SceneError(
+                    f"{show_key((*path, part))}: {show_key(path)} has {len(old)} items, no item {show(part)}"
+                )
+            new[int(part)] = _merged(old[int(part)], value, (*path, part))
+        return new
+    if not isinstance(old, dict) or ("kind" in change and change["kind"] != old.get("kind")):
+        return change
+    merged = {
+        key: _merged(old[key], value, (*path, str(key))) if key in old else value for key, value in change.items()
+    }
+    return {**old, **merged}
