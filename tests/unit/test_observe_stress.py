@@ -9,8 +9,6 @@ from granular_response.observe import stress as stress_module
 from granular_response.observe.stress import (
     ContactForces,
     antisymmetric_part,
-    antisymmetric_ratio,
-    body_force_density,
     coarse_grained_stress,
     contact_forces,
     grid_points,
@@ -80,18 +78,8 @@ def test_chunks_change_nothing(monkeypatch):
     contacts_ = ContactForces(*(rng.normal(size=(40, 2)) * s for s in (6.0, 2.0, 1.0)))
     points = rng.normal(size=(50, 2)) * 8.0
     whole = coarse_grained_stress(contacts_, points)
-    density = body_force_density(contacts_.point, contacts_.force, points)
     monkeypatch.setattr(stress_module, "_CHUNK", 60)
     np.testing.assert_allclose(coarse_grained_stress(contacts_, points), whole, rtol=1e-12, atol=1e-15)
-    np.testing.assert_allclose(
-        body_force_density(contacts_.point, contacts_.force, points), density, rtol=1e-12, atol=1e-15
-    )
-
-
-def test_body_force_density_is_a_normalised_gaussian():
-    position, force = np.array([[1.0, 2.0]]), np.array([[0.5, -3.0]])
-    density = body_force_density(position, force, np.array([[1.0, 2.0], [3.0, 2.0]]), 2.0)
-    np.testing.assert_allclose(density, force / (4.0 * np.pi) * np.array([[1.0], [np.exp(-1.0)]]))
 
 
 def test_contacts_of_a_state_with_its_walls():
@@ -123,13 +111,11 @@ def test_pressure_and_antisymmetric_part():
     stress = np.array([[[3.0, 0.5], [0.3, 1.0]], [[0.0, 1.0], [-1.0, 0.0]], [[-1.0, 0.0], [0.2, -1.0]]])
     np.testing.assert_allclose(pressure(stress), [2.0, 0.0, -1.0])
     np.testing.assert_allclose(antisymmetric_part(stress), [0.1, 1.0, -0.1])
-    np.testing.assert_allclose(antisymmetric_ratio(stress), [0.05, np.nan, 0.1])
 
 
 @pytest.mark.parametrize("option", ["width", "cutoff"])
 def test_bad_options_are_refused(option):
     contact = one_contact([1.0, 0.0], [2.0, 0.0], [1.0, 0.0])
-    with pytest.raises(ValueError, match=option):
-        coarse_grained_stress(contact, np.zeros((1, 2)), **{option: 0.0})
-    with pytest.raises(ValueError, match=option):
-        body_force_density(contact.point, contact.force, np.zeros((1, 2)), **{option: -1.0})
+    for value in (0.0, -1.0):
+        with pytest.raises(ValueError, match=option):
+            coarse_grained_stress(contact, np.zeros((1, 2)), **{option: value})

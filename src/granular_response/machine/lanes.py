@@ -1,14 +1,13 @@
 """Several numbers at once: the type that vectorised kernels calculate with.
 
-A ``Lanes`` value holds ``WIDTH`` doubles in vector registers: of consecutive contacts or degrees of freedom, or of one
-quantity in several scenes (lock-step). Arithmetic, comparison, :func:`select`, :func:`root` and :func:`magnitude` act
-on each lane alone, with the rounding of the scalar operation, so a lane's results do not depend on what the others
-hold; functions written with them serve scalars as well. Other codes leave it to the compiler whether a loop becomes
-vector instructions; here they are what a kernel asks for.
+A ``Lanes`` value holds ``WIDTH`` doubles in vector registers, of consecutive contacts or degrees of freedom.
+Arithmetic, comparison, :func:`select`, :func:`root` and :func:`magnitude` act on each lane alone, with the rounding of
+the scalar operation, so a lane's results do not depend on what the others hold; functions written with them serve
+scalars as well. Other codes leave it to the compiler whether a loop becomes vector instructions; here they are what a
+kernel asks for.
 
 :func:`take` and :func:`put` move ``array[k : k + WIDTH]``, or the scalar ``array[k]``, so that one body serves a
-vector loop and what is left at its end; :func:`load` and :func:`store` move ``array[row, :]`` of arrays of shape
-(rows, ``WIDTH``), one column for each scene. With compilation off a ``Lanes`` value is a numpy array.
+vector loop and what is left at its end. With compilation off a ``Lanes`` value is a numpy array.
 """
 
 from __future__ import annotations
@@ -136,44 +135,6 @@ def _scalar_function(name):
         return builder.call(function, args)
 
     return types.float64(types.float64), generate
-
-
-def _place(context, builder, kind, array, row):
-    data = context.make_array(kind)(context, builder, array).data
-    return builder.gep(builder.bitcast(data, _DOUBLES.as_pointer()), [row])
-
-
-def _is_rows(array) -> bool:
-    return isinstance(array, types.Array) and array.ndim == 2 and array.dtype == types.float64 and array.layout == "C"
-
-
-@intrinsic
-def load(typing, array, row):
-    """Lanes ``array[row, :]``."""
-    if not _is_rows(array):
-        return None
-
-    def generate(context, builder, sig, args):
-        loaded = builder.load(_place(context, builder, sig.args[0], *args))
-        loaded.align = 8
-        return loaded
-
-    return LANES(array, types.intp), generate
-
-
-@intrinsic
-def store(typing, array, row, value):
-    """Set ``array[row, :]``."""
-    if not _is_rows(array) or value != LANES:
-        return None
-
-    def generate(context, builder, sig, args):
-        array, row, value = args
-        stored = builder.store(value, _place(context, builder, sig.args[0], array, row))
-        stored.align = 8
-        return context.get_dummy_value()
-
-    return types.none(array, types.intp, LANES), generate
 
 
 def _is_line(array) -> bool:
@@ -323,12 +284,6 @@ if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
 
     def gather(array, start, table, row, column):
         return array[start + table[row : row + WIDTH, column]]
-
-    def load(array, row):
-        return array[row].copy()
-
-    def store(array, row, value):
-        array[row] = value
 
     def select(condition, yes, no):
         if isinstance(condition, np.ndarray):

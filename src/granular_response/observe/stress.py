@@ -106,26 +106,6 @@ def coarse_grained_stress(
     return stress.reshape(*points.shape[:-1], 2, 2)
 
 
-def body_force_density(
-    position: FloatArray, force: FloatArray, points: FloatArray, width: float = 2.0, cutoff: float = 4.0
-) -> FloatArray:
-    """Coarse-grained density of point forces (both (n, 2)) at ``points``, (..., 2).
-
-    Of all forces that are not between disks it is the divergence of the stress, see the module's docstring.
-
-    Raises ``ValueError`` unless ``width`` and ``cutoff`` are positive.
-    """
-    _check(width, cutoff)
-    flat = points.reshape(-1, 2)
-    density = np.zeros(flat.shape)
-    for at, source in _near(flat, position, np.full(position.shape[0], cutoff * width)):
-        distance2 = np.sum((flat[at] - position[source]) ** 2, axis=1)
-        phi = np.exp(-distance2 / width**2) / (np.pi * width**2)
-        for a in range(2):
-            density[:, a] += np.bincount(at, weights=phi * force[source, a], minlength=flat.shape[0])
-    return density.reshape(points.shape)
-
-
 def grid_points(x: FloatArray, z: FloatArray) -> FloatArray:
     """(len(z), len(x), 2) points of a rectangular grid."""
     return np.stack(np.meshgrid(x, z), axis=-1)
@@ -139,12 +119,6 @@ def pressure(stress: FloatArray) -> FloatArray:
 def antisymmetric_part(stress: FloatArray) -> FloatArray:
     """``(sigma_xz - sigma_zx) / 2`` of ``stress`` (..., 2, 2), which tangential forces cause (Sec. V.C)."""
     return 0.5 * (stress[..., 0, 1] - stress[..., 1, 0])
-
-
-def antisymmetric_ratio(stress: FloatArray) -> FloatArray:
-    """Magnitude of the antisymmetric part per magnitude of the pressure (Sec. V.C); NaN without pressure."""
-    p = np.abs(pressure(stress))
-    return np.divide(np.abs(antisymmetric_part(stress)), p, out=np.full(p.shape, np.nan), where=p > 0.0)
 
 
 def _check(width: float, cutoff: float) -> None:

@@ -24,15 +24,3 @@ def pressure(x: ArrayLike, depth: float, moduli: Moduli, force: float = 1.0) -> 
     s, p = moduli.shape
     t2 = (np.asarray(x, dtype=float) / depth) ** 2
     return force / (np.pi * depth) * np.sqrt(s + 2.0 * np.sqrt(p)) / (1.0 + s * t2 + p * t2**2)
-
-
-def peak_positions(moduli: Moduli) -> tuple[float, ...]:
-    """``x / depth`` of the maxima: ``(0,)``, or ``(-t, t)`` with ``t = sqrt(-s / 2p)`` if s < 0.
-
-    ``s / 2p`` equals the criterion r of Sec. V.C, so the two statements of it are one.
-    """
-    s, p = moduli.shape
-    if s >= 0.0:
-        return (0.0,)
-    t = float(np.sqrt(-s / (2.0 * p)))
-    return (-t, t)

@@ -72,11 +72,6 @@ class Moduli:
         return self.c / self.a
 
     @property
-    def anisotropy(self) -> float:
-        """Largest relative departure from the isotropic ``a = b`` and ``d = a - c``."""
-        return max(abs(self.a - self.b), abs(self.d - self.a + self.c)) / self.a
-
-    @property
     def peak_criterion(self) -> float:
         """``r = [a b - c (c + d)] / (b d)``: two peaks under a vertical point force iff r < 0 (Sec. V.C).
 
