@@ -16,7 +16,7 @@ from granular_response.observe.network import HORIZONTAL, bulk_disks, coordinati
 from granular_response.scene import Scene
 from granular_response.solve import solve_scene
 from granular_response.store.result import to_dataset
-from granular_response.sweep.sweep import map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 STARTS = (2.0, "touching-largest")
 FORCE = 15.0

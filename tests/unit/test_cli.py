@@ -251,7 +251,7 @@ class Study:
 
     @staticmethod
     def simulate(parameters, *, workers=None, progress=None):
-        from granular_response.sweep.sweep import map_tasks
+        from granular_response.sweeps.tasks import map_tasks
 
         squares = map_tasks(square, range(parameters["count"]), workers=workers, progress=progress)
         return {"squares": xr.Dataset({"square": ("item", np.array(squares), LABEL)})}

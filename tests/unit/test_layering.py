@@ -25,7 +25,7 @@ ALLOWED = {
     "theory": {"numpy", "scipy"},
     "plot": {"cycler", "matplotlib", "numpy", "xarray"},
     "store": {"gsd", "netCDF4", "numpy", "pyevtk", "rich", "xarray"},
-    "sweep": {"distributed", "numpy"},
+    "sweeps": {"distributed", "numpy"},
     "paper": {"PIL", "jinja2", "matplotlib", "numpy", "scipy", "xarray"},
     "cli": {"rich", "typer"},
 }

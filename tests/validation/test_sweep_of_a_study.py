@@ -18,8 +18,8 @@ import yaml
 from granular_response.cli import main as cli
 from granular_response.paper.pipeline import simulation
 from granular_response.store import files as store
-from granular_response.sweep import memory as settled
-from granular_response.sweep import sweep
+from granular_response.sweeps import rest as settled
+from granular_response.sweeps import tasks
 
 GROUP = "superposition"
 SECTIONS = {
@@ -83,8 +83,8 @@ def only_dask(monkeypatch):
     def refuse(*_):
         raise AssertionError("not on the cluster")
 
-    monkeypatch.setattr(sweep, "_here", refuse)
-    monkeypatch.setattr(sweep, "_over_processes", refuse)
+    monkeypatch.setattr(tasks, "_here", refuse)
+    monkeypatch.setattr(tasks, "_over_processes", refuse)
 
 
 def command(monkeypatch, *arguments: str) -> bytes:
@@ -109,7 +109,7 @@ def test_a_cluster_named_on_the_command_line_writes_the_same_bytes(
 def test_a_cluster_named_by_the_environment_writes_the_same_bytes(
     folder, expected, cluster, only_dask, monkeypatch
 ) -> None:
-    monkeypatch.setenv(sweep.SCHEDULER_VARIABLE, cluster.scheduler_address)
+    monkeypatch.setenv(tasks.SCHEDULER_VARIABLE, cluster.scheduler_address)
     assert command(monkeypatch) == expected
 
 

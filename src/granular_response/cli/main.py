@@ -387,7 +387,7 @@ def _expected_errors() -> tuple[type[BaseException], ...]:
         "store.files": ["StoreError"],
         "store.generated": ["GeneratedError"],
         "store.result": ["ResultError"],
-        "sweep.sweep": ["SweepError"],
+        "sweeps.tasks": ["SweepError"],
     }
     found: list[type[BaseException]] = []
     for module, attributes in names.items():

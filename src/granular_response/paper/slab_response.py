@@ -28,7 +28,7 @@ from granular_response.store.result import (
     states_dataset,
     variable,
 )
-from granular_response.sweep.memory import rest_state
+from granular_response.sweeps.rest import rest_state
 
 FloatArray = NDArray[np.float64]
 

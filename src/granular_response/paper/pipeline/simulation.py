@@ -12,8 +12,8 @@ from typing import Any
 from granular_response.paper.pipeline import GroupError, data_path, group_function
 from granular_response.scene import SceneError, text
 from granular_response.store import files as store
-from granular_response.sweep import memory as settled
-from granular_response.sweep import sweep
+from granular_response.sweeps import rest as settled
+from granular_response.sweeps import tasks
 
 PARAMETERS = Path("params.yaml")
 
@@ -55,7 +55,7 @@ def simulate(
     parameter_file: Path = PARAMETERS,
     workers: int | None = None,
     scheduler: str | None = None,
-    progress: sweep.Progress | None = None,
+    progress: tasks.Progress | None = None,
 ) -> Path:
     """Run the simulations of a group and store its datasets; returns the path of the file.
 
@@ -68,11 +68,11 @@ def simulate(
     store.check_writable(output)
     kept = output.parent / f".{output.stem}.checkpoint"
     environment = {
-        sweep.CHECKPOINT_VARIABLE: str(kept),
+        tasks.CHECKPOINT_VARIABLE: str(kept),
         settled.FOLDER_VARIABLE: os.environ.get(settled.FOLDER_VARIABLE, str(output.parent / REST_STATES)),
     }
     if scheduler:
-        environment[sweep.SCHEDULER_VARIABLE] = scheduler
+        environment[tasks.SCHEDULER_VARIABLE] = scheduler
     with _environment(environment):
         try:
             datasets = function(given, workers=workers, progress=progress)

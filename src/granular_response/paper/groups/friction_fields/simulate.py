@@ -35,7 +35,7 @@ from granular_response.store.result import (
     common_candidates,
     variable,
 )
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
 

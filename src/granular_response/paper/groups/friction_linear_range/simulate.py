@@ -33,7 +33,7 @@ from granular_response.solve import Problem
 from granular_response.solve.path import Crossing
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 #: The linear range ends where the response at x = 0 differs by this fraction from that to the smallest force.
 LINEARITY = 0.01

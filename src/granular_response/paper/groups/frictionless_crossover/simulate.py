@@ -38,8 +38,8 @@ from granular_response.solve import Problem
 from granular_response.solve.equilibrium import Rearranged
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
-from granular_response.sweep.memory import rest_state
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -184,7 +184,7 @@ def simulate(
         ``response_change`` compares (Sec. IV.C); ``tolerance`` and ``size_tolerance``, widths of the brackets
         of events per force at which they happen, of the first slab and of the others.
     workers, progress
-        Of ``sweep.map_tasks``.
+        Of ``map_tasks``.
 
     Raises
     ------

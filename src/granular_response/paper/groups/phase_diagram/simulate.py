@@ -36,7 +36,7 @@ from scipy.optimize import isotonic_regression
 from granular_response.observe.floor import smoothed_response
 from granular_response.store import files as store
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweep.sweep import Progress
+from granular_response.sweeps.tasks import Progress
 
 FloatArray = NDArray[np.float64]
 

@@ -29,8 +29,8 @@ from granular_response.solve.stages import Collapsed, climb
 from granular_response.solve.timestep import stability_limit
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, states_dataset, variable
-from granular_response.sweep.memory import rest_state
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
 

@@ -20,8 +20,8 @@ from granular_response.solve import Dynamics, Problem, Stop, loaded_states, rela
 from granular_response.solve.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response.store.result import variable
-from granular_response.sweep.memory import rest_state
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 REFERENCE = "reference"
 

@@ -24,7 +24,7 @@ from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import Scene
 from granular_response.state import SLIDING, State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, map_tasks
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers

@@ -21,7 +21,7 @@ from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve.timestep import stability_limit
 from granular_response.store.result import FORCE, variable
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 #: Axes of the time-step maps: what each one changes in the scene, and what it is.
 AXES: dict[str, tuple[str, str]] = {

@@ -34,7 +34,7 @@ from granular_response.paper.slab_response import (
 )
 from granular_response.scene import Scene
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, map_tasks
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs

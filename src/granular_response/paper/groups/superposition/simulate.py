@@ -27,8 +27,8 @@ from granular_response.solve import Problem, loaded_states
 from granular_response.solve.stages import climb
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
-from granular_response.sweep.memory import rest_state
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -35,8 +35,8 @@ from granular_response.solve import Dynamics, Problem, Stop, relax
 from granular_response.solve.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweep.memory import rest_state
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 #: When a displaced equilibrium counts as settled, and how many steps it gets: growth from a small displacement
 #: shows long before.

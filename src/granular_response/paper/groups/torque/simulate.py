@@ -25,8 +25,8 @@ from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, loaded_states
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
-from granular_response.sweep.memory import rest_state
-from granular_response.sweep.sweep import Progress, map_tasks
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import pytest
 from granular_response import solve
 from granular_response.scene import Scene
 from granular_response.solve import Problem
-from granular_response.sweep import memory as settled
+from granular_response.sweeps import rest as settled
 
 SCENE = Scene.from_dict(
     {

@@ -23,7 +23,7 @@ from granular_response.solve.choice import rest_method, stop_energy
 from granular_response.solve.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response.store import atomic
-from granular_response.sweep.sweep import digest
+from granular_response.sweeps.tasks import digest
 
 #: Names the folder of kept rest states.
 FOLDER_VARIABLE = "GRANULAR_RESPONSE_REST_STATES"

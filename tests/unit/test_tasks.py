@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from granular_response.sweep import sweep
-from granular_response.sweep.sweep import SweepError, digest, map_tasks
+from granular_response.sweeps import tasks
+from granular_response.sweeps.tasks import SweepError, digest, map_tasks
 
 
 def response(item):
@@ -104,7 +104,7 @@ def test_a_task_that_kills_every_worker_is_named(tmp_path):
     task = functools.partial(note, folder=tmp_path, die_at=3, always=True)
     with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) killed its worker process 3 times"):
         map_tasks(task, range(6), workers=2)
-    assert len(starts(tmp_path, 3)) == sweep.ATTEMPTS
+    assert len(starts(tmp_path, 3)) == tasks.ATTEMPTS
 
 
 def test_an_interrupted_sweep_continues(tmp_path):
@@ -132,7 +132,7 @@ def test_an_interrupted_sweep_continues(tmp_path):
 KILLED = """
 import functools, sys
 sys.path.insert(0, sys.argv[1])
-from test_sweep import map_tasks, note
+from test_tasks import map_tasks, note
 if __name__ == "__main__":
     map_tasks(functools.partial(note, folder=sys.argv[2]), range(40), workers=2, checkpoint=sys.argv[3])
 """
@@ -178,7 +178,7 @@ def test_a_result_that_does_not_load_is_computed_again(tmp_path):
 
 
 def test_the_environment_names_the_folder(tmp_path, monkeypatch):
-    monkeypatch.setenv(sweep.CHECKPOINT_VARIABLE, str(tmp_path / "kept"))
+    monkeypatch.setenv(tasks.CHECKPOINT_VARIABLE, str(tmp_path / "kept"))
     map_tasks(slow_first, range(3), workers=1)
     assert len(list((tmp_path / "kept").iterdir())) == 3
 
@@ -210,7 +210,7 @@ def test_digests_are_equal_for_equal_values_only():
 
 
 def test_digests_are_equal_in_every_process():
-    script = "import sys; sys.path.insert(0, sys.argv[1]); from test_sweep import *;print(digest((Task, {'b', 'a'})))"
+    script = "import sys; sys.path.insert(0, sys.argv[1]); from test_tasks import *;print(digest((Task, {'b', 'a'})))"
     for seed in ("1", "2"):
         name = subprocess.run(
             [sys.executable, "-c", script, Path(__file__).parent],
