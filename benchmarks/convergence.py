@@ -40,7 +40,7 @@ def main(path: str) -> None:
         for k, force in enumerate(forces):
             limit = (floor(fine[k], problem) - floor(rest, problem)) / force
             change = float(np.abs(floor(fine[k], problem) - floor(coarse[k], problem)).max()) / force
-            crossings = len(fine[k].information.get("crossings", ()))
+            crossings = len(fine[k].reached.crossings)
             for ramp in RAMPS:
                 start = replace(rest, velocity=np.zeros_like(rest.velocity))
                 dynamics = Dynamics(problem, start, "beeman", TIME_STEP)

@@ -42,7 +42,7 @@ def measure(layers: int, per_row: int) -> list[dict]:
     rows = []
     for force in FORCES:
         state = path.at(force)
-        region, certificate = measures.region(state), state.information["certificate"]
+        region, certificate = measures.region(state), state.certificate
         rows.append(
             {
                 "layers": layers,

@@ -148,7 +148,7 @@ def falls() -> dict:
     together = lambda: same.append(relax_many(relaxations()))  # noqa: E731
     seconds = interleaved([alone, together], 2)
     equal = all(np.array_equal(a.position, b.position) for a, b in zip(same[0], same[1], strict=True))
-    steps = [state.information["relaxation_steps"] for state in same[0]]
+    steps = [state.reached.relaxation_steps for state in same[0]]
     return {
         "scenes": WIDTH,
         "disks": len(same[0][0].position),

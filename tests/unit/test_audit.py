@@ -8,7 +8,7 @@ from small_scenes import scene
 
 from granular_response.paper.trials.random_scenes import check, contradiction, rounding_of
 from granular_response.solve import Solution, solve_scene
-from granular_response.state import OPEN, SLIDING, Contacts
+from granular_response.state import OPEN, SLIDING, Contacts, Reached
 
 
 @pytest.fixture(scope="module")
@@ -103,14 +103,14 @@ def test_a_spring_of_an_open_contact_and_a_lost_disk_are_found(solution):
 )
 def test_a_certificate_that_says_something_else_is_found(solution, name, value):
     (state,) = solution.loaded
-    certificate = replace(state.information["certificate"], **{name: value})
-    tampered = replace(state, information=state.information | {"certificate": certificate})
+    certificate = replace(state.certificate, **{name: value})
+    tampered = replace(state, reached=replace(state.reached, certificate=certificate))
     assert complaint(solution, tampered).startswith(f"{name} is")
 
 
 def test_a_state_without_a_certificate_is_found(solution):
     (state,) = solution.loaded
-    assert complaint(solution, replace(state, information={})) == "a state without a certificate"
+    assert complaint(solution, replace(state, reached=Reached())) == "a state without a certificate"
 
 
 def test_a_load_that_is_not_the_scenes_is_found(solution):

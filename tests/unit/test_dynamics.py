@@ -115,9 +115,9 @@ def test_a_disk_too_fast_for_any_list_is_an_error():
 def test_a_run_that_is_cut_short_says_so():
     problem = Problem.from_scene(scene())
     state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-13, maximum_steps=500))
-    assert state.information["settled"] is False
-    assert state.information["relaxation_steps"] == 500
-    assert state.information["kinetic_energy"] > 1e-13
+    assert state.reached.settled is False
+    assert state.reached.relaxation_steps == 500
+    assert state.reached.kinetic_energy > 1e-13
 
 
 def test_envelope_is_stricter_than_the_instant():
@@ -125,8 +125,8 @@ def test_envelope_is_stricter_than_the_instant():
     steps = {}
     for rule in ("instantaneous", "envelope"):
         state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-10, rule))
-        assert state.information["settled"]
-        steps[rule] = state.information["relaxation_steps"]
+        assert state.reached.settled
+        steps[rule] = state.reached.relaxation_steps
     assert steps["envelope"] >= steps["instantaneous"] + 20.0 / 5e-4 * 0.9
 
 
@@ -136,9 +136,9 @@ def test_loose_disk_does_not_keep_a_packing_from_rest():
         [[10.0, 1.0 - 1 / 6000], [50.0, 1.0 - 1 / 6000]], velocity=[(0, 0), (1e-6, 0)], contact__friction=0.2
     )
     settled = relax(Dynamics(problem, state), Stop(1e-13, maximum_steps=20_000))
-    assert settled.information["settled"]
-    assert settled.information["loose_disks"] == 2
-    assert settled.information["kinetic_energy"] > 1e-13
+    assert settled.reached.settled
+    assert settled.reached.loose_disks == 2
+    assert settled.reached.kinetic_energy > 1e-13
 
 
 def test_ramps_of_gravity_and_load():

@@ -27,7 +27,7 @@ def test_finish_brings_a_displaced_state_back_to_balance(settled):
     rng = np.random.default_rng(0)
     moved = problem.with_static_forces(replace(rest, position=rest.position + rng.normal(0, 1e-6, (problem.n, 2))))
     assert certify(problem, moved).force_residual > 1e-4
-    certificate = finish(problem, moved).information["certificate"]
+    certificate = finish(problem, moved).certificate
     assert certificate.force_residual < 1e-10 and certificate.torque_residual < 1e-10
     assert certificate.stable
 

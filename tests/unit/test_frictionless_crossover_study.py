@@ -105,10 +105,10 @@ def test_soft_disks_are_settled_by_dynamics() -> None:
     soft, stiff = Slab(8, 24, 20.0), Slab(8, 24, 3000.0)
     packing = Problem.from_scene(soft.scene("auto")).packing
     fallen, held = study.settle(soft, "auto"), study.settle(stiff, "auto")
-    assert fallen.information["certificate"].stable
-    assert fallen.information["certificate"].force_residual < 1e-9
+    assert fallen.certificate.stable
+    assert fallen.certificate.force_residual < 1e-9
     assert study.new_neighbours(packing.position, fallen) > 0
-    assert held.information["method"] == "minimise"
+    assert held.reached.method == "minimise"
     assert study.new_neighbours(packing.position, held) == 0
 
 
@@ -119,7 +119,7 @@ def test_a_wide_slab_leans_to_one_side() -> None:
     for slab in (wide, narrow):
         packing = Problem.from_scene(slab.scene("auto")).packing
         rest = study.settle(slab, "auto")
-        assert rest.information["certificate"].stable
+        assert rest.certificate.stable
         lean[slab] = study.rest_asymmetry(packing.position, rest, packing.width)
     assert lean[narrow] < 1e-10
     assert 1e-3 < lean[wide] < 1e-2

@@ -49,8 +49,8 @@ def test_the_same_minimum_in_fewer_iterations(monkeypatch):
     monkeypatch.setattr(nested, "LARGE", 300)
     found = rest_state(problem)
     assert found.position == pytest.approx(alone.position, abs=1e-9)
-    assert found.information["newton_iterations"] < 0.7 * alone.information["newton_iterations"]
-    assert found.information["certificate"].force_residual < 1e-10
+    assert found.reached.newton_iterations < 0.7 * alone.reached.newton_iterations
+    assert found.certificate.force_residual < 1e-10
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_a_saddle_is_left_for_a_minimum(monkeypatch, large):
     half_way = problem.with_static_forces(replace(rest, position=0.5 * (rest.position + reflected)))
     monkeypatch.setattr(energy, "LARGE", large)
     found = minimise(problem, half_way)
-    assert large or found.information["escapes"] == 1
-    assert found.information["certificate"].negative_modes == 0
-    assert found.information["certificate"].force_residual < 1e-9
+    assert large or found.reached.escapes == 1
+    assert found.certificate.negative_modes == 0
+    assert found.certificate.force_residual < 1e-9
     assert min(np.abs(found.position - rest.position).max(), np.abs(found.position - reflected).max()) < 1e-8

@@ -58,7 +58,7 @@ def test_a_minimised_packing_needs_no_stable_time_step(monkeypatch, tmp_path, co
     stiff = {"contact.friction": 0.0, "contact.normal_stiffness": 1e6, "protocol.time_step": 1e-3}
     for _ in range(2):
         state = settled.rest_state(Problem.from_scene(SCENE.updated(stiff)))
-        assert state.information["certificate"].force_residual < 1e-9
+        assert state.certificate.force_residual < 1e-9
     assert len(computed) == 1
 
 

@@ -40,8 +40,8 @@ def test_method_and_certificates(changes, rest, load):
     assert [s.load_factor for s in solution.loaded] == [0.5, 1.0]
     assert solution.total_force == 2.0
     for state in (solution.rest, *solution.loaded):
-        assert state.information["certificate"].force_residual < 1e-9
-        assert state.information["certificate"].stable
+        assert state.certificate.force_residual < 1e-9
+        assert state.certificate.stable
     assert reports and all(0.0 <= part <= 1.0 for part, _ in reports)
 
 
@@ -112,8 +112,8 @@ def test_friction_that_comes_after_gravity_leaves_no_tangential_force():
     assert abs(solution.rest.pairs.tangential_force).max() < 1e-10
     assert abs(solution.loaded[0].pairs.tangential_force).max() > 0.01
     for state in (solution.rest, *solution.loaded):
-        assert state.information["certificate"].stable
-        assert state.information["certificate"].force_residual < 1e-9
+        assert state.certificate.stable
+        assert state.certificate.force_residual < 1e-9
 
 
 @pytest.mark.parametrize("factors", [(float("nan"),), (float("inf"),), (1.0, 1.0), (-1.0,), (2.0, 1.0)])
@@ -147,7 +147,7 @@ def test_a_path_asks_for_a_stable_time_step_only_where_it_takes_one():
     stiff = scene(
         contact__normal_stiffness=1e5, preparation__gravity="frictionless", protocol__time_step=5e-4, loads=LOAD
     )
-    assert solve_scene(stiff).loaded[0].information["crossings"] == []
+    assert solve_scene(stiff).loaded[0].reached.crossings == ()
 
 
 def test_a_torque_needs_friction():

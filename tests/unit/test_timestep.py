@@ -27,7 +27,7 @@ def test_limit_separates_steps_that_settle_from_steps_that_do_not(integrator):
     def settles(step: float) -> bool:
         dynamics = Dynamics(problem, problem.bare_state(), integrator, step)
         try:
-            return relax(dynamics, Stop(1e-12, maximum_steps=40_000)).information["settled"]
+            return relax(dynamics, Stop(1e-12, maximum_steps=40_000)).reached.settled
         except DynamicsError:
             return False
 

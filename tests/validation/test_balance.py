@@ -49,7 +49,7 @@ def test_no_disk_is_out_of_balance(case):
 @pytest.mark.parametrize("case", CASES)
 def test_certificate_says_so(case):
     for state in (slab(*case).rest, slab(*case).loaded[-1]):
-        certificate = state.information["certificate"]
+        certificate = state.certificate
         assert certificate.force_residual < 1e-9
         assert certificate.torque_residual < 1e-9
         assert certificate.coulomb_excess < 1e-9

@@ -36,7 +36,7 @@ def packing(request):
 
 def test_equilibrium_is_certified_and_stable(packing) -> None:
     _, rest = packing
-    certificate = rest.information["certificate"]
+    certificate = rest.certificate
     assert certificate.force_residual < 1e-9
     assert certificate.torque_residual < 1e-9
     assert certificate.coulomb_excess < 1e-9
@@ -110,7 +110,7 @@ def test_no_disk_is_lost_or_in_flight(packing) -> None:
         if kind is rest.pairs:
             np.add.at(contacts, kind.second[touching], 1)
     assert contacts.min() >= 1
-    assert np.count_nonzero(contacts < 2) == rest.information["certificate"].loose_disks
+    assert np.count_nonzero(contacts < 2) == rest.certificate.loose_disks
     assert np.all(rest.velocity == 0.0)
     assert np.all((rest.position[:, 0] > 0.0) & (rest.position[:, 0] < problem.packing.width))
     assert np.all(rest.position[:, 1] > 0.0)

@@ -70,12 +70,12 @@ def test_literal_friction_rule_never_settles_and_says_so():
     literal = scene(protocol__friction_law="literal", protocol__maximum_steps=40_000)
     problem = Problem.from_scene(literal)
     state = relax(Dynamics(problem, problem.bare_state()), Stop(1e-13, maximum_steps=40_000))
-    assert state.information["settled"] is False
-    assert state.information["kinetic_energy"] > 1e-9
+    assert state.reached.settled is False
+    assert state.reached.kinetic_energy > 1e-9
     with pytest.raises(NotSettled, match=r"did not come to rest under gravity within protocol\.maximum_steps = 40000"):
         solve_scene(literal)
     unfinished = solve_scene(literal.updated({"protocol.static_finish": False}))
-    assert unfinished.rest.information["settled"] is False
+    assert unfinished.rest.reached.settled is False
     # the rule that is used by default settles in the same time
     usual = Problem.from_scene(scene())
-    assert relax(Dynamics(usual, usual.bare_state()), Stop(1e-13, maximum_steps=40_000)).information["settled"]
+    assert relax(Dynamics(usual, usual.bare_state()), Stop(1e-13, maximum_steps=40_000)).reached.settled

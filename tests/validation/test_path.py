@@ -69,7 +69,7 @@ def test_every_state_is_certified(settled):
     choice, states = loaded_states(problem, rest, [1.0, 4.0, 9.0])
     assert choice.method == "path"
     for state in states:
-        certificate = state.information["certificate"]
+        certificate = state.certificate
         assert certificate.force_residual < 1e-9 and certificate.torque_residual < 1e-9
         assert certificate.coulomb_excess < 1e-9
         assert certificate.stable
@@ -78,8 +78,8 @@ def test_every_state_is_certified(settled):
 def test_passes_the_load_where_contacts_begin_to_slide_together():
     """Near 29.3 at friction 0.2 plain Newton iterations chatter; the branch goes on and needs no dynamics."""
     state = slab(0.2, 31.0, "path").loaded[-1]
-    assert state.information["crossings"] == []
-    assert state.information["certificate"].force_residual < 1e-9
+    assert state.reached.crossings == ()
+    assert state.certificate.force_residual < 1e-9
     assert (state.pairs.status == 2).any()
 
 
@@ -98,4 +98,4 @@ def test_a_stretch_that_costs_too_much_is_left_to_dynamics(settled, monkeypatch)
     state = follow(problem, rest, [2.0], record=record)[0]
     assert {c.reason for c in record.crossings} == {"too much work"}
     assert record.crossings[-1].end <= 2.0 and state.load_factor == 2.0
-    assert state.information["certificate"].force_residual < 1e-9
+    assert state.certificate.force_residual < 1e-9

@@ -243,7 +243,7 @@ def test_a_continued_result_is_the_uninterrupted_one(tmp_path, changes):
     scene = Scene.from_dict(SCENE).updated({"loads.0.force": [0.0, -10.0], **changes})
     straight = solve_scene(scene, load_factors=[0.3, 0.6, 1.0])
     if "packing.polydispersity" in changes:
-        assert straight.loaded[1].information["crossings"]
+        assert straight.loaded[1].reached.crossings
     parts = solve_scene(scene, load_factors=[0.3])
     for factor in (0.6, 1.0):
         store.write(tmp_path / "part.nc", to_dataset(parts))
@@ -300,7 +300,7 @@ def test_a_settled_packing_stays_where_it_is(solution):
     rest = rest_state(solution.problem)
     again = relax(Dynamics(solution.problem, rest), Stop(1e-20, maximum_steps=2000))
     np.testing.assert_allclose(again.position, rest.position, rtol=0, atol=1e-12)
-    assert again.information["kinetic_energy"] < 1e-20
+    assert again.reached.kinetic_energy < 1e-20
 
 
 # The wheel

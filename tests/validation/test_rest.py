@@ -35,14 +35,14 @@ def test_stopping_early_leaves_errors_in_floor_forces_below_one_percent():
     problem = solution.problem
     dynamics = Dynamics(problem, problem.bare_state())
     state = relax(dynamics, Stop(1e-13))
-    assert state.information["settled"]
+    assert state.reached.settled
     error = np.abs(floor_force(state, FLOOR_DISKS) / floor_force(solution.rest, FLOOR_DISKS) - 1.0).max()
     assert 1e-9 < error < 1e-2
-    assert state.information["network_fixed_steps"] >= 300
-    assert state.information["sliding_contacts"] == 0
+    assert state.reached.network_fixed_steps >= 300
+    assert state.reached.sliding_contacts == 0
     # the first reading below 1e-13 still leaves 2e-5 g; the paper's 1e-5 holds a little later
-    assert state.information["mean_acceleration"] < 1e-4
-    assert relax(dynamics, Stop(1e-14)).information["mean_acceleration"] < 1e-5
+    assert state.reached.mean_acceleration < 1e-4
+    assert relax(dynamics, Stop(1e-14)).reached.mean_acceleration < 1e-5
 
 
 def pile() -> Problem:
@@ -67,8 +67,8 @@ def test_symmetric_equilibrium_of_the_pile_is_a_saddle():
     assert np.abs(reflected - rest.position).max() > 1e-4
     half_way = replace(rest, position=0.5 * (rest.position + reflected))
     state = finish(problem, half_way)
-    assert state.information["certificate"].force_residual < 1e-9
-    assert state.information["certificate"].negative_modes == 1
+    assert state.certificate.force_residual < 1e-9
+    assert state.certificate.negative_modes == 1
     middle, left, right = middle_and_sides(state, problem)
     assert (middle, left, right) == pytest.approx((7.97, 9.15, 9.15), abs=0.006)
     assert left == pytest.approx(right, abs=1e-9)
@@ -77,7 +77,7 @@ def test_symmetric_equilibrium_of_the_pile_is_a_saddle():
 def test_pile_rests_in_a_minimum_beside_the_saddle():
     problem = pile()
     state = rest_state(problem)
-    assert state.information["certificate"].negative_modes == 0
+    assert state.certificate.negative_modes == 0
     middle, left, right = middle_and_sides(state, problem)
     assert (middle, min(left, right), max(left, right)) == pytest.approx((8.34, 9.08, 9.15), abs=0.006)
     assert floor_force(state, np.flatnonzero(problem.packing.row == 0)).sum() == pytest.approx(problem.n, rel=1e-9)

@@ -14,6 +14,7 @@ from granular_response.paper.trials.rounding import disturb
 from granular_response.paper.trials.time_steps import SETTLES, StepTrial, scene_of
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
+from granular_response.state import Reached
 
 PARAMETERS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["stability"]
 SEED = PARAMETERS["seed"]
@@ -160,7 +161,7 @@ def test_a_scene_with_a_right_answer_is_certified(tmp_path):
     ("tamper", "said"),
     [
         (lambda state: replace(state, position=state.position * (1.0 - 1e-7)), "force_residual is"),
-        (lambda state: replace(state, information={}), "a state without a certificate"),
+        (lambda state: replace(state, reached=Reached()), "a state without a certificate"),
         (lambda state: replace(state, load_factor=2.0), "force_residual is"),
     ],
     ids=["moved", "no certificate", "another load"],

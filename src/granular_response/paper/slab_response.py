@@ -18,8 +18,7 @@ from granular_response.observe.floor import floor_disks, floor_response, interio
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, loaded_states
-from granular_response.solve.path import Crossing
-from granular_response.state import State
+from granular_response.state import Crossing, State
 from granular_response.store.result import (
     FORCE,
     LENGTH,
@@ -116,7 +115,7 @@ class LoadPath:
             start = self.known[below] if below else self.rest
             choice, states = loaded_states(self.problem, start, run)
             self.method = choice.method
-            self.crossings += states[-1].information.get("crossings", [])
+            self.crossings += states[-1].reached.crossings
             self.known.update(zip(run, states, strict=True))
             wanted = wanted[len(run) :]
         return [self.known[force] for force in forces]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .choice import Choice
     from .dynamics import Dynamics, DynamicsError, Relaxation, Stop, relax
     from .energy import minimise
-    from .equilibrium import Certificate, EquilibriumError, certify, finish
+    from .equilibrium import EquilibriumError, certify, finish
     from .path import PathError, PathRecord, follow
     from .problem import Problem
     from .solution import NotSettled, Solution, continue_solution, loaded_states, rest_state, solve_scene
@@ -28,7 +28,6 @@ _HOME = {
     "Relaxation": "dynamics",
     "Stop": "dynamics",
     "relax": "dynamics",
-    "Certificate": "equilibrium",
     "EquilibriumError": "equilibrium",
     "certify": "equilibrium",
     "finish": "equilibrium",
@@ -58,7 +57,6 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "SOLVE_ERRORS",
-    "Certificate",
     "Choice",
     "Dynamics",
     "DynamicsError",

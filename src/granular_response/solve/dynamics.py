@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS
 from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
-from ..state import Contacts, FloatArray, State, wall_normals
+from ..state import Contacts, FloatArray, Reached, State, wall_normals
 from .problem import Candidates, Problem, carry_springs
 
 #: Steps between two looks at the stopping criteria.
@@ -175,7 +175,7 @@ class Dynamics:
         n = self.problem.n
         return self.angle0 + self.q[2 * n :] if self.problem.rotations else self.angle0
 
-    def state(self, **information) -> State:
+    def state(self) -> State:
         """The present state, with spring forces only (what remains at rest)."""
         problem, c, n = self.problem, self.candidates, self.problem.n
         zero_pairs, zero_walls = np.zeros(len(c.slot)), np.zeros(len(c.wall_disk))
@@ -199,7 +199,7 @@ class Dynamics:
             ),
             box=problem.packing.box,
             load_factor=self.load[1],
-            information={"steps": self.steps, "time": self.time, "rebuilds": self.rebuilds, **information},
+            reached=Reached(method="dynamics", steps=self.steps, time=self.time, rebuilds=self.rebuilds),
         )
         return problem.with_static_forces(bare)
 
@@ -336,15 +336,11 @@ class Relaxation:
         return self.state()
 
     def state(self) -> State:
-        """The state reached, with ``information``.
-
-        ``steps``, ``time``, ``kinetic_energy`` (per disk), ``settled``, and the other criteria of Sec. III.C:
-        ``network_fixed_steps``, ``sliding_contacts``, ``mean_acceleration``, ``loose_disks``. ``settled`` is
-        False when ``maximum_steps`` came first.
-        """
+        """The state reached, with all that :class:`Reached` says of dynamics."""
         dynamics = self.dynamics
         state = dynamics.state()
-        return dynamics.state(
+        reached = replace(
+            state.reached,
             kinetic_energy=dynamics.kinetic_energy(),
             settled=self.settled,
             relaxation_steps=dynamics.steps - self.started,
@@ -353,6 +349,7 @@ class Relaxation:
             mean_acceleration=dynamics.mean_acceleration(),
             loose_disks=int((dynamics.contact_count() < 2).sum()),
         )
+        return replace(state, reached=reached)
 
 
 def relax(

@@ -8,9 +8,11 @@ left along its unstable direction.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ..state import FloatArray, State
+from ..state import FloatArray, Reached, State
 from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, attainable, certify, external_force
 from .problem import Problem
 from .system import REGULARISATION, StaticSystem, Trial
@@ -64,15 +66,14 @@ def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> Sta
         if descent.iterations >= MAXIMUM_ITERATIONS:
             raise EquilibriumError(f"no minimum of the energy within {MAXIMUM_ITERATIONS} iterations")
         descent.go_on()
-    state = descent.system.state(
-        descent.trial,
-        load_factor,
+    state = descent.system.state(descent.trial, load_factor)
+    reached = Reached(
         method="minimise",
+        certificate=certify(problem, state, modes=0),
         newton_iterations=descent.iterations,
         escapes=descent.escapes,
     )
-    state.information["certificate"] = certify(problem, state, modes=0)
-    return state
+    return replace(state, reached=reached)
 
 
 class _Descent:

@@ -6,11 +6,11 @@ a semi-smooth Newton method: near a solution it ends in a few steps with residua
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..state import OPEN, FloatArray, State
+from ..state import OPEN, Certificate, FloatArray, State
 from .problem import Problem
 from .system import Configuration, StaticSystem, Trial
 
@@ -26,29 +26,6 @@ class EquilibriumError(RuntimeError):
 
 class Rearranged(EquilibriumError):
     """Disks have met that were not neighbours: equilibrium is not near the start."""
-
-
-@dataclass(frozen=True)
-class Certificate:
-    """What a static state guarantees, measured on the state itself.
-
-    ``force_residual``, ``torque_residual``: largest on any disk (mean weights, mean radii). ``coulomb_excess``:
-    largest ``|f_t| - friction f_n``. ``smallest_normal_force``: over closed contacts. ``kinetic_energy``: per
-    disk. ``negative_modes``: unstable directions of the tangent (-1: not determined). ``loose_disks``: disks with
-    fewer than two contacts.
-    """
-
-    force_residual: float
-    torque_residual: float
-    coulomb_excess: float
-    smallest_normal_force: float
-    kinetic_energy: float
-    negative_modes: int
-    loose_disks: int
-
-    @property
-    def stable(self) -> bool:
-        return self.negative_modes == 0
 
 
 def residual(system: StaticSystem, trial: Trial, external: FloatArray) -> FloatArray:
@@ -134,10 +111,11 @@ def newton(
     return trial, NewtonReport(size < tolerance, iterations, size)
 
 
-def certify(problem: Problem, state: State, *, modes: int = -1) -> Certificate:
+def certify(problem: Problem, state: State, *, modes: int | None = None) -> Certificate:
     """Measure a state's certificate from its own positions and contact forces.
 
-    The residual is summed anew from the state's contact forces, not taken from the solver.
+    ``modes`` : unstable directions of its tangent, where they have been counted. The residual is summed anew from the
+    state's contact forces, not taken from the solver.
     """
     n, radius = problem.n, problem.packing.radius
     force = np.zeros((n, 2))
@@ -221,7 +199,7 @@ def finish(problem: Problem, state: State, *, load_factor: float | None = None) 
             f"no static equilibrium within {report.iterations} Newton iterations of the state "
             f"(largest unbalanced force {report.residual:.1e}); relax it further first"
         )
-    solved = system.state(trial, factor, **{**state.information, "newton_iterations": report.iterations})
+    solved = system.state(trial, factor)
     certificate = certify(problem, solved, modes=system.negative_modes(trial))
-    solved.information["certificate"] = certificate
-    return solved
+    reached = replace(state.reached, newton_iterations=report.iterations, certificate=certificate)
+    return replace(solved, reached=reached)

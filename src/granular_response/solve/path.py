@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..state import State
+from ..state import Crossing, Reached, State
 from .dynamics import Dynamics, Stop, relax
 from .equilibrium import EquilibriumError, certify, external_force, finish
 from .increment import Work, solve_increment
@@ -47,16 +47,6 @@ NUDGE, LEFT = 1e-6, 2e-5
 
 class PathError(RuntimeError):
     """The load path could not be continued."""
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """A stretch of load that dynamics crossed: between these load factors the static branch ended."""
-
-    start: float
-    end: float
-    reason: str  #: unstable, no equilibrium, too much work, or rearrangement
-    displacement: float  #: largest displacement of a disk on the way (mean radii)
 
 
 @dataclass
@@ -262,8 +252,8 @@ class _Path:
         settled = here
         for _ in range(4):
             settled = relax(dynamics, Stop(energy, maximum_steps=options.maximum_steps), load=load)
-            if not settled.information["settled"]:
-                energy_left = settled.information["kinetic_energy"]
+            if not settled.reached.settled:
+                energy_left = settled.reached.kinetic_energy
                 raise PathError(
                     f"no equilibrium beyond load factor {start:g}: the packing does not come to rest within "
                     f"protocol.maximum_steps = {options.maximum_steps} (kinetic energy {energy_left:.1e} per disk)"
@@ -277,7 +267,7 @@ class _Path:
                 continue
             self.factor = new
             self._begin(settled)
-            if settled.information["certificate"].stable or not self._leaves():
+            if settled.certificate.stable or not self._leaves():
                 break
             failure = "the equilibrium found is unstable"
         else:
@@ -293,13 +283,11 @@ class _Path:
     def _state(self) -> State:
         state = self.system.state(self.trial, self.factor)
         work = self.record.work
-        return replace(
-            state,
-            information={
-                "method": "path",
-                "certificate": certify(self.problem, state, modes=self.modes),
-                "increments": work.increments,
-                "factorisations": work.factorisations,
-                "crossings": list(self.record.crossings),
-            },
+        reached = Reached(
+            method="path",
+            certificate=certify(self.problem, state, modes=self.modes),
+            increments=work.increments,
+            factorisations=work.factorisations,
+            crossings=tuple(self.record.crossings),
         )
+        return replace(state, reached=reached)

@@ -9,13 +9,13 @@ from itertools import pairwise
 import numpy as np
 
 from ..scene import Scene, SceneError
-from ..state import State
+from ..state import Crossing, State
 from .choice import Choice, finishes_statically, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
 from .equilibrium import EquilibriumError, certify, check_overlaps, finish
 from .nested import rest_start
-from .path import Crossing, follow
+from .path import follow
 from .problem import Problem
 from .system import StaticSystem
 from .timestep import resolve_time_step
@@ -167,7 +167,7 @@ def loaded_states(
                 state = _relaxed(problem, before, "load", progress, gravity=(1.0, 1.0, 0.0), load=ramp)
                 moved = float(np.hypot(*(state.position - before.position).T).max())
                 crossing = Crossing(before.load_factor, factor, "no equilibrium nearby", moved)
-                state = replace(state, information={**state.information, "crossings": [crossing]})
+                state = replace(state, reached=replace(state.reached, crossings=(crossing,)))
             states.append(state)
             if progress is not None:
                 progress(done, len(factors), "load")
@@ -202,40 +202,40 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
             progress(highest[1], 1.0, stage)
 
     settled = relax(dynamics, stop, gravity=gravity, load=load, progress=report)
-    settled.information["method"] = "dynamics"
     if not finishes_statically(problem):
-        if protocol.static_finish and not settled.information["settled"]:
+        if protocol.static_finish and not settled.reached.settled:
             raise NotSettled(_not_settled(problem, settled, stage))
         certificate = certify(problem, settled)
-        return replace(settled, information={**settled.information, "certificate": certificate})
-    if not settled.information["settled"] and settled.information["kinetic_energy"] > NEARLY * stop.kinetic_energy:
+        return replace(settled, reached=replace(settled.reached, certificate=certificate))
+    energy_left = settled.reached.kinetic_energy or 0.0
+    if not settled.reached.settled and energy_left > NEARLY * stop.kinetic_energy:
         raise NotSettled(_not_settled(problem, settled, stage))
     failure: Exception | None = None
     for attempt in range(ATTEMPTS):
         try:
             if not problem.rotations:
                 finished = minimise(problem, problem.relisted(settled), load_factor=load[1])
-                return replace(finished, information={**settled.information, **finished.information})
+                return replace(finished, reached=finished.reached.after(settled.reached))
             finished = finish(problem, settled)
-            if finished.information["certificate"].stable:
+            if finished.certificate.stable:
                 return finished
             failure = EquilibriumError("the equilibrium found is unstable")
             if attempt > 1:
                 dynamics = Dynamics(problem, _nudged(problem, finished), protocol.integrator, dynamics.time_step)
         except EquilibriumError as error:
             failure = error
-        if not settled.information["settled"]:
+        if not settled.reached.settled:
             break
         dynamics.set_ramps(load=(load[1], load[1], 0.0))
         dynamics.advance(round(MORE_TIME / dynamics.time_step))
-        settled = replace(dynamics.state(), information={**settled.information, "more_relaxations": attempt + 1})
+        settled = replace(dynamics.state(), reached=replace(settled.reached, more_relaxations=attempt + 1))
     raise NotSettled(f"{_not_settled(problem, settled, stage)}: {failure}")
 
 
 def _not_settled(problem: Problem, settled: State, stage: str) -> str:
     return (
         f"the packing did not come to rest under {stage} within protocol.maximum_steps = "
-        f"{problem.scene.protocol.maximum_steps} (kinetic energy {settled.information['kinetic_energy']:.1e} per disk)"
+        f"{problem.scene.protocol.maximum_steps} (kinetic energy {settled.reached.kinetic_energy:.1e} per disk)"
     )
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..state import FloatArray, State
+from ..state import FloatArray, Reached, State
 from .choice import stop_energy
 from .dynamics import Dynamics, Stop, relax
 from .equilibrium import certify, external_force, newton
@@ -120,15 +120,15 @@ def _dynamic(problem: Problem, start: State, factor: float, ramp_time: float, lo
         finished = _finish(problem, settled)
         if finished is not None:
             return finished
-        if not settled.information["settled"]:
+        if not settled.reached.settled:
             break
         dynamics.set_ramps(load=load)
         dynamics.advance(round(wait / dynamics.time_step))
         wait *= 2.0
-        settled = replace(dynamics.state(), information=settled.information)
+        settled = replace(dynamics.state(), reached=settled.reached)
     raise NotSettled(
         f"the packing did not come to rest under load {factor:g} within protocol.maximum_steps = "
-        f"{protocol.maximum_steps} (kinetic energy {settled.information['kinetic_energy']:.1e} per disk)"
+        f"{protocol.maximum_steps} (kinetic energy {settled.reached.kinetic_energy:.1e} per disk)"
     )
 
 
@@ -143,9 +143,10 @@ def _finish(problem: Problem, settled: State) -> State | None:
     modes = system.negative_modes(trial)
     if modes:
         return None
-    state = system.state(trial, settled.load_factor, **{**settled.information, "newton_iterations": report.iterations})
-    state.information["certificate"] = certify(problem, state, modes=modes)
-    return state
+    state = system.state(trial, settled.load_factor)
+    certificate = certify(problem, state, modes=modes)
+    reached = replace(settled.reached, newton_iterations=report.iterations, certificate=certificate)
+    return replace(state, reached=reached)
 
 
 def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]:
@@ -181,6 +182,6 @@ def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]
     modes = system.negative_modes(trial)
     if modes:
         return state, False
-    reached = system.state(trial, factor, method="statics")
-    reached.information["certificate"] = certify(problem, reached, modes=modes)
-    return reached, factor >= target
+    there = system.state(trial, factor)
+    reached = Reached(method="statics", certificate=certify(problem, there, modes=modes))
+    return replace(there, reached=reached), factor >= target

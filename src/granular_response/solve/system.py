@@ -226,7 +226,7 @@ class StaticSystem:
             return None
         return self._kept[1]
 
-    def state(self, trial: Trial, load_factor: float, **information) -> State:
+    def state(self, trial: Trial, load_factor: float) -> State:
         """The state at rest of a solved trial."""
         n = self.problem.n
         q = trial.configuration.q
@@ -247,7 +247,6 @@ class StaticSystem:
             ),
             box=self.problem.packing.box,
             load_factor=load_factor,
-            information=information,
         )  # fmt: skip
 
     def symmetric_factor(self, trial: Trial, shift: float) -> tuple[Factor, int]:

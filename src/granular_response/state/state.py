@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .box import Box, FloatArray, wall_normals
+from .reached import Certificate, Reached
 from .status import OPEN, SLIDING
 
 
@@ -55,7 +56,14 @@ class State:
     walls: Contacts  #: disk-wall candidates
     box: Box  #: what bounds the packing
     load_factor: float = 0.0  #: multiplier of the scene's loads
-    information: dict = field(default_factory=dict, compare=False)  #: how the state was reached
+    reached: Reached = field(default=Reached(), compare=False)  #: how
+
+    @property
+    def certificate(self) -> Certificate:
+        """What the state guarantees; raises ``ValueError`` when nothing was measured."""
+        if self.reached.certificate is None:
+            raise ValueError("a state without a certificate")
+        return self.reached.certificate
 
     def pair_separation(self) -> FloatArray:
         """(m, 2) from the centres of ``second`` to those of ``first``."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,11 +19,9 @@ from ..observe.difference import match_candidates, pair_force_difference, wall_f
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
 from ..solve.choice import load_method, rest_method
-from ..solve.equilibrium import Certificate
-from ..solve.path import Crossing
 from ..solve.problem import Problem
 from ..solve.solution import Solution
-from ..state import Box, Contacts, State
+from ..state import Box, Certificate, Contacts, Crossing, Reached, State
 from .labelled import Labelled, Values
 
 if TYPE_CHECKING:
@@ -46,6 +44,10 @@ _CONTACT_VARIABLES = {
 }
 _FLAGS = {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
 _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
+
+
+#: Number of unstable directions in files where it was not determined.
+NOT_DETERMINED = -1
 
 
 class ResultError(ValueError):
@@ -119,19 +121,23 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
         "coulomb_excess": f"largest excess of a tangential force over the Coulomb limit {FORCE}",
         "smallest_normal_force": f"smallest normal force of a closed contact {FORCE}",
         "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
-        "negative_modes": "unstable directions of the tangent stiffness (-1: not determined)",
+        "negative_modes": f"unstable directions of the tangent stiffness ({NOT_DETERMINED}: not determined)",
         "loose_disks": "disks with fewer than two contacts",
     }
-    certificates: list[Certificate] = [s.information["certificate"] for s in states]
+    certificates: list[Certificate] = [s.certificate for s in states]
+
+    def number(value: float | None) -> float:
+        return NOT_DETERMINED if value is None else value
+
     return {
-        f"certificate_{name}": described((dimension,), np.array([getattr(c, name) for c in certificates]), text)
+        f"certificate_{name}": described((dimension,), np.array([number(getattr(c, name)) for c in certificates]), text)
         for name, text in names.items()
     }
 
 
 def _crossings(loaded: Sequence[State]) -> dict[str, Values]:
     """Stretches of load that dynamics crossed on the way, none where there were none."""
-    found = list(dict.fromkeys(crossing for state in loaded for crossing in state.information.get("crossings", ())))
+    found = list(dict.fromkeys(crossing for state in loaded for crossing in state.reached.crossings))
     if not found:
         return {}
     texts = {
@@ -255,11 +261,18 @@ def to_labelled(solution: Solution) -> Labelled:
         "width": packing.width,
         "method": json.dumps(methods),
         "method_reason": json.dumps(reasons),
-        "stable": int(all(s.information["certificate"].negative_modes == 0 for s in states)),
-        "settled": int(all(s.information.get("settled", True) for s in states)),
+        "stable": _verdict([s.certificate.stable for s in states]),
+        "settled": _verdict([s.reached.settled is not False for s in states]),
         "units": "reduced: mean disk radius, mean disk mass, g",
     }
     return Labelled(data, frozenset({"axis", "floor_disk", "x", "component"}), attributes)
+
+
+def _verdict(all_states: Sequence[bool | None]) -> str:
+    """``no`` if it fails for one state, ``not determined`` if for one nobody looked, else ``yes``."""
+    if any(one is False for one in all_states):
+        return "no"
+    return "not determined" if None in all_states else "yes"
 
 
 def state_from(dataset: xr.Dataset, index: int = -1) -> State:
@@ -274,10 +287,12 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         raise ResultError("the dataset holds no states (variable contact_spring is missing)")
     one = dataset.isel(state=index)
     stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
-    information = {}
+    certificate = None
     if set(stored.values()) <= set(one.variables):
         numbers: dict[str, Any] = {name: one[variable].values.item() for name, variable in stored.items()}
-        information["certificate"] = Certificate(**numbers)
+        if numbers["negative_modes"] == NOT_DETERMINED:
+            numbers["negative_modes"] = None
+        certificate = Certificate(**numbers)
 
     def contacts(prefix: str, partner: str) -> Contacts:
         values = [one[f"{prefix}_{name}"].values for name in _CONTACT_VARIABLES]
@@ -292,7 +307,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         walls=contacts("wall", "wall_index"),
         box=Box(float(dataset.attrs["width"])),
         load_factor=float(one["load_factor"]),
-        information=information,
+        reached=Reached(certificate=certificate),
     )
 
 
@@ -316,7 +331,8 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     loaded = [state_from(dataset, k) for k in range(1, dataset.sizes["state"])]
     if loaded and "crossing_start" in dataset:
         columns = [dataset[f"crossing_{field.name}"].values.tolist() for field in fields(Crossing)]
-        loaded[0].information["crossings"] = [Crossing(*values) for values in zip(*columns, strict=True)]
+        crossings = tuple(Crossing(*values) for values in zip(*columns, strict=True))
+        loaded[0] = replace(loaded[0], reached=replace(loaded[0].reached, crossings=crossings))
     return Solution(
         scene=scene,
         problem=problem,

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from . import files as store
+from .result import NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
 _HIDDEN = {
@@ -55,7 +56,7 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
     rows = [(stage, f"{method} ({reasons.get(stage, '')})") for stage, method in methods.items()]
     for name in ("stable", "settled"):
         if name in result.attrs:
-            rows.append((name, "yes" if result.attrs[name] else "no"))
+            rows.append((name, str(result.attrs[name])))
     yield _table(rows)
     if "crossing_start" in result:
         yield Text("\nstretches of load that dynamics crossed", style="bold")
@@ -84,7 +85,10 @@ def _certificate(result: xr.Dataset) -> Table:
     for name in map(str, result):
         if name.startswith("certificate_"):
             title = name.removeprefix("certificate_").replace("_", " ")
-            table.add_row(title, *(f"{value:.3g}" for value in result[name].values))
+            values = [f"{value:.3g}" for value in result[name].values]
+            if title == "negative modes":
+                values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
+            table.add_row(title, *values)
     return table
 
 

@@ -176,7 +176,7 @@ def attempt(description: dict[str, Any], factors: list[float], folder: str) -> T
             if wrong:
                 outcome, message = "wrong", wrong
                 break
-            certificate = state.information["certificate"]
+            certificate = state.certificate
             if not certificate.stable or found.force_residual > BALANCE + rounding_of(solution):
                 outcome = "uncertified"
         if outcome == "uncertified" and finishes_statically(solution.problem):
@@ -215,7 +215,7 @@ def rounding_of(solution: Solution) -> float:
 
 def contradiction(state: State, found: Audit, rounding: float) -> str:
     """What the audit finds that the state's certificate does not say; empty if nothing."""
-    certificate = state.information.get("certificate")
+    certificate = state.reached.certificate
     if certificate is None:
         return "a state without a certificate"
     for name in ("force_residual", "torque_residual", "coulomb_excess"):

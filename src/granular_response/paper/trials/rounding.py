@@ -28,7 +28,7 @@ class Disturbed:
     response_change: float  #: largest change of the floor response, per its largest value
     excess_coordination: float  #: contacts of bearing disks over what isostaticity needs, per bearing disk
     loose_disks: int
-    negative_modes: int
+    negative_modes: int | None
     crossings: int  #: stretches of load that dynamics crossed
 
 
@@ -42,7 +42,7 @@ def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
     # a contact has one force without friction and two with it; each disk has two equations or three
     contacts = rest.pairs.touching.sum() + rest.walls.touching.sum() - count[~bearing].sum()
     needed = 1.5 if problem.rotations else 2.0
-    certificate = rest.information["certificate"]
+    certificate = rest.certificate
     (loaded,) = loaded_states(problem, rest, [1.0])[1]
     disks = floor_disks([rest, loaded])
     response = floor_force(loaded, disks) - floor_force(rest, disks)
@@ -60,7 +60,7 @@ def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
                 excess_coordination=float(contacts / bearing.sum() - needed),
                 loose_disks=certificate.loose_disks,
                 negative_modes=certificate.negative_modes,
-                crossings=len(loaded.information.get("crossings", ())),
+                crossings=len(loaded.reached.crossings),
             )
         )
     return found

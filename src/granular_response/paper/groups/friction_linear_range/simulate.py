@@ -30,8 +30,7 @@ from granular_response.paper.slab_response import (
 )
 from granular_response.scene import Scene
 from granular_response.solve import Problem
-from granular_response.solve.path import Crossing
-from granular_response.state import State
+from granular_response.state import Crossing, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import Progress, map_tasks
 

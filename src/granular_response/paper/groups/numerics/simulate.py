@@ -96,7 +96,7 @@ class ResponseTask:
         rest, loaded, disks = rest_and_loaded(self.scene)
         response = (floor_force(loaded, disks) - floor_force(rest, disks)) / abs(loaded.load_factor)
         names = ("network_fixed_steps", "sliding_contacts", "mean_acceleration", "loose_disks", "kinetic_energy")
-        return response, {name: float(loaded.information[name]) for name in names}
+        return response, {name: float(getattr(loaded.reached, name)) for name in names}
 
 
 @dataclass(frozen=True)
@@ -112,8 +112,8 @@ class DampingTask:
         protocol = self.scene.protocol
         dynamics = Dynamics(problem, problem.bare_state(), protocol.integrator, self.time_step)
         stop = Stop(protocol.stop_kinetic_energy, "envelope", protocol.maximum_steps)
-        information = relax(dynamics, stop).information
-        return float(information["time"]), float(information["settled"])
+        state = relax(dynamics, stop)
+        return dynamics.time, float(bool(state.reached.settled))
 
 
 Task = StopTask | RestartTask | ResponseTask | DampingTask

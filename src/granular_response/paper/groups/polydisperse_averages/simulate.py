@@ -144,7 +144,7 @@ def realize(task: Task) -> Realization:
             outcome[k], message = FAILED, f"force {force:g}: {error}"
             break
         moved = state.position - rest.position
-        certificate = state.information["certificate"]
+        certificate = state.certificate
         values = {
             "sink": -moved[disk, 1],
             "largest_displacement": np.hypot(moved[:, 0], moved[:, 1]).max(),
@@ -195,7 +195,7 @@ class _Loading:
         before = self.state.load_factor
         if self.method != "auto" or not self.problem.rotations:
             self.state = loaded_states(self.problem, self.state, [force])[1][0]
-            return self.state, (before if "relaxation_steps" in self.state.information else force)
+            return self.state, (force if self.state.reached.relaxation_steps is None else before)
         self.state, stage = climb(
             self.problem,
             self.state,
@@ -213,7 +213,7 @@ def _packing_numbers(problem: Problem, rest: State) -> dict[str, float]:
     count = rest.position.shape[0]
     touching = rest.pairs.touching
     horizontal = np.abs(np.abs(rest.pair_normal()[touching, 0])) > np.cos(np.pi / 6.0)
-    certificate = rest.information["certificate"]
+    certificate = rest.certificate
     bulk = network.bulk_disks(rest, problem.packing.width, min(10.0, 0.2 * problem.packing.width))
     return {
         "coordination_number": network.coordination_number(rest),
@@ -223,7 +223,7 @@ def _packing_numbers(problem: Problem, rest: State) -> dict[str, float]:
         "horizontal_contacts": np.count_nonzero(horizontal) / count,
         "oblique_contacts": np.count_nonzero(~horizontal) / count,
         "largest_overlap": float(rest.pairs.overlap.max()),
-        "settling_steps": float(rest.information.get("steps", 0)),
+        "settling_steps": float(rest.reached.steps or 0),
         **{
             name: float(getattr(certificate, name))
             for name in ("loose_disks", "force_residual", "torque_residual", "coulomb_excess", "negative_modes")

@@ -101,13 +101,15 @@ def _literal(problem: Problem, rest: State, steps: int) -> State:
 def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
     bottom = floor_disks([rest, loaded], np.flatnonzero(problem.packing.row == 0))
     total = float(np.hypot(problem.load[:, 0], problem.load[:, 1]).sum())
-    certificate = loaded.information.get("certificate")
-    energy = loaded.information.get("kinetic_energy", getattr(certificate, "kinetic_energy", np.nan))
+    certificate = loaded.reached.certificate
+    energy = loaded.reached.kinetic_energy
+    if energy is None:
+        energy = certificate.kinetic_energy if certificate else np.nan
     return Outcome(
         response=floor_response(rest, loaded, bottom, total),
         x=problem.packing.position[bottom, 0] - problem.packing.position[problem.load_disk[0], 0],
         kinetic_energy=float(energy),
-        force_residual=float(getattr(certificate, "force_residual", np.nan)),
+        force_residual=certificate.force_residual if certificate else np.nan,
     )
 
 

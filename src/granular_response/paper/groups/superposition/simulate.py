@@ -116,7 +116,7 @@ def load_pair(task: Task) -> Pair:
             errors[name][f], errors[f"{name}_largest"][f] = superposition_error(*values)
         for row in range(row_error.shape[1]):
             row_error[f, row], _ = superposition_error(*at_contact[:, f, between & (below == row)])
-    certificates = [state.information["certificate"] for state in flat]
+    certificates = [state.certificate for state in flat]
     return Pair(
         response=np.moveaxis(on_floor, 0, 1) / np.array(task.forces)[:, None, None],
         errors=errors,

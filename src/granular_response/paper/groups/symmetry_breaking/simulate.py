@@ -156,7 +156,7 @@ class HeldTask:
         dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
         factor = state.load_factor
         settled = relax(dynamics, HELD_STOP, load=(factor, factor, 0.0))
-        return replace(settled, information={**state.information, **settled.information})
+        return replace(settled, reached=settled.reached.after(state.reached))
 
 
 @dataclass(frozen=True)

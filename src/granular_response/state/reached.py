@@ -1,0 +1,73 @@
+"""How a state was reached, and what it guarantees: typed records, ``None`` where a method does not know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What a static state guarantees, measured on the state itself.
+
+    ``force_residual``, ``torque_residual``: largest on any disk (mean weights, mean radii). ``coulomb_excess``:
+    largest ``|f_t| - friction f_n``. ``smallest_normal_force``: over closed contacts. ``kinetic_energy``: per
+    disk. ``negative_modes``: unstable directions of the tangent (None: not determined). ``loose_disks``: disks with
+    fewer than two contacts.
+    """
+
+    force_residual: float
+    torque_residual: float
+    coulomb_excess: float
+    smallest_normal_force: float
+    kinetic_energy: float
+    negative_modes: int | None
+    loose_disks: int
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether no direction is unstable; None where that was not determined."""
+        return None if self.negative_modes is None else self.negative_modes == 0
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A stretch of load that dynamics crossed: between these load factors the static branch ended."""
+
+    start: float
+    end: float
+    reason: str  #: unstable, no equilibrium, too much work, or rearrangement
+    displacement: float  #: largest displacement of a disk on the way (mean radii)
+
+
+@dataclass(frozen=True)
+class Reached:
+    """How a state was reached.
+
+    Reduced units; ``kinetic_energy`` is per disk, before the static finish. ``network_fixed_steps``,
+    ``sliding_contacts`` and ``mean_acceleration`` are the further criteria of Sec. III.C, as they were when the
+    kinetic energy had fallen below its limit.
+    """
+
+    method: str | None = None  #: dynamics, minimise, path or statics
+    certificate: Certificate | None = None
+    settled: bool | None = None  #: whether dynamics came to rest; False when its steps ran out
+    steps: int | None = None  #: time steps of the dynamics since it began
+    time: float | None = None  #: since the last ramp began
+    rebuilds: int | None = None  #: times that candidate contacts were listed again
+    kinetic_energy: float | None = None
+    relaxation_steps: int | None = None  #: time steps of the last relaxation
+    network_fixed_steps: int | None = None  #: time steps in which no contact opened or closed
+    sliding_contacts: int | None = None
+    mean_acceleration: float | None = None  #: of disks with two contacts or more, in units of g
+    loose_disks: int | None = None  #: disks with fewer than two contacts
+    more_relaxations: int | None = None  #: stretches of dynamics between tries of the static finish
+    newton_iterations: int | None = None
+    escapes: int | None = None  #: saddles of the energy that were left
+    increments: int | None = None  #: of the path so far
+    factorisations: int | None = None  #: of the path so far
+    crossings: tuple[Crossing, ...] = ()  #: of the path so far
+
+    def after(self, earlier: Reached) -> Reached:
+        """This record, and what only the one ``earlier`` knows."""
+        known = {field.name: getattr(self, field.name) for field in fields(self)}
+        return replace(earlier, **{name: value for name, value in known.items() if value not in (None, ())})

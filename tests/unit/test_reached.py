@@ -1,0 +1,50 @@
+"""The record of how a state was reached."""
+
+from dataclasses import replace
+
+import pytest
+from small_scenes import scene
+
+from granular_response.solve import solve_scene
+from granular_response.state import Crossing, Reached
+from granular_response.store import files as store
+from granular_response.store.result import state_from, to_dataset
+from granular_response.store.summary import summarise
+
+
+def test_a_record_takes_from_an_earlier_one_what_it_does_not_know():
+    crossings = (Crossing(0.1, 0.2, "unstable", 0.3),)
+    earlier = Reached(method="dynamics", steps=700, settled=True, crossings=crossings)
+    later = Reached(method="minimise", newton_iterations=0, settled=False)
+    assert later.after(earlier) == Reached(
+        method="minimise", steps=700, settled=False, newton_iterations=0, crossings=crossings
+    )
+
+
+def test_stability_that_nobody_looked_at_is_said_so(tmp_path, capsys):
+    from rich.console import Console
+
+    solution = solve_scene(scene())
+    (state,) = solution.loaded
+    assert state.certificate.stable is True
+    assert to_dataset(solution).attrs["stable"] == "yes"
+    for modes, stable, said in ((None, None, "not determined"), (1, False, "no")):
+        certificate = replace(state.certificate, negative_modes=modes)
+        assert certificate.stable is stable
+        other = replace(state, reached=replace(state.reached, certificate=certificate))
+        data = to_dataset(replace(solution, loaded=(other,)))
+        assert data.attrs["stable"] == said
+        assert state_from(data).certificate == certificate
+        store.write(tmp_path / "result.nc", data)
+        for part in summarise(tmp_path / "result.nc"):
+            Console(width=200).print(part)
+        shown = capsys.readouterr().out
+        assert [line.split()[1:] for line in shown.splitlines() if line.startswith("stable")] == [said.split()]
+        row = next(line for line in shown.splitlines() if line.startswith("negative modes"))
+        assert row.split(maxsplit=2)[2].split(maxsplit=1) == ["0", "not determined" if modes is None else "1"]
+
+
+def test_a_state_without_a_certificate_says_so():
+    (state,) = solve_scene(scene()).loaded
+    with pytest.raises(ValueError, match="without a certificate"):
+        replace(state, reached=Reached()).certificate  # noqa: B018
