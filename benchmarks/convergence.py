@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 from timing import floor, scene, write
 
-from granular_response.solve import Dynamics, Problem, Relaxation, Stop, finish, follow, relax_many, rest_state
+from granular_response.solve import Dynamics, Problem, Stop, finish, follow, relax, rest_state
 
 CASES = {0.2: (15.0, 40.0), 1.0: (30.0, 65.0, 70.0)}
 RAMPS = (20.0, 50.0, 100.0, 200.0, 400.0)
@@ -31,7 +31,7 @@ def symmetric(response: np.ndarray) -> np.ndarray:
 
 
 def main(path: str) -> None:
-    pending = []
+    rows = []
     for friction, forces in CASES.items():
         problem = Problem.from_scene(scene(friction, 1.0))
         rest = rest_state(problem)
@@ -44,27 +44,22 @@ def main(path: str) -> None:
             for ramp in RAMPS:
                 start = replace(rest, velocity=np.zeros_like(rest.velocity))
                 dynamics = Dynamics(problem, start, "beeman", TIME_STEP)
-                relaxation = Relaxation(dynamics, Stop(1e-14), load=(0.0, force, ramp))
-                pending.append((problem, rest, friction, force, ramp, limit, change, crossings, relaxation))
-    states = relax_many([case[-1] for case in pending])
-    rows = []
-    for (problem, rest, friction, force, ramp, limit, change, crossings, _), state in zip(pending, states, strict=True):
-        settled = finish(problem, state)
-        response = (floor(settled, problem) - floor(rest, problem)) / force
-        rows.append(
-            {
-                "friction": friction,
-                "force": force,
-                "ramp_time": ramp,
-                "difference": float(np.abs(response - limit).max()),
-                "symmetric_difference": float(np.abs(symmetric(response) - symmetric(limit)).max()),
-                "asymmetry": float(np.abs(response - response[::-1]).max()),
-                "path_asymmetry": float(np.abs(limit - limit[::-1]).max()),
-                "path_change": change,
-                "path_crossings": crossings,
-            }
-        )
-        print(rows[-1], flush=True)
+                settled = finish(problem, relax(dynamics, Stop(1e-14), load=(0.0, force, ramp)))
+                response = (floor(settled, problem) - floor(rest, problem)) / force
+                rows.append(
+                    {
+                        "friction": friction,
+                        "force": force,
+                        "ramp_time": ramp,
+                        "difference": float(np.abs(response - limit).max()),
+                        "symmetric_difference": float(np.abs(symmetric(response) - symmetric(limit)).max()),
+                        "asymmetry": float(np.abs(response - response[::-1]).max()),
+                        "path_asymmetry": float(np.abs(limit - limit[::-1]).max()),
+                        "path_change": change,
+                        "path_crossings": crossings,
+                    }
+                )
+                print(rows[-1], flush=True)
     fits = []
     for friction, forces in CASES.items():
         for force in forces:

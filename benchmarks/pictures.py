@@ -108,13 +108,10 @@ def precision(metrics: Metrics) -> Figure:
 def kernel(metrics: Metrics) -> Figure:
     """Disk-steps per second against the number of disks."""
     figure, axes = style.figure(1, 2, width="double", height=2.6, sharey=True)
-    kinds = {"single": ("one scene", "path", "o"), "lockstep": ("scenes in lock-step", "beeman", "s")}
     for panel, friction in zip(axes[0], sorted({row["friction"] for row in metrics["runs"]}), strict=True):
         runs = pick(metrics["runs"], friction=friction)
-        disks = np.array([row["disks"] for row in runs])
-        for key, (label, method, marker) in kinds.items():
-            rate = [row[f"{key}_disk_steps_per_second"] for row in runs]
-            panel.plot(disks, rate, marker=marker, linestyle="-", color=METHODS[method][0], label=label)
+        rate = [row["disk_steps_per_second"] for row in runs]
+        panel.plot([row["disks"] for row in runs], rate, "o-", color=METHODS["dynamics"][0], label="ours")
         theirs = [row for row in runs if row["lammps_microseconds"]]
         if theirs:
             rate = [1e6 * row["disks"] / row["lammps_microseconds"] for row in theirs]

@@ -19,10 +19,10 @@ TIME_STEP = 4e-4
 STEPS, REPEATS = 400, 25
 
 
-def settled(friction: float) -> tuple[Problem, Dynamics]:
+def settled(friction: float, steps: int = 20_000) -> tuple[Problem, Dynamics]:
     problem = Problem.from_scene(scene(friction))
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", TIME_STEP)
-    dynamics.advance(20_000)
+    dynamics.advance(steps)
     return problem, dynamics
 
 

@@ -14,27 +14,8 @@ from pathlib import Path
 
 from timing import write
 
-#: Every kernel in every form that the package asks for.
-ALL_KERNELS = """
-import numpy as np
-from granular_response.core.integrators import INTEGRATORS
-from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, Relaxation, Stop, relax_many, solve_scene
-
-small = {"kind": "slab", "layers": 4, "disks_per_row": 26}
-load = [{"disk": "top-centre", "force": [0.0, -2.0]}]
-for friction, wall in ((0.0, 0.0), (0.2, 0.0), (0.2, 0.3), (0.0, 0.3)):
-    for law in ("cut", "literal"):
-        changes = {"contact": {"friction": friction}, "wall": {"friction": wall}, "protocol": {"friction_law": law}}
-        problem = Problem.from_scene(Scene.from_dict({"packing": small, "loads": load, **changes}))
-        for name in INTEGRATORS:
-            Dynamics(problem, problem.bare_state(), name, 2e-4).advance(1)
-    many = [Dynamics(problem, problem.bare_state(), time_step=2e-4) for _ in range(8)]
-    relax_many(Relaxation(dynamics, Stop(maximum_steps=100)) for dynamics in many)
-rough = {**small, "polydispersity": 0.2}
-for changes in ({"contact": {"friction": 0.0}}, {"contact": {"friction": 0.2}}, {"packing": rough}):
-    solve_scene(Scene.from_dict({"packing": small, "loads": load, **changes}))
-"""
+#: Asks for every kernel in every form.
+ALL_KERNELS = Path(__file__).with_name("all_kernels.py")
 
 SCENES = {
     "default (friction 0.2, force 15)": "loads: [{disk: top-centre, force: [0.0, -15.0]}]\ncontact: {friction: 0.2}\n",
@@ -60,7 +41,7 @@ def main(path: str) -> None:
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         cache = str(Path(folder) / "kernels")
-        command = [sys.executable, "-c", ALL_KERNELS]
+        command = [sys.executable, str(ALL_KERNELS)]
         rows.append({"what": "all kernels, compiled", **run(command, NUMBA_CACHE_DIR=cache)})
         rows.append({"what": "the same, from the cache", **run(command, 2, NUMBA_CACHE_DIR=cache)})
         for name, text in SCENES.items():
