@@ -1,3 +1,57 @@
-"""Quasi-static response of two-dimensional granular solids to a localized force."""
+"""Quasi-static response of two-dimensional granular solids to a localized force.
+
+What stands in ``__all__`` is the public namespace: it keeps its names and meanings, and what they load is loaded on
+first use. Everything below it may change from version to version.
+
+``Scene`` says what is simulated, ``solve`` settles and loads it, and a ``Result`` holds what came of it: states,
+certificates, floor response, contacts, stress. ``plot`` draws results, ``open_result`` reads a stored one.
+
+>>> import granular_response as gr
+>>> result = gr.solve(gr.Scene().updated({"contact.friction": 0.2}))
+>>> result.save("result.nc")
+>>> gr.plot.response(result).figure.savefig("response.pdf")
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from . import plot as plot
+    from .api.result import Result as Result
+    from .api.result import open_result as open_result
+    from .api.result import solve as solve
+    from .scene import Scene as Scene
+
+#: Where the public names are; those of "" are modules.
+_HOME = {
+    "Result": "api.result",
+    "Scene": "scene",
+    "open_result": "api.result",
+    "plot": "",
+    "solve": "api.result",
+}
+
+# Import statements find the package solve as ever; the attribute of that name is the function. Loading a package
+# binds it to its parent once, so it is loaded (it is light) and unbound before the function is asked for.
+import_module(".solve", __name__)
+del globals()["solve"]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    home = _HOME[name]
+    value = getattr(import_module(f".{home}", __name__), name) if home else import_module(f".{name}", __name__)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOME})
+
+
+__all__ = ["Result", "Scene", "__version__", "open_result", "plot", "solve"]

@@ -26,6 +26,7 @@ ALLOWED = {
     "plot": {"cycler", "matplotlib", "numpy", "xarray"},
     "store": {"gsd", "netCDF4", "numpy", "pyevtk", "rich", "xarray"},
     "sweeps": {"distributed", "numpy"},
+    "api": {"numpy", "xarray"},
     "paper": {"PIL", "jinja2", "matplotlib", "numpy", "scipy", "xarray"},
     "cli": {"rich", "typer"},
 }

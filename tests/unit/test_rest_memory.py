@@ -5,9 +5,9 @@ import pickle
 import numpy as np
 import pytest
 
-from granular_response import solve
 from granular_response.scene import Scene
 from granular_response.solve import Problem
+from granular_response.solve import solution as solve
 from granular_response.sweeps import rest as settled
 
 SCENE = Scene.from_dict(

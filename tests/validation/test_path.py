@@ -15,6 +15,7 @@ from granular_response.solve import (
     finish,
     follow,
     loaded_states,
+    path,
     relax,
     rest_state,
 )  # fmt: skip
@@ -93,7 +94,7 @@ def test_default_increments_are_within_the_aim_of_accuracy(settled):
 
 def test_a_stretch_that_costs_too_much_is_left_to_dynamics(settled, monkeypatch):
     problem, rest = settled
-    monkeypatch.setattr("granular_response.solve.path.MOST_WORK", 2)
+    monkeypatch.setattr(path, "MOST_WORK", 2)
     record = PathRecord()
     state = follow(problem, rest, [2.0], record=record)[0]
     assert {c.reason for c in record.crossings} == {"too much work"}

@@ -20,7 +20,7 @@ def exact_mean(values: FloatArray) -> float:
     return math.fsum(values) / len(values)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Packing:
     """n disks before the preparation, in reduced units; the arrays are never modified.
 
@@ -39,6 +39,10 @@ class Packing:
     def n(self) -> int:
         """Number of disks."""
         return len(self.radius)
+
+    def __repr__(self) -> str:
+        low, high = self.radius.min(), self.radius.max()
+        return f"Packing({self.n} disks, radii from {low:.4g} to {high:.4g}, box {self.width:g} wide)"
 
     @property
     def box(self) -> Box:

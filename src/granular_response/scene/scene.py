@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Mapping
 from os import PathLike
@@ -98,6 +99,20 @@ class Scene(Description):
                     path = ("loads", place, "disk", *problem.key)
                     raise Problem(problem.allowed, key=path, value=problem.value) from None
         return self
+
+    def __repr__(self) -> str:
+        """What differs from the paper's scene."""
+        named = self.model_dump(mode="json", exclude_defaults=True)
+        if "packing" in named:
+            named["packing"] = {"kind": self.packing.kind, **named["packing"]}
+        return f"Scene.from_dict({named})" if named else "Scene()"
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        """All keys, folded up, for a notebook."""
+        keys = html.escape(self.to_yaml())
+        return f"<details><summary><code>{html.escape(repr(self))}</code></summary><pre>{keys}</pre></details>"
 
     @property
     def resolved_wall(self) -> Contact:

@@ -27,7 +27,7 @@ LEAST_LATTICE_LIMIT = 0.25
 Law = tuple[float, float, float, float, float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Candidates:
     """Contacts that can exist while no disk is farther than ``limit`` from ``reference``.
 
@@ -50,8 +50,11 @@ class Candidates:
     def slots(self) -> int:
         return len(self.reach)
 
+    def __repr__(self) -> str:
+        return f"Candidates({len(self.first)} pairs, {len(self.wall_disk)} at walls, limit={self.limit:g})"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Problem:
     """A scene with its packing, in the form the kernels take.
 
@@ -96,6 +99,9 @@ class Problem:
     @property
     def n(self) -> int:
         return len(self.packing.radius)
+
+    def __repr__(self) -> str:
+        return f"Problem({self.n} disks, loads on disks {self.load_disk.tolist()}, scene={self.scene!r})"
 
     @property
     def pair_friction(self) -> bool:

@@ -16,7 +16,7 @@ from .reached import Certificate, Reached
 from .status import OPEN, SLIDING
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Contacts:
     """Candidate contacts of one kind (between disks, or of disks with walls), each of length m.
 
@@ -43,8 +43,12 @@ class Contacts:
         """(m,) whether the contact is at the Coulomb limit."""
         return self.status == SLIDING
 
+    def __repr__(self) -> str:
+        count = f"{len(self.first)} candidates, {self.touching.sum()} touching, {self.sliding.sum()} sliding"
+        return f"Contacts({count})"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class State:
     """Positions, motion and contacts of n disks at one load."""
 
@@ -82,6 +86,12 @@ class State:
         """(w, 2) force on ``walls.first``."""
         return contact_force(
             wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force
+        )
+
+    def __repr__(self) -> str:
+        return (
+            f"State({len(self.position)} disks at load factor {self.load_factor:g}, "
+            f"pairs={self.pairs!r}, walls={self.walls!r}, box={self.box!r})"
         )
 
 

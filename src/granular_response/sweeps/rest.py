@@ -17,8 +17,8 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-from granular_response import solve as solvers
 from granular_response.solve import Problem
+from granular_response.solve import solution as solvers
 from granular_response.solve.choice import rest_method, stop_energy
 from granular_response.solve.timestep import resolve_time_step
 from granular_response.state import State

@@ -1,0 +1,255 @@
+"""A solved scene as one object: what ``solve`` returns, ``open_result`` reads and ``plot`` draws.
+
+Units are the reduced ones (mean disk radius, mean disk mass, g), as everywhere in the package.
+"""
+
+from __future__ import annotations
+
+import html
+import os
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
+from ..scene import Scene
+from ..solve.equilibrium import Certificate
+from ..solve.solution import Progress, Solution, continue_solution, solve_scene
+from ..state import State
+from ..store import files
+from ..store.result import ResultError, scene_of, solution_from, state_from, to_dataset
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Result:
+    """The states of a scene, at rest and under load, and what is measured on them.
+
+    Made by :func:`solve` and :func:`open_result`.
+    """
+
+    def __init__(
+        self,
+        solution: Solution | None = None,
+        dataset: xr.Dataset | None = None,
+        *,
+        folder: str | os.PathLike[str] | None = None,
+    ) -> None:
+        if (solution is None) == (dataset is None):
+            raise TypeError("Result: made from a solution or from a dataset, one of them")
+        self._solution, self._dataset, self._folder = solution, dataset, folder
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What was solved."""
+        return self._solution.scene if self._solution else scene_of(self._data, folder=self._folder)
+
+    @cached_property
+    def rest(self) -> State:
+        """The state at rest under gravity."""
+        return self._solution.rest if self._solution else state_from(self._data, 0)
+
+    @cached_property
+    def loaded(self) -> tuple[State, ...]:
+        """One state for each load factor, in order; empty for a scene without loads."""
+        if self._solution:
+            return self._solution.loaded
+        return tuple(state_from(self._data, k) for k in range(1, self._data.sizes["state"]))
+
+    @property
+    def load_factors(self) -> tuple[float, ...]:
+        """Multipliers of the scene's loads, one for each loaded state."""
+        return tuple(state.load_factor for state in self.loaded)
+
+    @property
+    def certificates(self) -> tuple[Certificate, ...]:
+        """What is left unbalanced, and whether it is stable, of each state, the one at rest first."""
+        return tuple(state.information["certificate"] for state in (self.rest, *self.loaded))
+
+    @property
+    def certificate(self) -> Certificate:
+        """That of the last state."""
+        return self.certificates[-1]
+
+    @property
+    def floor_response(self) -> xr.DataArray:
+        """What the load adds to the vertical force on each floor disk, per total magnitude of the applied forces.
+
+        Dimension ``floor_disk`` with ``x``, its place from the loaded disk in mean radii; before it one for the load
+        where there are several.
+        """
+        return self._data["floor_response"]
+
+    @property
+    def contacts(self) -> xr.Dataset:
+        """Every candidate contact in every state: between disks (``contact_...``) and at walls (``wall_...``).
+
+        ``contact_status`` and ``wall_status`` are 0 open, 1 sticking, 2 sliding.
+        """
+        data = self._data
+        return data[[name for name in map(str, data.data_vars) if name.startswith(("contact_", "wall_"))]]
+
+    def stress(
+        self,
+        x: Sequence[float] | np.ndarray | None = None,
+        z: Sequence[float] | np.ndarray | None = None,
+        *,
+        state: int = -1,
+        added: bool | None = None,
+        width: float = 2.0,
+    ) -> xr.DataArray:
+        """Coarse-grained stress tensor on a grid, in mean disk weights per mean radius, compression positive.
+
+        Parameters
+        ----------
+        x : places from the loaded disk, as in ``floor_response``; every mean radius across the box if left out.
+        z : heights above the floor; every mean radius up to the highest disk if left out.
+        state : 0 at rest, then one for each load factor; -1 is the last one.
+        added : the part that the load adds (Fig. 14) rather than the whole stress; True by default but at rest.
+        width : of the Gaussian (Sec. V.C: two mean radii).
+
+        Returns
+        -------
+        Dimensions ``z``, ``x``, ``force`` and ``branch`` ("x", "z"): the first index of the tensor is the force's.
+
+        Raises
+        ------
+        IndexError
+            For a state that there is not.
+        ValueError
+            Unless ``width`` is positive, and for the added part of the state at rest.
+        """
+        import xarray as xr
+
+        count = len(self.loaded) + 1
+        if not -count <= state < count:
+            raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
+        state %= count
+        added = state > 0 if added is None else added
+        if added and state == 0:
+            raise ValueError("added: a load adds nothing to the state at rest, must be False for state 0")
+        origin = self.origin
+        box, top = self.rest.box.width, float(self.rest.position[:, 1].max()) + 1.0
+        across = np.arange(-origin, box - origin + 0.5) if x is None else np.asarray(x, float)
+        up = np.arange(0.0, top) if z is None else np.asarray(z, float)
+        rest, now = (state_from(self._data, k) for k in (0, state))  # on one list of candidates
+        forces = load_forces(rest, now) if added else contact_forces(now)
+        tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
+        names = np.array(["x", "z"])
+        return xr.DataArray(
+            tensor,
+            {"z": up, "x": across, "force": names, "branch": names},
+            ("z", "x", "force", "branch"),
+            "stress",
+            {"long_name": "stress that the load adds" if added else "stress", "units": "1", "gaussian_width": width},
+        )
+
+    @property
+    def origin(self) -> float:
+        """Distance from the left end of the box to where ``x`` is 0: the loaded disk, or the middle of the box."""
+        data = self._data
+        return float(data["position"].values[0, int(data["floor_disk"][0]), 0] - data["x"].values[0])
+
+    def to_dataset(self) -> xr.Dataset:
+        """Everything as one labelled dataset: what a stored file holds."""
+        return self._data.copy()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Store as netCDF-4, whole or not at all; :func:`open_result` and ``xarray.open_dataset`` read it.
+
+        Raises
+        ------
+        granular_response.store.files.StoreError
+            If the file cannot be written.
+        """
+        files.write(path, self._data)
+
+    def continued(self, load_factors: Sequence[float], *, progress: Progress | None = None) -> Result:
+        """The result with states at further ``load_factors``, as if they had been asked for from the beginning.
+
+        Raises as :func:`solve` does, and ResultError where the table of disks has changed since.
+        """
+        solution = self._solution or solution_from(self._data, folder=self._folder)
+        return Result(continue_solution(solution, load_factors, progress=progress))
+
+    @property
+    def _data(self) -> xr.Dataset:
+        if self._dataset is None:
+            assert self._solution is not None
+            self._dataset = to_dataset(self._solution)
+        return self._dataset
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """A line for each state: which, and what its certificate says."""
+        rows = []
+        for k, (state, certificate) in enumerate(zip((self.rest, *self.loaded), self.certificates, strict=True)):
+            stable = {0: "stable", -1: "stability not determined"}.get(certificate.negative_modes, "unstable")
+            touching = int(state.pairs.touching.sum())
+            change = touching - int(self.rest.pairs.touching.sum())
+            contacts = f"{touching} contacts between disks" + (f" ({change:+d})" if change else "")
+            name = f"load factor {state.load_factor:g}" if k else "at rest"
+            rows.append((name, f"{stable}, largest force left over {certificate.force_residual:.1e}, {contacts}"))
+        return rows
+
+    def __repr__(self) -> str:
+        head = f"Result: {len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
+        return "\n".join([head, *(f"  {name}: {text}" for name, text in self._rows())])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in self._rows())
+        scene = html.escape(self.scene.to_yaml())
+        return (
+            f"<b>Result</b>: {len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
+            f"<table>{rows}</table><details><summary>scene</summary><pre>{scene}</pre></details>"
+        )
+
+
+def solve(
+    scene: Scene | Mapping[str, Any] | str | os.PathLike[str],
+    *,
+    load_factors: Sequence[float] | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Settle a scene under gravity, then load it.
+
+    Parameters
+    ----------
+    scene : a scene, nested mappings with its keys, or the path of a scene file.
+    load_factors : multipliers of the scene's loads at which states are kept.
+    progress : called with the part done of a stage, 1 and the stage's name.
+
+    Raises
+    ------
+    granular_response.scene.SceneError
+        For a scene that is not allowed.
+    granular_response.solve.NotSettled, DynamicsError, EquilibriumError, PathError
+        For one that has no such states, each with one line that says what to change.
+    """
+    if isinstance(scene, (str, os.PathLike)):
+        scene = Scene.from_yaml(scene)
+    elif not isinstance(scene, Scene):
+        scene = Scene.from_dict(scene)
+    chosen = {} if load_factors is None else {"load_factors": load_factors}
+    return Result(solve_scene(scene, progress=progress, **chosen))
+
+
+def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:
+    """A stored result.
+
+    ``folder`` is that of the scene file, where a packing from a table is to be continued.
+
+    Raises
+    ------
+    granular_response.store.files.StoreError
+        If the file cannot be read.
+    granular_response.store.result.ResultError
+        If it holds something else than a result.
+    """
+    dataset = files.read(path).get("")
+    if dataset is None or "contact_spring" not in dataset:
+        what = "must be a result of granular-response run or Result.save"
+        raise ResultError(f"{os.fspath(path)}: holds no states, {what}")
+    return Result(dataset=dataset, folder=folder)

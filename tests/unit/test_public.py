@@ -1,0 +1,123 @@
+"""The public namespace, with ``import granular_response as gr`` alone."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import granular_response as gr
+
+SMALL = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 21}, "loads": [{"disk": 93, "force": [0, -4]}]}
+
+
+@pytest.fixture(scope="module")
+def result() -> gr.Result:
+    return gr.solve(SMALL, load_factors=[0.5, 1.0])
+
+
+def fresh(script: str) -> str:
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    return run.stdout.strip()
+
+
+def test_importing_loads_nothing_heavy():
+    """In processor time, least of three: the aim is 0.15 s."""
+    script = (
+        "import sys, time; start = time.process_time(); import granular_response as gr; dir(gr), gr.plot;"
+        "spent = time.process_time() - start;"
+        "heavy = {'numpy', 'scipy', 'numba', 'xarray', 'matplotlib', 'pydantic', 'yaml', 'netCDF4'};"
+        "print(spent, *sorted(heavy & set(sys.modules)))"
+    )
+    runs = [fresh(script).split() for _ in range(3)]
+    assert [run[1:] for run in runs] == [[]] * 3
+    assert min(float(run[0]) for run in runs) < 0.15
+
+
+@pytest.mark.parametrize("first", ["import granular_response.solve.problem", "from granular_response import solve"])
+def test_the_solvers_stay_a_package_for_import_statements(first):
+    script = f"{first}\nfrom granular_response.solve import Problem\nimport granular_response as gr\n"
+    assert fresh(script + "print(gr.solve.__qualname__, gr.solve.__module__, Problem.__name__)") == (
+        "solve granular_response.api.result Problem"
+    )
+
+
+def test_every_public_name_is_there_and_documented():
+    for name in set(gr.__all__) - {"__version__"}:
+        assert getattr(gr, name).__doc__ and name in dir(gr)
+    with pytest.raises(AttributeError, match="no attribute 'solv'"):
+        gr.solv  # noqa: B018
+
+
+def test_a_result_has_states_certificates_and_response(result):
+    assert result.load_factors == (0.5, 1.0) and result.rest.load_factor == 0.0
+    assert len(result.certificates) == 3 and result.certificate.stable
+    assert result.certificate.force_residual < 1e-10
+    assert float(result.floor_response.isel(load=1).sum()) == pytest.approx(1.0, abs=1e-9)
+    assert result.scene == gr.Scene.from_dict(SMALL)
+
+
+def test_contacts_are_those_of_the_states(result):
+    contacts = result.contacts
+    assert set(contacts["contact_status"].dims) == {"state", "contact"}
+    touching = [int((contacts["contact_status"].isel(state=k) > 0).sum()) for k in range(3)]
+    assert touching == [int(state.pairs.touching.sum()) for state in (result.rest, *result.loaded)]
+
+
+def test_stress_carries_the_load(result):
+    """Over a line the added vertical stress is the load above it; so is the whole stress with the weights."""
+    across = np.arange(-40.0, 40.0, 0.25)
+    added = result.stress(across, [4.5], width=1.0).sel(force="z", branch="z")
+    assert float(added.sum() * 0.25) == pytest.approx(4.0, rel=2e-3)
+    assert added.dims == ("z", "x") and float(added.x[int(added.argmax("x"))]) == pytest.approx(0.0, abs=1.0)
+    rest, half = (result.stress(across, [4.5], state=k, added=False).sel(force="z", branch="z") for k in (0, 1))
+    assert float((half - rest).sum() * 0.25) == pytest.approx(2.0, rel=2e-2)
+    with pytest.raises(ValueError, match="added: a load adds nothing"):
+        result.stress(state=0, added=True)
+    with pytest.raises(IndexError, match="state = 3: must be from -3 to 2"):
+        result.stress(state=3)
+
+
+def test_a_stored_result_is_the_result(result, tmp_path):
+    result.save(tmp_path / "result.nc")
+    back = gr.open_result(tmp_path / "result.nc")
+    xr.testing.assert_equal(back.floor_response, result.floor_response)
+    assert back.certificates == result.certificates and back.scene == result.scene
+    np.testing.assert_array_equal(back.loaded[-1].position, result.loaded[-1].position)
+    further = back.continued([1.5])
+    assert further.load_factors == (0.5, 1.0, 1.5)
+    np.testing.assert_array_equal(further.loaded[-1].position, result.continued([1.5]).loaded[-1].position)
+
+
+def test_what_is_no_result_is_said(tmp_path):
+    from granular_response.store import files
+    from granular_response.store.result import ResultError
+
+    labels = {"long_name": "nothing", "units": "1"}
+    files.write(tmp_path / "study.nc", {"a": xr.Dataset({"b": ("c", [1.0], labels)})})
+    with pytest.raises(ResultError, match=r"study\.nc: holds no states, must be a result"):
+        gr.open_result(tmp_path / "study.nc")
+
+
+def test_scenes_come_from_files_and_mappings(tmp_path, result):
+    path = tmp_path / "scene.yaml"
+    path.write_text(gr.Scene.from_dict(SMALL).to_yaml())
+    np.testing.assert_array_equal(gr.solve(path).rest.position, result.rest.position)
+
+
+def test_short_texts_for_people(result):
+    problem = result._solution.problem
+    for value in (result, result.scene, result.rest, result.rest.pairs, problem, problem.packing, result._solution):
+        assert 10 < len(repr(value)) < 2000
+    assert "at rest: stable" in repr(result) and "load factor 1: stable" in repr(result)
+    assert "103 disks" in repr(result.rest)
+    assert "<table>" in result._repr_html_() and "friction: 0.2" in result.scene._repr_html_()
+
+
+@pytest.mark.parametrize("changes", [{}, {"contact.friction": 0.0}, {"packing": {"kind": "pile", "layers": 3}}])
+def test_a_scene_is_made_again_from_its_text(changes):
+    scene = gr.Scene().updated(changes)
+    assert eval(repr(scene), {"Scene": gr.Scene}) == scene
+    assert "method" not in repr(scene)
