@@ -71,7 +71,7 @@ def test_stress_carries_the_load(result):
     across = np.arange(-40.0, 40.0, 0.25)
     added = result.stress(across, [4.5], width=1.0).sel(force="z", branch="z")
     assert float(added.sum() * 0.25) == pytest.approx(4.0, rel=2e-3)
-    assert added.dims == ("z", "x") and float(added.x[int(added.argmax("x"))]) == pytest.approx(0.0, abs=1.0)
+    assert added.dims == ("z", "x") and float(added.x[int(added.values.argmax())]) == pytest.approx(0.0, abs=1.0)
     rest, half = (result.stress(across, [4.5], state=k, added=False).sel(force="z", branch="z") for k in (0, 1))
     assert float((half - rest).sum() * 0.25) == pytest.approx(2.0, rel=2e-2)
     with pytest.raises(ValueError, match="added: a load adds nothing"):

@@ -15,9 +15,8 @@ import numpy as np
 
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
-from ..solve.equilibrium import Certificate
 from ..solve.solution import Progress, Solution, continue_solution, solve_scene
-from ..state import State
+from ..state import Certificate, State
 from ..store import files
 from ..store.result import ResultError, scene_of, solution_from, state_from, to_dataset
 
@@ -65,12 +64,15 @@ class Result:
         return tuple(state.load_factor for state in self.loaded)
 
     @property
-    def certificates(self) -> tuple[Certificate, ...]:
-        """What is left unbalanced, and whether it is stable, of each state, the one at rest first."""
-        return tuple(state.information["certificate"] for state in (self.rest, *self.loaded))
+    def certificates(self) -> tuple[Certificate | None, ...]:
+        """What is left unbalanced, and whether it is stable, of each state, the one at rest first.
+
+        None only where a file does not say.
+        """
+        return tuple(state.reached.certificate for state in (self.rest, *self.loaded))
 
     @property
-    def certificate(self) -> Certificate:
+    def certificate(self) -> Certificate | None:
         """That of the last state."""
         return self.certificates[-1]
 
@@ -186,11 +188,14 @@ class Result:
         """A line for each state: which, and what its certificate says."""
         rows = []
         for k, (state, certificate) in enumerate(zip((self.rest, *self.loaded), self.certificates, strict=True)):
-            stable = {0: "stable", -1: "stability not determined"}.get(certificate.negative_modes, "unstable")
             touching = int(state.pairs.touching.sum())
             change = touching - int(self.rest.pairs.touching.sum())
             contacts = f"{touching} contacts between disks" + (f" ({change:+d})" if change else "")
             name = f"load factor {state.load_factor:g}" if k else "at rest"
+            if certificate is None:
+                rows.append((name, f"no certificate, {contacts}"))
+                continue
+            stable = {True: "stable", False: "unstable", None: "stability not determined"}[certificate.stable]
             rows.append((name, f"{stable}, largest force left over {certificate.force_residual:.1e}, {contacts}"))
         return rows
 
