@@ -208,7 +208,7 @@ def test_run_by_another_method(tmp_path):
     [
         (["run", "absent.yaml", "-o", "result.nc"], ["absent.yaml: no such file"]),
         (["run", "wrong.yaml", "-o", "result.nc"], ["wrong.yaml", "layers", "-3"]),
-        (["run", "scene.yaml", "-o", "."], ["cannot be written"]),
+        (["run", "scene.yaml", "-o", "."], ["must end in .nc"]),
         (["run", "scene.yaml", "-o", "scene.yaml/result.nc"], ["cannot be written"]),
         (["show", "absent.nc"], ["absent.nc: no such file"]),
         (["show", "scene.yaml"], ["scene.yaml: is not a netCDF-4 file"]),

@@ -113,7 +113,7 @@ def run(
     described = Scene.from_yaml(scene)
     if method is not None:
         described = described.updated({"protocol.method": method})
-    store.check_writable(output)
+    store.check_writable(output, [scene, *described.files])
 
     from ..solve import SOLVE_ERRORS, solve_scene
     from ..store.result import to_labelled
@@ -158,7 +158,7 @@ def continue_(
 
     started = time.perf_counter()
     stored = store.read(result).get("")
-    store.check_writable(output)
+    store.check_writable(output, [result])
 
     from ..scene import SceneError
     from ..solve import continue_solution
@@ -170,6 +170,7 @@ def continue_(
         if stored is None:
             raise ResultError("holds no states, must be a result of granular-response run")
         solution = solution_from(stored, folder=folder)
+        store.check_writable(output, solution.scene.files)
         with TerminalProgress() as progress:
             solution = continue_solution(solution, to, progress=progress)
     except (ResultError, SceneError) as error:
@@ -329,7 +330,7 @@ def claims(
 
     _loaded()
 
-    found = judging.read(output) if every else judging.write(output, data)
+    found = judging.read(output) if every else judging.write(output, data, keep=[readme] if readme else [])
     if readme is not None:
         judging.renew(readme, found)
     for row in found["table"] if every else ():
@@ -356,7 +357,7 @@ def report(
 
     _loaded()
 
-    typer.echo(str(reporting.write(output, root)))
+    typer.echo(str(reporting.write(output, root, keep=[notes] if notes else [])))
     if notes is not None:
         reporting.renew_notes(notes, root)
 

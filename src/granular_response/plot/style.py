@@ -232,16 +232,22 @@ def render(drawn: Figure, file_format: str = "png", *, dpi: float = 200) -> byte
 
 
 def save(
-    drawn: Figure, stem: str, folder: str | os.PathLike[str], formats: Sequence[str] = ("png", "pdf")
+    drawn: Figure,
+    stem: str,
+    folder: str | os.PathLike[str],
+    formats: Sequence[str] = ("png", "pdf"),
+    inputs: Sequence[str | os.PathLike[str]] = (),
 ) -> list[Path]:
     """Write ``folder/stem.png`` (200 dots per inch) and ``.pdf``, each whole or not at all.
 
     Returns the paths. A missing folder is made. The same figure gives the same bytes. Raises OSError if a
-    file cannot be written.
+    file cannot be written or is one of ``inputs``.
     """
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
     files = {target / f"{stem}.{file_format}": render(drawn, file_format) for file_format in formats}
+    for path in files:
+        atomic.check_writable(path, inputs)
     for path, data in files.items():
         atomic.write_bytes(path, data)
     return list(files)

@@ -124,6 +124,11 @@ class Scene(Description):
         """Folder at which the path of a packing from a file starts; None for the current one."""
         return self.packing.folder if isinstance(self.packing, FilePacking) else None
 
+    @property
+    def files(self) -> list[Path]:
+        """Files that the scene is read from, besides its own."""
+        return [self.packing.file] if isinstance(self.packing, FilePacking) else []
+
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, folder: str | PathLike[str] | None = None) -> Scene:
         """A scene from nested mappings; what is left out has its default."""

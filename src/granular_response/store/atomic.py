@@ -3,6 +3,9 @@
 Whatever happens in between (no space left, an error, a killed process), a file that stood there before is
 untouched. What a killed process leaves is named ``.NAME.RANDOM.partial`` and removed by the next write of the
 same file; a lock held by the living tells it from a write that is still going on.
+
+Only a regular file is replaced: a link is followed and stays, a device, a pipe or a folder is refused, and so is a
+file that the same command reads (``check_writable``).
 """
 
 from __future__ import annotations
@@ -13,7 +16,8 @@ import fcntl
 import glob
 import os
 import secrets
-from collections.abc import Callable, Iterator
+import stat
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 
@@ -23,7 +27,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
     Parameters
     ----------
     path
-        The file to make or to replace; its folder must exist.
+        The file to make or to replace; its folder must exist. Of a link, what it leads to.
     data
         Its content.
     check
@@ -34,9 +38,11 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
     OSError
         If the file cannot be written, or reads back differently.
     """
-    target = Path(path)
+    target = _regular(path)
     remove_leftovers(target)
     with _temporary(target) as (descriptor, temporary):
+        with contextlib.suppress(FileNotFoundError):
+            os.fchmod(descriptor, stat.S_IMODE(os.stat(target).st_mode))
         view = memoryview(data)
         while view:
             view = view[os.write(descriptor, view) :]
@@ -50,13 +56,37 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
     _sync_folder(target.parent)
 
 
-def check_writable(path: str | os.PathLike[str]) -> None:
-    """Raise the OSError that ``write_bytes`` would meet at once."""
-    target = Path(path)
-    if target.is_dir():
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
-    with _temporary(target):
+def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
+    """Raise the OSError that ``write_bytes`` would meet at once, or that of ``check_output``."""
+    check_output(path, inputs)
+    with _temporary(_regular(path)):
         pass
+
+
+def check_output(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]]) -> None:
+    """Raise OSError if ``path`` is one of the files in ``inputs``, by whatever name."""
+    if os.path.exists(path) and any(os.path.exists(given) and os.path.samefile(path, given) for given in inputs):
+        raise OSError(errno.EINVAL, "is read by the same command, must be another file", os.fspath(path))
+
+
+def _regular(path: str | os.PathLike[str]) -> Path:
+    """The place that writing ``path`` makes or replaces. OSError unless it is a regular file or a new name."""
+    try:
+        os.fsencode(path).decode()
+    except UnicodeError:
+        raise OSError(errno.EILSEQ, "has a name that is not UTF-8", os.fspath(path)) from None
+    target = Path(os.path.realpath(path))
+    try:
+        kind = os.stat(target).st_mode
+    except FileNotFoundError:
+        return target
+    if stat.S_ISDIR(kind):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
+    if not stat.S_ISREG(kind):
+        raise OSError(errno.EINVAL, "is not a regular file", os.fspath(path))
+    if not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), os.fspath(path))
+    return target
 
 
 def remove_leftovers(path: str | os.PathLike[str]) -> list[Path]:

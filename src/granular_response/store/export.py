@@ -65,6 +65,7 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
     }
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
+        atomic.check_writable(output, [result])
         with tempfile.TemporaryDirectory() as folder:
             made = Path(folder, "export" + output.suffix)
             writers[output.suffix](dataset, made)

@@ -13,7 +13,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,9 +27,13 @@ from .labelled import Labelled, labelled
 if TYPE_CHECKING:  # whoever writes without reading does not wait for it
     import xarray as xr
 
+#: What the name of every file of datasets ends with.
+SUFFIX = ".nc"
 #: Root attribute by which a file of ours is known; its number grows when the layout changes.
 FORMAT = "granular_response 1"
 
+#: For files in memory, whatever the name of the file on disk.
+_NO_NAME = "memory"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SEAL = b"granular_response sha256 "
 _GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
@@ -53,7 +57,7 @@ def write(
     Parameters
     ----------
     path
-        The file to make or to replace. Missing folders are made.
+        The file to make or to replace, ``.nc``. Missing folders are made.
     datasets
         One dataset, of xarray or as its parts, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""``
         is the root) to datasets. Every variable and coordinate has the attributes ``long_name`` and ``units``.
@@ -66,7 +70,7 @@ def write(
         If a variable lacks its labels, a value cannot be stored, or the file cannot be written. A file that
         was there before is then as it was.
     """
-    path = Path(path)
+    path = _named(path)
     single = isinstance(datasets, Labelled) or hasattr(datasets, "data_vars")
     given: Mapping[str, Any] = {"": datasets} if single else datasets  # type: ignore[assignment]
     groups = {name: labelled(dataset) for name, dataset in given.items()}
@@ -85,14 +89,24 @@ def write(
         raise _error(path, f"cannot be written: {error.strerror or error}") from error
 
 
-def check_writable(path: str | os.PathLike[str]) -> None:
-    """Find out before a long computation whether ``path`` can be written. Raises StoreError if not."""
-    path = Path(path)
+def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
+    """Find out before a long computation whether ``path`` can be written and is none of the files in ``inputs``.
+
+    Raises StoreError if not.
+    """
+    path = _named(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        atomic.check_writable(path)
+        atomic.check_writable(path, inputs)
     except OSError as error:
         raise _error(path, f"cannot be written: {error.strerror or error}") from error
+
+
+def _named(path: str | os.PathLike[str]) -> Path:
+    """The path of a file to write. Raises StoreError if its name does not end as it must."""
+    if Path(path).suffix != SUFFIX:
+        raise _error(path, f"datasets are netCDF, the name must end in {SUFFIX}")
+    return Path(path)
 
 
 def read(path: str | os.PathLike[str]) -> dict[str, xr.Dataset]:
@@ -134,7 +148,7 @@ def _check(path: Path, group: str, parts: Labelled) -> None:
 
 def _image(path: Path, groups: Mapping[str, Labelled]) -> bytes:
     """The file as bytes."""
-    file = netCDF4.Dataset(path.name, mode="w", format="NETCDF4", memory=1)
+    file = netCDF4.Dataset(_NO_NAME, mode="w", format="NETCDF4", memory=1)
     try:
         for name, parts in groups.items():
             try:
@@ -178,7 +192,7 @@ def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
 def _verify(path: Path, data: bytes, groups: Mapping[str, Labelled]) -> None:
     """Decode every variable of every group once before the file counts."""
     try:
-        with netCDF4.Dataset(path.name, mode="r", memory=data) as file:
+        with netCDF4.Dataset(_NO_NAME, mode="r", memory=data) as file:
             for name, parts in groups.items():
                 group = file[name] if name else file
                 for key, variable in parts.variables.items():
@@ -201,7 +215,7 @@ def _open(path: str | os.PathLike[str]) -> netCDF4.Dataset:
         raise _error(path, "is not a netCDF-4 file")
     _check_seal(path, data)
     try:
-        dataset = netCDF4.Dataset(os.fspath(path), mode="r", memory=data)
+        dataset = netCDF4.Dataset(_NO_NAME, mode="r", memory=data)
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
     except Exception as error:  # damage can surface as nearly any kind of error
         raise _error(path, "is truncated or damaged") from error

@@ -60,8 +60,11 @@ def collect(folder: str | os.PathLike[str] = "data") -> Data:
 
     Raises StoreError if a file that is there cannot be read.
     """
-    paths = {group: Path(folder) / f"{group}.nc" for group in GROUPS}
-    return Data({group: store.read(path) for group, path in paths.items() if path.exists()})
+    return Data({path.stem: store.read(path) for path in _paths(folder) if path.exists()})
+
+
+def _paths(folder: str | os.PathLike[str]) -> list[Path]:
+    return [Path(folder) / f"{group}.nc" for group in GROUPS]
 
 
 def evaluate(data: Data, claims: Sequence[Claim] = CLAIMS) -> list[Entry]:
@@ -118,16 +121,22 @@ def _number(value: float) -> float | None:
     return float(f"{value:.6g}") if math.isfinite(value) else None
 
 
-def write(output: str | os.PathLike[str] = OUTPUT, folder: str | os.PathLike[str] = "data") -> dict[str, Any]:
+def write(
+    output: str | os.PathLike[str] = OUTPUT,
+    folder: str | os.PathLike[str] = "data",
+    keep: Sequence[str | os.PathLike[str]] = (),
+) -> dict[str, Any]:
     """Judge all claims on the datasets in ``folder`` and store the result; returns it.
 
-    Raises ClaimsError if there are none, StoreError if one cannot be read, OSError if the output cannot be written.
+    Raises ClaimsError if there are none, StoreError if one cannot be read, OSError if the output cannot be written
+    or is one of the datasets or of the files to ``keep``.
     """
+    target = Path(output)
+    atomic.check_output(target, [*_paths(folder), *keep])
     data = collect(folder)
     if not data.groups:
         raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
     found = document(evaluate(data))
-    target = Path(output)
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
     return found

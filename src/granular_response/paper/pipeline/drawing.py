@@ -31,5 +31,5 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
 
     paths: list[Path] = []
     for stem, figure in function(datasets).items():
-        paths += style.save(figure, stem, folder or figures_folder(group))
+        paths += style.save(figure, stem, folder or figures_folder(group), inputs=[path])
     return paths

@@ -65,7 +65,7 @@ def simulate(
     function = group_function("simulate", group)
     given = parameters(group, parameter_file)
     output = output or data_path(group)
-    store.check_writable(output)
+    store.check_writable(output, [parameter_file])
     kept = output.parent / f".{output.stem}.checkpoint"
     environment = {
         tasks.CHECKPOINT_VARIABLE: str(kept),

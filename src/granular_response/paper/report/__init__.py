@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -33,7 +34,11 @@ class ReportError(Exception):
     """Something the page is made from is missing or damaged. The message is one line."""
 
 
-def write(output: str | os.PathLike[str] = OUTPUT, root: str | os.PathLike[str] = ".") -> Path:
+def write(
+    output: str | os.PathLike[str] = OUTPUT,
+    root: str | os.PathLike[str] = ".",
+    keep: Sequence[str | os.PathLike[str]] = (),
+) -> Path:
     """Make the page from ``figures/``, ``data/`` and ``benchmarks/`` below ``root``; returns its path.
 
     Raises
@@ -43,9 +48,12 @@ def write(output: str | os.PathLike[str] = OUTPUT, root: str | os.PathLike[str] 
     granular_response.store.StoreError
         If a dataset cannot be read.
     OSError
-        If the page cannot be written.
+        If the page cannot be written, or would replace one of the files it is made from or of those to ``keep``.
     """
     target = Path(output)
+    folders = (Path(root) / name for name in ("figures", "data", "benchmarks"))
+    used = [file for folder in folders for file in folder.rglob("*") if file.suffix != ".html"]
+    atomic.check_output(target, [*used, Path(root) / "requirements.lock", *keep])
     made = page(Path(root)).encode()
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, made)

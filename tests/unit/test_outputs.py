@@ -1,0 +1,133 @@
+"""What commands write: never over their inputs, never in place of what is no regular file."""
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+from granular_response.cli import main as cli
+from granular_response.store import atomic
+from granular_response.store import files as store
+from granular_response.store.files import StoreError
+
+ROOT = Path(__file__).parents[2]
+SCENE = """\
+packing: {kind: slab, layers: 3, disks_per_row: 5}
+contact: {friction: 0.0}
+loads: [{disk: top-centre, force: [0.0, -1.0]}]
+"""
+TABLE = "packing: {kind: file, path: disks.nc, width: 6}\ncontact: {friction: 0.0}\n"
+#: For each command that writes: arguments, and those of its inputs that an output can be confused with.
+COMMANDS = {
+    "run": (["run", "table.yaml"], ["table.yaml", "disks.nc"]),
+    "continue": (["continue", "result.nc", "--to", "2"], ["result.nc"]),
+    "simulate": (["simulate", "theory", "--params", "params.yaml"], ["params.yaml"]),
+    "draw": (["draw", "theory", "--data", "theory/fig01_predictions.png"], ["theory"]),
+    "export": (["export", "result.nc"], ["result.nc"]),
+    "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),
+    "report": (["report", "--root", ".", "--notes", "notes.md"], ["notes.md", "data/torque.nc", "figures/claims.json"]),
+}
+
+
+def call(*arguments, folder, **options):
+    command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("inputs")
+    (folder / "scene.yaml").write_text(SCENE)
+    (folder / "table.yaml").write_text(TABLE)
+    (folder / "disks.nc").write_text("x,z,radius\n2,1,1\n4,1,1\n")
+    for name in ("data", "figures", "theory"):
+        (folder / name).mkdir()
+    store.write(folder / "data" / "torque.nc", xr.Dataset())
+    for path in ("figures/claims.json", "README.md", "notes.md"):
+        (folder / path).write_text("{}")
+    shutil.copy(ROOT / "params.yaml", folder)
+    assert call("run", "scene.yaml", "-o", "result.nc", folder=folder).returncode == 0
+    assert call("simulate", "theory", "--workers", 1, "-o", "theory/theory.nc", folder=folder).returncode == 0
+    (folder / "theory" / "theory.nc").rename(folder / "theory" / "fig01_predictions.png")
+    return folder
+
+
+def test_every_command_that_writes_is_tried():
+    writing = {
+        command.name or command.callback.__name__
+        for command in cli.app.registered_commands
+        if "output" in command.callback.__annotations__
+    }
+    assert writing == set(COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_command_writes_over_its_inputs(inputs, tmp_path, command):
+    arguments, read = COMMANDS[command]
+    shutil.copytree(inputs, tmp_path, dirs_exist_ok=True)
+    before = contents(tmp_path)
+    for name in read:
+        other = tmp_path / ("other" + Path(name).suffix)
+        os.link(tmp_path / name, other) if (tmp_path / name).is_file() else other.symlink_to(name)
+        for output in (name, other.name):
+            finished = call(*arguments, "-o", output, folder=tmp_path)
+            assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
+        other.unlink()
+        assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("name", ["r.png", "r", "r.nc.txt"])
+def test_the_name_of_a_result_says_what_it_is(inputs, tmp_path, name):
+    for arguments in (["run", inputs / "scene.yaml"], ["continue", inputs / "result.nc", "--to", 2]):
+        finished = call(*arguments, "-o", name, folder=tmp_path)
+        assert finished.returncode == 2 and f"{name}: datasets are netCDF, the name must end in .nc" in finished.stderr
+    with pytest.raises(StoreError, match=r"must end in \.nc"):
+        store.write(tmp_path / name, xr.Dataset())
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_link_is_followed_and_stays(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    target, link, new = tmp_path / "elsewhere" / "a.nc", tmp_path / "link.nc", tmp_path / "new.nc"
+    target.write_text("old")
+    target.chmod(0o600)
+    link.symlink_to(target)
+    new.symlink_to("elsewhere/b.nc")
+    atomic.write_bytes(link, b"one")
+    atomic.write_bytes(new, b"two")
+    assert link.is_symlink() and new.is_symlink()
+    assert target.read_bytes() == b"one" and (tmp_path / "elsewhere" / "b.nc").read_bytes() == b"two"
+    assert stat.S_IMODE(target.stat().st_mode) == 0o600
+
+
+def test_devices_and_pipes_stay(tmp_path):
+    pipe, link, loop = (tmp_path / f"{name}.nc" for name in ("pipe", "link", "loop"))
+    os.mkfifo(pipe)
+    link.symlink_to("/dev/null")
+    loop.symlink_to(loop)
+    for path in (pipe, link):
+        with pytest.raises(StoreError, match="cannot be written: is not a regular file"):
+            store.write(path, xr.Dataset())
+        with pytest.raises(StoreError, match="cannot be written: is not a regular file"):
+            store.check_writable(path)
+    with pytest.raises(StoreError, match="symbolic links"):
+        store.write(loop, xr.Dataset())
+    assert stat.S_ISFIFO(pipe.stat().st_mode) and stat.S_ISCHR(os.stat("/dev/null").st_mode)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.nc", "loop.nc", "pipe.nc"]
+
+
+def test_a_name_that_is_not_utf8_is_refused_before_anything_is_solved(inputs, tmp_path):
+    command = [sys.executable.encode(), b"-m", b"granular_response", b"run", os.fsencode(inputs / "scene.yaml")]
+    finished = subprocess.run([*command, b"-o", b"r\xff.nc"], cwd=tmp_path, capture_output=True)
+    assert finished.returncode == 2 and finished.stderr.count(b"\n") == 1
+    assert b"has a name that is not UTF-8" in finished.stderr and b"r\\udcff.nc" in finished.stderr
+    assert not any(tmp_path.iterdir())
