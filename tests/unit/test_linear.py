@@ -1,11 +1,12 @@
-"""Banded factorisation against numpy's dense one."""
+"""Banded factorisations against numpy's dense ones."""
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from granular_response.solve.linear import band
-from granular_response.solve.linear.factor import Band, node_order
+from granular_response.solve.linear import band_lu
+from granular_response.solve.linear.band import Band
+from granular_response.solve.linear.ordering import node_order
 
 
 def banded(n, b, seed, symmetric=False, dominant=True):
@@ -29,9 +30,9 @@ def by_rows(dense, b):
 def test_banded_lu(n, b):
     dense = banded(n, b, 3)
     stored = by_rows(dense, b)
-    band.factorise(stored, b)
+    band_lu.factorise(stored, b)
     x = np.arange(1.0, n + 1.0)
-    band.solve(stored, b, x)
+    band_lu.solve(stored, b, x)
     assert x == pytest.approx(np.linalg.solve(dense, np.arange(1.0, n + 1.0)), rel=1e-12)
 
 
@@ -39,7 +40,7 @@ def test_banded_lu(n, b):
 def test_four_rows_at_once_give_the_bits_of_one_by_one(n, b):
     dense = banded(n, b, 5)
     stored = by_rows(dense, b)
-    band.factorise(stored, b)
+    band_lu.factorise(stored, b)
     for k in range(n):
         for i in range(k + 1, min(n, k + b + 1)):
             dense[i, k] *= 1.0 / dense[k, k]
@@ -57,7 +58,7 @@ def test_zero_pivot_falls_back_to_row_exchanges():
     full.data[:] = matrix.toarray()[full.indices, np.repeat(np.arange(30), np.diff(full.indptr))]
     right = np.ones(30)
     with np.errstate(all="ignore"):
-        x = Band(full.indptr, full.indices, 3).factor(full).solve(right)
+        x = Band(full.indptr, full.indices).factor(full).solve(right)
     assert x == pytest.approx(np.linalg.solve(dense, right), rel=1e-9)
 
 
@@ -68,9 +69,22 @@ def test_number_of_negative_eigenvalues(negative):
     dense -= (0.5 * (values[negative - 1] + values[negative]) if negative else 0.0) * np.eye(40)
     assert (np.linalg.eigvalsh(dense) < 0).sum() == negative
     matrix = sp.csc_array(dense)
-    factor, found = Band(matrix.indptr, matrix.indices, 5).symmetric_factor(matrix)
+    factor, found = Band(matrix.indptr, matrix.indices).symmetric_factor(matrix)
     assert found == negative
     assert factor.solve(np.ones(40)) == pytest.approx(np.linalg.solve(dense, np.ones(40)), rel=1e-8)
+
+
+@pytest.mark.parametrize(("n", "b"), [(1, 0), (5, 0), (7, 1), (40, 6), (12, 11), (300, 70)])
+def test_definite_factor_solves_and_refuses_what_is_not_definite(n, b):
+    dense = banded(n, b, 4, symmetric=True)
+    matrix = sp.csc_array(np.where(np.abs(np.subtract.outer(np.arange(n), np.arange(n))) <= b, dense, 0.0))
+    storage = Band(matrix.indptr, matrix.indices)
+    right = np.arange(1.0, n + 1.0)
+    assert storage.definite_factor(matrix).solve(right) == pytest.approx(np.linalg.solve(dense, right), rel=1e-12)
+    assert right[-1] == n, "the right-hand side is the caller's"
+    matrix.data[matrix.indptr[-1] - 1] -= 2.0 * dense[-1, -1]
+    assert storage.definite_factor(matrix) is None
+    assert storage.symmetric_factor(matrix)[1] == 1
 
 
 def test_node_order_is_a_permutation_that_keeps_neighbours_close():

@@ -7,8 +7,9 @@ from scipy.sparse.linalg import spsolve
 from small_scenes import scene
 
 from granular_response.solve import Problem
-from granular_response.solve.linear import factor as module
-from granular_response.solve.linear.multifrontal import Dissection, Multifrontal
+from granular_response.solve.linear import ordering
+from granular_response.solve.linear.dissection import Dissection
+from granular_response.solve.linear.multifrontal import Multifrontal
 from granular_response.solve.system import StaticSystem
 
 
@@ -89,7 +90,7 @@ def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
     problem = Problem.from_scene(scene(6, 13, contact__friction=0.2))
     state = problem.bare_state()
     banded = StaticSystem(problem, state)
-    monkeypatch.setattr(module, "WIDEST_BAND", 0)
+    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     fronts = StaticSystem(problem, state)
     assert type(banded._storage) is not type(fronts._storage)
     known = banded.start(state)

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 from ..kernels import statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, Contacts, FloatArray, State, wall_normals
-from .linear.factor import Band, Factor, Multifrontal, Storage, elimination
+from .linear import Factor, elimination
 from .problem import Problem
 
 #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
@@ -146,7 +146,8 @@ class StaticSystem:
     def _pattern(self) -> None:
         """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
         n, d = self.problem.n, self.problem.freedoms
-        self._order, dissection = elimination(self.reference, self.first, self.second, d)
+        chosen = elimination(self.reference, self.first, self.second, d)
+        self._order = chosen.order
         place_of = np.empty(n, np.int64)
         place_of[self._order] = np.arange(n)
         i, j = place_of[self.first], place_of[self.second]
@@ -180,11 +181,7 @@ class StaticSystem:
         self._indices = block_rows[np.repeat(starts, lengths) + offset]
         self._diagonal = (base[:n, None] + np.arange(d) * (stride[:n, None] + 1)).ravel()
         self._data = np.zeros(self._indptr[-1])
-        if dissection is None:
-            half_width = (int(np.abs(i - j).max(initial=0)) + 1) * d - 1
-            self._storage: Storage = Band(self._indptr, self._indices, half_width)
-        else:
-            self._storage = Multifrontal(dissection, d)
+        self._storage = chosen.storage(self._indptr, self._indices)
 
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`).

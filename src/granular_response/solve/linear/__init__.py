@@ -1,1 +1,9 @@
-"""Factorisations of tangent stiffnesses."""
+"""Factorisations of tangent stiffnesses: banded where the band is narrow, multifrontal elsewhere.
+
+:func:`elimination` chooses; solvers know the protocols :class:`Factor` and :class:`Storage` only.
+"""
+
+from .factor import Factor, Storage
+from .ordering import Elimination, elimination
+
+__all__ = ["Elimination", "Factor", "Storage", "elimination"]

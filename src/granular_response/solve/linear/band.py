@@ -1,134 +1,94 @@
-"""LU factorisation of banded matrices without row exchanges.
+"""Banded factorisations: LU without row exchanges by our own kernels, Cholesky by LAPACK.
 
-Row ``i`` of ``a`` (n, 2 b + 1) holds the matrix entries ``(i, i - b) ... (i, i + b)``. The tangent of a shallow
-packing, numbered along its length, is such a matrix with a narrow band, and close to symmetric and positive: rows
-need not be exchanged, and the inner loop is a vectorised update of one row by four others. Callers check residuals.
+The tangent of a shallow packing, numbered along its length, has a narrow band. It is close to symmetric and positive,
+so rows of the LU need not be exchanged, which LAPACK's banded LU cannot leave out; a residual tells where they must be
+after all. A symmetric positive matrix needs no such care.
 """
 
 from __future__ import annotations
 
-from ...machine.lanes import WIDTH, put, spread, take
-from ...machine.machine_code import kernel
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import lapack
+from scipy.sparse.linalg import splu
+
+from ...state import FloatArray
+from . import band_lu
+from .factor import Factor
+
+#: Relative residual of a banded solution above which rows are exchanged after all.
+ACCEPTED = 1e-6
 
 
-@kernel(forceinline=True)
-def _update(a, row, pivot_row, width, factor):
-    """Subtract ``factor`` times ``width`` entries from ``pivot_row`` on from those from ``row`` on; ``a`` is flat."""
-    whole = width - width % WIDTH
-    like = spread(0.0)
-    for j in range(0, whole, WIDTH):
-        put(a, row + j, take(a, row + j, like) - factor * take(a, pivot_row + j, like))
-    for j in range(whole, width):
-        put(a, row + j, take(a, row + j, 0.0) - factor * take(a, pivot_row + j, 0.0))
+class Band:
+    """Banded storage of all matrices with one symmetric sparsity pattern (column-compressed)."""
+
+    def __init__(self, indptr: np.ndarray, indices: np.ndarray):
+        n = len(indptr) - 1
+        column = np.repeat(np.arange(n), np.diff(indptr))
+        below = indices - column
+        self.n = n
+        self.half_width = int(below.max(initial=0))
+        #: where the entries go in the rows of the LU
+        self._place = indices * (2 * self.half_width + 1) + (self.half_width - below)
+        #: which entries the Cholesky factorisation takes, and where they go in its columns
+        self._lower = np.flatnonzero(below >= 0)
+        self._lower_place = (column * (self.half_width + 1) + below)[self._lower]
+
+    def factor(self, matrix: sp.csc_array) -> BandLU:
+        """LU without row exchanges; they are made up for where a residual asks for them."""
+        rows = np.zeros((self.n, 2 * self.half_width + 1))
+        rows.ravel()[self._place] = matrix.data
+        band_lu.factorise(rows, self.half_width)
+        return BandLU(matrix, rows, self.half_width)
+
+    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
+        """Cholesky factorisation, LU where that fails, and the number of negative eigenvalues: of negative pivots."""
+        definite = self.definite_factor(matrix)
+        if definite is not None:
+            return definite, 0
+        factor = self.factor(matrix)
+        return factor, factor.negative_pivots()
+
+    def definite_factor(self, matrix: sp.csc_array) -> BandCholesky | None:
+        """Cholesky factorisation; None when the matrix is not positive definite."""
+        columns = np.zeros((self.n, self.half_width + 1))
+        columns.ravel()[self._lower_place] = matrix.data[self._lower]
+        lower, info = lapack.dpbtrf(columns.T, lower=1, overwrite_ab=1)
+        return BandCholesky(lower) if info == 0 else None
 
 
-@kernel(forceinline=True)
-def _four_from(a, like, row, p0, p1, p2, p3, f0, f1, f2, f3):
-    """Four updates in one pass: the same operations in the same order on each element."""
-    value = take(a, row, like) - f0 * take(a, p0, like)
-    value = value - f1 * take(a, p1, like)
-    value = value - f2 * take(a, p2, like)
-    put(a, row, value - f3 * take(a, p3, like))
+class BandLU:
+    """L U of a banded matrix, by rows."""
+
+    def __init__(self, matrix: sp.csc_array, rows: FloatArray, half_width: int):
+        self._matrix, self._rows, self._half_width = matrix, rows, half_width
+        self._exchanged: Factor | None = None
+
+    def negative_pivots(self) -> int:
+        """Number of negative pivots, of a symmetric matrix that of its negative eigenvalues."""
+        return int((self._rows[:, self._half_width] < 0).sum())
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """(n,) the solution; by a factorisation with row exchanges when the residual is too large."""
+        if self._exchanged is None:
+            x = right.copy()
+            band_lu.solve(self._rows, self._half_width, x)
+            error = np.abs(self._matrix @ x - right).max()
+            if error <= ACCEPTED * np.abs(right).max():
+                return x
+            self._exchanged = splu(
+                self._matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.001, options={"SymmetricMode": True}
+            )
+        return self._exchanged.solve(right)
 
 
-@kernel(forceinline=True)
-def _update_by_four(a, row, p0, p1, p2, p3, width, f0, f1, f2, f3):
-    whole = width - width % WIDTH
-    like = spread(0.0)
-    for j in range(0, whole, WIDTH):
-        _four_from(a, like, row + j, p0 + j, p1 + j, p2 + j, p3 + j, f0, f1, f2, f3)
-    for j in range(whole, width):
-        _four_from(a, 0.0, row + j, p0 + j, p1 + j, p2 + j, p3 + j, f0, f1, f2, f3)
+class BandCholesky:
+    """Lower factor of a symmetric positive banded matrix, as LAPACK stores it (half_width + 1, n)."""
 
+    def __init__(self, lower: FloatArray):
+        self._lower = lower
 
-@kernel
-def _eliminate(a, n, b, k, first, last):
-    """Eliminate unknown ``k`` from the rows ``first ... last``; ``a`` is flat."""
-    stride = 2 * b + 1
-    pivot = stride * k + b
-    inverse = 1.0 / a[pivot]
-    width = min(b, n - 1 - k)
-    for i in range(first, last):
-        at = stride * i + b - (i - k)
-        factor = a[at] * inverse
-        a[at] = factor
-        if factor != 0.0:
-            _update(a, at + 1, pivot + 1, width, factor)
-
-
-@kernel
-def _eliminate_four(a, n, b, k):
-    """Eliminate the unknowns ``k ... k + 3`` from all rows, each row in one pass, which spares memory traffic."""
-    stride = 2 * b + 1
-    last = n - 1
-    for m in range(3):
-        _eliminate(a, n, b, k + m, k + m + 1, k + 4)
-    d0 = stride * k + b  # the pivots
-    d1, d2, d3 = d0 + stride, d0 + 2 * stride, d0 + 3 * stride
-    i0, i1, i2, i3 = 1.0 / a[d0], 1.0 / a[d1], 1.0 / a[d2], 1.0 / a[d3]
-    reach = min(k + b, last)  # of all four pivot rows
-    width = reach - (k + 3)
-    u01, u02, u03, u12, u13, u23 = a[d0 + 1], a[d0 + 2], a[d0 + 3], a[d1 + 1], a[d1 + 2], a[d2 + 1]
-    for i in range(k + 4, reach + 1):
-        at = stride * i + b - (i - k)
-        f0 = a[at] * i0
-        f1 = (a[at + 1] - f0 * u01) * i1
-        f2 = ((a[at + 2] - f0 * u02) - f1 * u12) * i2
-        f3 = (((a[at + 3] - f0 * u03) - f1 * u13) - f2 * u23) * i3
-        a[at], a[at + 1], a[at + 2], a[at + 3] = f0, f1, f2, f3
-        if f0 != 0.0 or f1 != 0.0 or f2 != 0.0 or f3 != 0.0:
-            _update_by_four(a, at + 4, d0 + 4, d1 + 3, d2 + 2, d3 + 1, width, f0, f1, f2, f3)
-        for column in range(reach + 1, min(k + 3 + b, last) + 1):
-            along = column - k
-            value = a[at + along]
-            if along <= 1 + b:
-                value -= f1 * a[d1 + along - 1]
-            if along <= 2 + b:
-                value -= f2 * a[d2 + along - 2]
-            a[at + along] = value - f3 * a[d3 + along - 3]
-    for m in range(1, 4):
-        _eliminate(a, n, b, k + m, reach + 1, min(k + m + b, last) + 1)
-
-
-@kernel
-def factorise(a, b):
-    """Overwrite ``a`` with its factors L (unit diagonal, below) and U."""
-    n = a.shape[0]
-    flat = a.ravel()
-    k = 0
-    while b >= 4 and k + 3 < n:
-        _eliminate_four(flat, n, b, k)
-        k += 4
-    while k < n:
-        _eliminate(flat, n, b, k, k + 1, min(k + b, n - 1) + 1)
-        k += 1
-
-
-@kernel(forceinline=True)
-def _product(a, row, x, start, size):
-    """Scalar product of ``a[row:]`` and ``x[start:]`` in four partial sums, which may be kept side by side."""
-    s0 = s1 = s2 = s3 = 0.0
-    whole = size - size % 4
-    for j in range(0, whole, 4):
-        s0 += take(a, row + j, 0.0) * take(x, start + j, 0.0)
-        s1 += take(a, row + j + 1, 0.0) * take(x, start + j + 1, 0.0)
-        s2 += take(a, row + j + 2, 0.0) * take(x, start + j + 2, 0.0)
-        s3 += take(a, row + j + 3, 0.0) * take(x, start + j + 3, 0.0)
-    for j in range(whole, size):
-        s0 += take(a, row + j, 0.0) * take(x, start + j, 0.0)
-    return (s0 + s1) + (s2 + s3)
-
-
-@kernel
-def solve(a, b, x):
-    """Overwrite ``x`` (n,) with the solution of L U x = x."""
-    n = a.shape[0]
-    flat = a.ravel()
-    for i in range(n):
-        low = max(0, i - b)
-        diagonal = (2 * b + 1) * i + b
-        x[i] -= _product(flat, diagonal - i + low, x, low, i - low)
-    for i in range(n - 1, -1, -1):
-        size = min(b, n - 1 - i)
-        diagonal = (2 * b + 1) * i + b
-        x[i] = (x[i] - _product(flat, diagonal + 1, x, i + 1, size)) / flat[diagonal]
+    def solve(self, right: FloatArray) -> FloatArray:
+        """(n,) the solution for one right-hand side."""
+        return lapack.dpbtrs(self._lower, right, lower=1)[0]

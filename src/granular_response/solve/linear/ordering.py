@@ -1,0 +1,63 @@
+"""The order in which disks are eliminated, and the kind of factorisation that it calls for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from ...state import FloatArray
+from .band import Band
+from .dissection import Dissection
+from .factor import Storage
+from .multifrontal import Multifrontal
+
+#: Half-bandwidth (in unknowns) up to which the banded factorisations are the faster ones.
+WIDEST_BAND = 120
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """An order of the disks and the fronts that belong to it, if it is a dissection."""
+
+    order: np.ndarray  #: (n,) disks in the order in which they are eliminated
+    freedoms: int  #: unknowns of each disk, consecutive
+    dissection: Dissection | None  #: None for a band
+
+    def storage(self, indptr: np.ndarray, indices: np.ndarray) -> Storage:
+        """Storage for matrices of this column-compressed pattern, unknowns disk by disk in :attr:`order`."""
+        if self.dissection is None:
+            return Band(indptr, indices)
+        return Multifrontal(self.dissection, self.freedoms)
+
+
+def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, freedoms: int) -> Elimination:
+    """The order for disks at ``position`` (n, 2) that are tied in pairs ``first``, ``second`` (m,).
+
+    A narrow band where there is one, nested dissection elsewhere. Each disk has ``freedoms`` unknowns.
+    """
+    order = node_order(position, first, second)
+    if (_width(order, first, second) + 1) * freedoms - 1 <= WIDEST_BAND:
+        return Elimination(order, freedoms, None)
+    dissection = Dissection(position, first, second)
+    return Elimination(dissection.order, freedoms, dissection)
+
+
+def node_order(position: FloatArray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(n,) order of the disks that keeps neighbours close: along x, or Cuthill-McKee where that is narrower."""
+    n = len(position)
+    along = np.lexsort((position[:, 1], position[:, 0]))
+    if len(first) == 0:
+        return along
+    ones = np.ones(2 * len(first))
+    graph = sp.csr_array((ones, (np.r_[first, second], np.r_[second, first])), shape=(n, n))
+    orders = [along, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))]
+    return min(orders, key=lambda order: _width(order, first, second))
+
+
+def _width(order, first, second) -> int:
+    place = np.empty(len(order), np.int64)
+    place[order] = np.arange(len(order))
+    return int(np.abs(place[first] - place[second]).max(initial=0))
