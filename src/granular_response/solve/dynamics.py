@@ -2,8 +2,8 @@
 
 A :class:`Dynamics` advances one packing in time. :func:`relax` runs it through a ramp of gravity or load until its
 kinetic energy is below the limit of Sec. III.C; what the other criteria named there ask for is measured on the state
-that is reached. Disks with fewer than two contacts bear no load and may roll for ever;
-they are left out of the kinetic energy that decides.
+that is reached. Disks that touch nothing but the floor bear no load and may roll for ever; their rolling is left out
+of the kinetic energy that decides. A packing of which a part is in flight is not at rest, however slow it is.
 """
 
 from __future__ import annotations
@@ -14,18 +14,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS
 from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
-from ..state import Contacts, FloatArray, Reached, State, wall_normals
+from ..state import FLOOR, Contacts, FloatArray, Reached, State, wall_normals
 from .problem import Candidates, Problem, carry_springs
 
 #: Steps between two looks at the stopping criteria.
 CHECK_EVERY = 100
-#: Checks between two looks at whether some disks roll freely, and the largest part of all disks that may.
+#: Checks between two looks at whether some disks roll freely, and the largest part of all disks that may roll fast.
 ROLLING_CHECKS, MOST_ROLLERS = 10, 0.1
+#: Kinetic energy, times its limit, below which any number of disks may roll.
+SLOW_ROLLING = 1e3
+#: Vertical force on a part of the packing that nothing bears, below which it floats (mean disk weights).
+BALANCED = 1e-9
 #: Gap above everything else at which a disk that its load pulls up is lost (mean radii).
 LIFTED = 5.0
 #: Time over which the envelope of the kinetic energy is taken.
@@ -44,11 +50,13 @@ class Stop:
 
     ``kinetic_energy`` per disk (units of mean weight times mean radius); ``rule``: ``instantaneous`` stops at
     the first reading below it, ``envelope`` when the largest reading of the last ``ENVELOPE_TIME`` is.
+    ``least_time`` since the ramps began: what starts without motion and out of balance has no kinetic energy yet.
     """
 
     kinetic_energy: float = 1e-13
     rule: str = "instantaneous"
     maximum_steps: int = 5_000_000
+    least_time: float = 0.0
 
 
 class Dynamics:
@@ -226,13 +234,35 @@ class Dynamics:
             energies = energies.reshape(self.problem.freedoms, -1)[:, count >= 2]
         return float(energies.sum()) / self.problem.n
 
-    def loose_disks_roll(self, count: NDArray[np.int64]) -> bool:
-        """Whether some disks bear no load, but few and none of them in flight: they may roll for ever.
+    def rollers(self, touching: NDArray[np.bool_], count: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """(n,) whether a disk touches the floor and nothing else: it bears no load and may roll for ever.
 
-        ``count`` : of their contacts.
+        ``touching``, ``count`` : closed contacts, and how many each disk has.
         """
-        loose = count < 2
-        return bool(loose.any() and count.all() and loose.mean() <= MOST_ROLLERS)
+        c = self.candidates
+        on_floor = np.zeros(self.problem.n, bool)
+        on_floor[c.wall_disk[touching[len(c.first) :] & (c.wall == FLOOR)]] = True
+        return on_floor & (count == 1)
+
+    def rolling_energy(self, rollers: NDArray[np.bool_]) -> float:
+        """Kinetic energy, per disk of the packing, of the motion of ``rollers`` along the floor and of their spin."""
+        energies = (0.5 * self.v**2 / self._inverse_mass).reshape(self.problem.freedoms, -1)
+        return float(energies[0::2, rollers].sum()) / self.problem.n
+
+    def in_flight(self, touching: NDArray[np.bool_]) -> bool:
+        """Whether some disks fall: no chain of closed contacts leads to what could bear their weight."""
+        problem, c = self.problem, self.candidates
+        n = problem.n
+        pair, wall = touching[: len(c.first)], touching[len(c.first) :]
+        graph = coo_array((np.ones(int(pair.sum()), np.int8), (c.first[pair], c.second[pair])), shape=(n, n))
+        parts, part = connected_components(graph, directed=False)
+        held = np.zeros(parts, bool)
+        held[part[c.wall_disk[wall & (problem.wall_friction | (c.wall == FLOOR))]]] = True
+        if held.all():
+            return False
+        force = -self.gravity[1] * problem.weight
+        np.add.at(force, problem.load_disk, self.load[1] * problem.load[:, 1])
+        return bool((np.abs(np.bincount(part, force, parts)[~held]) > BALANCED).any())
 
     def lifted_disk(self) -> int | None:
         """A disk that its load has torn off the packing and carries up for good; None without one."""
@@ -317,16 +347,21 @@ class Relaxation:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
         touching = dynamics.touching()
         count = dynamics.contact_count(touching)
-        if (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0:
-            self.rolling = dynamics.loose_disks_roll(count)
-        if energy > stop.kinetic_energy and (energy < 1e3 * stop.kinetic_energy or self.rolling):
-            energy = dynamics.kinetic_energy(bearing_only=True, count=count)
+        slow = energy < SLOW_ROLLING * stop.kinetic_energy
+        look_at_rolling = (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0
+        if look_at_rolling or (energy > stop.kinetic_energy and (slow or self.rolling)):
+            rollers = dynamics.rollers(touching, count)
+            if look_at_rolling:
+                self.rolling = bool(rollers.any() and rollers.mean() <= MOST_ROLLERS)
+            if slow or self.rolling:
+                energy -= dynamics.rolling_energy(rollers)
         self.envelope.append(energy)
-        if energy < 1e3 * stop.kinetic_energy:
+        if energy < SLOW_ROLLING * stop.kinetic_energy:
             same = self.network is not None and np.array_equal(touching, self.network)
             self.fixed = self.fixed + CHECK_EVERY if same else 0
             self.network = touching
-        self.settled = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
+        quiet = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
+        self.settled = quiet and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
 
     def run(self) -> State:
         """Advance until it has ended; returns :meth:`state`."""

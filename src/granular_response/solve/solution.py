@@ -189,7 +189,7 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
     """Dynamics to rest as the protocol says, and the static finish."""
     protocol = problem.scene.protocol
     dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
-    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps)
+    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps, _crossing_time(problem))
     report = None
     if progress is not None:
         highest = [stop.kinetic_energy * 10.0, 0.0]
@@ -230,6 +230,11 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
         dynamics.advance(round(MORE_TIME / dynamics.time_step))
         settled = replace(dynamics.state(), reached=replace(settled.reached, more_relaxations=attempt + 1))
     raise NotSettled(f"{_not_settled(problem, settled, stage)}: {failure}")
+
+
+def _crossing_time(problem: Problem) -> float:
+    """In which a compression wave runs through the packing; before, parts of it do not know of each other."""
+    return float(problem.packing.position[:, 1].max()) / (2.0 * problem.scene.contact.normal_stiffness**0.5)
 
 
 def _not_settled(problem: Problem, settled: State, stage: str) -> str:
