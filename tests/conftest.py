@@ -9,7 +9,6 @@ from granular_response.machine import floating_point
 floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.pop("DASK_SCHEDULER_ADDRESS", None)  # a sweep in a test runs where the test says
-os.environ.pop("GRANULAR_RESPONSE_CHECKPOINT", None)
 
 # Properties are tried on the same examples every time. GRANULAR_RESPONSE_FUZZ=5000 tries as many new ones of each.
 settings.register_profile("default", derandomize=True, deadline=None, max_examples=100)

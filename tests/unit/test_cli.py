@@ -27,6 +27,7 @@ from granular_response.paper import pipeline
 from granular_response.paper.pipeline import drawing, simulation
 from granular_response.scene import SceneError
 from granular_response.store import files as store
+from granular_response.sweeps.resources import Resources, current
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = ["run", "continue", "simulate", "draw", "show", "keys", "export", "claims", "report", "cite", "version"]
@@ -302,9 +303,9 @@ def test_finished_tasks_outlive_an_interruption(group, monkeypatch):
 
     with pytest.raises(KeyboardInterrupt):
         simulation.simulate(group, workers=1, progress=interrupt)
-    assert len(list(Path("data/.squares.checkpoint").iterdir())) == 2
+    assert len(list(Path("data/.squares.checkpoint").rglob("*.npz"))) == 2
     assert not Path("data/squares.nc").exists()
-    assert "GRANULAR_RESPONSE_CHECKPOINT" not in os.environ
+    assert current() == Resources()
     calls = []
     simulation.simulate(group, workers=1, progress=lambda done, total, what="": calls.append(done))
     assert calls == [2, 3, 4]
@@ -313,10 +314,10 @@ def test_finished_tasks_outlive_an_interruption(group, monkeypatch):
 
 def test_the_address_of_a_scheduler_reaches_the_sweep(group, monkeypatch):
     seen = []
-    monkeypatch.setattr(Study, "simulate", lambda *_, **__: seen.append(os.environ["DASK_SCHEDULER_ADDRESS"]) or {})
+    monkeypatch.setattr(Study, "simulate", lambda *_, **__: seen.append(current().scheduler) or {})
     simulation.simulate(group, scheduler="tcp://127.0.0.1:8786")
     assert seen == ["tcp://127.0.0.1:8786"]
-    assert "DASK_SCHEDULER_ADDRESS" not in os.environ
+    assert current() == Resources()
 
 
 def test_progress_is_silent_where_nobody_looks():

@@ -1,6 +1,7 @@
 """A packing of one material is settled once, and a kept rest state is exactly the computed one."""
 
-import pickle
+import os
+import time
 
 import numpy as np
 import pytest
@@ -8,7 +9,11 @@ import pytest
 from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve import solution as solve
+from granular_response.store import atomic
 from granular_response.sweeps import rest as settled
+from granular_response.sweeps.digest import digest
+from granular_response.sweeps.memory import MemoryWarning
+from granular_response.sweeps.resources import using
 
 SCENE = Scene.from_dict(
     {
@@ -34,8 +39,18 @@ def computed(monkeypatch):
     return calls
 
 
+@pytest.fixture
+def folder(tmp_path):
+    """The folder of the resources in use."""
+    with using(rest_states=tmp_path / "kept"):
+        yield tmp_path / "kept"
+
+
+def files(folder):
+    return sorted(folder.rglob("*.npz"))
+
+
 def test_without_a_folder_nothing_is_kept(monkeypatch, tmp_path, computed):
-    monkeypatch.delenv(settled.FOLDER_VARIABLE, raising=False)
     monkeypatch.chdir(tmp_path)
     settled.rest_state(Problem.from_scene(SCENE))
     settled.rest_state(Problem.from_scene(SCENE))
@@ -43,22 +58,19 @@ def test_without_a_folder_nothing_is_kept(monkeypatch, tmp_path, computed):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_kept_state_is_the_computed_one(monkeypatch, tmp_path, computed):
-    monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path / "kept"))
+def test_a_kept_state_is_the_computed_one(folder, computed):
     first = settled.rest_state(Problem.from_scene(SCENE))
     again = settled.rest_state(Problem.from_scene(SCENE.updated({"loads.0.force": [1.0, -2.0]})))
     assert len(computed) == 1
-    assert pickle.dumps(again) == pickle.dumps(pickle.loads(pickle.dumps(first)))
+    assert digest(again) == digest(first)
     np.testing.assert_array_equal(again.pairs.spring, first.pairs.spring)
 
 
-def test_a_minimised_packing_needs_no_stable_time_step(monkeypatch, tmp_path, computed):
+def test_a_minimised_packing_needs_no_stable_time_step(folder, computed):
     """The step of the scene is too long for disks this stiff, but no step is taken."""
-    monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path / "kept"))
     stiff = {"contact.friction": 0.0, "contact.normal_stiffness": 1e6, "protocol.time_step": 1e-3}
     for _ in range(2):
-        state = settled.rest_state(Problem.from_scene(SCENE.updated(stiff)))
-        assert state.certificate.force_residual < 1e-9
+        settled.rest_state(Problem.from_scene(SCENE.updated(stiff)))
     assert len(computed) == 1
 
 
@@ -85,10 +97,9 @@ def test_what_comes_after_rest_does_not(change):
     assert settled.name(Problem.from_scene(SCENE.updated(change))) == settled.name(Problem.from_scene(SCENE))
 
 
-def test_a_damaged_state_is_computed_again(monkeypatch, tmp_path, computed):
-    monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path))
+def test_a_damaged_state_is_computed_again(folder, computed):
     first = settled.rest_state(Problem.from_scene(SCENE))
-    (kept,) = tmp_path.rglob("*.pickle")
+    (kept,) = files(folder)
     data = bytearray(kept.read_bytes())
     data[len(data) // 2] ^= 1
     kept.write_bytes(data)
@@ -97,21 +108,40 @@ def test_a_damaged_state_is_computed_again(monkeypatch, tmp_path, computed):
     np.testing.assert_array_equal(again.position, first.position)
 
 
-def test_states_of_other_solvers_go(monkeypatch, tmp_path):
-    monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path))
-    old = tmp_path / ("a" * 32)
-    old.mkdir()
-    (old / "state.pickle").write_bytes(b"")
+def test_a_state_under_the_name_of_another_is_not_taken(folder, computed):
     settled.rest_state(Problem.from_scene(SCENE))
-    assert not old.exists()
-    assert len(list(tmp_path.rglob("*.pickle"))) == 1
+    (kept,) = files(folder)
+    other = Problem.from_scene(SCENE.updated({"contact.friction": 0.5}))
+    kept.with_name(f"{settled.name(other)}.npz").write_bytes(kept.read_bytes())
+    settled.rest_state(other)
+    assert len(computed) == 2
 
 
-def test_only_shelves_of_other_sources_are_cleared(tmp_path, monkeypatch):
-    monkeypatch.setenv(settled.FOLDER_VARIABLE, str(tmp_path))
-    old, thesis, odd = tmp_path / ("0" * 32), tmp_path / "thesis", tmp_path / ("1" * 32)
-    for folder, file in ((old, "state.pickle"), (thesis, "chapter1.tex"), (odd, "chapter2.tex")):
-        folder.mkdir()
-        (folder / file).write_text("kept")
+def test_states_of_other_sources_go_after_a_week(folder, computed):
+    new, old, thesis, odd = (folder / name for name in ("0" * 32, "1" * 32, "thesis", "2" * 32))
+    for shelf, file in ((new, "a.npz"), (old, "b.npz"), (thesis, "chapter1.npz"), (odd, "chapter2.tex")):
+        shelf.mkdir(parents=True)
+        (shelf / file).write_text("kept")
+    long_ago = time.time() - 8 * 24 * 3600
+    for shelf in (old, thesis, odd):
+        os.utime(shelf, (long_ago, long_ago))
     settled.rest_state(Problem.from_scene(SCENE))
-    assert not old.exists() and (thesis / "chapter1.tex").exists() and (odd / "chapter2.tex").exists()
+    assert not old.exists() and new.exists() and thesis.exists() and odd.exists()
+
+
+def test_a_folder_that_cannot_be_written_costs_one_warning(tmp_path, computed):
+    (tmp_path / "kept").write_text("a file, where the folder would be")
+    with using(rest_states=tmp_path / "kept"), pytest.warns(MemoryWarning, match=r"kept: nothing more is kept") as said:
+        state = settled.rest_state(Problem.from_scene(SCENE))
+    assert len(said) == 1 and "\n" not in str(said[0].message)
+    assert len(state.position) == computed[0].n
+
+
+def test_a_full_disk_costs_a_warning(folder, computed, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(atomic, "write_bytes", full)
+    with pytest.warns(MemoryWarning, match="No space left on device"):
+        settled.rest_state(Problem.from_scene(SCENE))
+    assert len(computed) == 1 and files(folder) == []

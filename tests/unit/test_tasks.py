@@ -1,8 +1,8 @@
 """One map: same results wherever it runs, nothing finished is lost, every failure names its task."""
 
-import dataclasses
 import functools
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -13,8 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from granular_response.scene import Scene
 from granular_response.sweeps import tasks
-from granular_response.sweeps.tasks import SweepError, digest, map_tasks
+from granular_response.sweeps.memory import MemoryWarning
+from granular_response.sweeps.resources import using
+from granular_response.sweeps.tasks import SweepError, map_tasks
 
 
 def response(item):
@@ -120,7 +123,7 @@ def test_an_interrupted_sweep_continues(tmp_path):
     task = functools.partial(note, folder=marks)
     with pytest.raises(KeyboardInterrupt):
         map_tasks(task, range(8), workers=2, checkpoint=kept, progress=interrupt)
-    finished = len(list(kept.iterdir()))
+    finished = len(list(kept.rglob("*.npz")))
     assert finished == 3
     seen.clear()
     result = map_tasks(task, range(8), workers=2, checkpoint=kept, progress=lambda done, total, what: seen.append(done))
@@ -144,7 +147,7 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
     script.write_text(KILLED)
     run = subprocess.Popen([sys.executable, script, Path(__file__).parent, marks, kept])
     deadline = time.monotonic() + 60
-    while not kept.exists() or len(list(kept.glob("*.pickle"))) < 5:
+    while not kept.exists() or len(list(kept.rglob("*.npz"))) < 5:
         assert time.monotonic() < deadline
         time.sleep(0.02)
     run.kill()
@@ -153,7 +156,7 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
     while any(alive(pid) for pid in workers):
         assert time.monotonic() < deadline
         time.sleep(0.05)
-    done = len(list(kept.glob("*.pickle")))
+    done = len(list(kept.rglob("*.npz")))
     before = sum(len(starts(marks, item)) for item in range(40))
     assert done < 40
     task = functools.partial(note, folder=marks)
@@ -172,15 +175,93 @@ def alive(pid: int) -> bool:
 
 def test_a_result_that_does_not_load_is_computed_again(tmp_path):
     expected = map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path)
-    for file in tmp_path.iterdir():
+    for file in tmp_path.rglob("*.npz"):
         file.write_bytes(file.read_bytes()[:-3])
     assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path) == expected
 
 
-def test_the_environment_names_the_folder(tmp_path, monkeypatch):
-    monkeypatch.setenv(tasks.CHECKPOINT_VARIABLE, str(tmp_path / "kept"))
-    map_tasks(slow_first, range(3), workers=1)
-    assert len(list((tmp_path / "kept").iterdir())) == 3
+def test_a_planted_pickle_does_not_run(tmp_path):
+    expected = map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept")
+    for file in (tmp_path / "kept").rglob("*.npz"):
+        code = pickle.dumps(Planted(tmp_path / "mark"))
+        file.write_bytes(code)
+        file.with_suffix(".pickle").write_bytes(code)
+    assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept") == expected
+    assert not (tmp_path / "mark").exists()
+
+
+class Planted:
+    """Leaves a mark when it is unpickled."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return Path.touch, (self.mark,)
+
+
+def test_scenes_with_different_tables_have_their_own_results(tmp_path):
+    scenes = []
+    for name, radius in (("a", 1.0), ("b", 0.5)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "disks.csv").write_text(f"x,z,radius\n2,1,{radius}\n5,1,1\n")
+        text = "packing: {kind: file, path: disks.csv, width: 10}\nloads: []\n"
+        scenes.append(Scene.from_text(text, folder=tmp_path / name))
+    found = [map_tasks(smallest, [scene], workers=1, checkpoint=tmp_path / "kept")[0] for scene in (*scenes, *scenes)]
+    assert found == [1.0, pytest.approx(2 / 3), 1.0, pytest.approx(2 / 3)]
+
+
+def smallest(scene):
+    return float(scene.packing.build().radius.min())
+
+
+def test_a_table_that_changes_meanwhile_leaves_nothing(tmp_path):
+    (tmp_path / "disks.csv").write_text("x,z,radius\n2,1,1\n5,1,1\n")
+    scene = Scene.from_text("packing: {kind: file, path: disks.csv, width: 10}\nloads: []\n", folder=tmp_path)
+
+    def late(scene):
+        radius = smallest(scene)
+        (tmp_path / "disks.csv").write_text("x,z,radius\n2,1,0.5\n5,1,1\n")
+        return radius
+
+    assert map_tasks(late, [scene], workers=1, checkpoint=tmp_path / "kept") == [1.0]
+    assert map_tasks(smallest, [scene], workers=1, checkpoint=tmp_path / "kept") == [pytest.approx(2 / 3)]
+    assert map_tasks(late, [scene], workers=1, checkpoint=tmp_path / "kept") == [pytest.approx(2 / 3)]
+
+
+def test_lambdas_and_bound_methods_have_their_own_results(tmp_path):
+    kept = tmp_path / "kept"
+    functions = [lambda x: x + 1, lambda x: x + 2, [1, 2].count, [2, 2].count]
+    assert [map_tasks(f, [2], workers=1, checkpoint=kept) for f in functions] == [[3], [4], [1], [2]]
+
+
+def test_what_cannot_be_told_apart_is_computed_with_one_warning(tmp_path):
+    class Local:
+        pass
+
+    with pytest.warns(MemoryWarning, match=r"kept: class .*Local stands in no module .* results are not kept") as said:
+        assert map_tasks(callable, [Local], workers=1, checkpoint=tmp_path / "kept") == [True]
+    assert len(said) == 1
+    assert not (tmp_path / "kept").exists()
+
+
+def test_a_result_of_another_kind_is_returned_and_not_kept(tmp_path):
+    with pytest.warns(MemoryWarning, match=r"a value of type .*iterator is not kept"):
+        (found,) = map_tasks(iter, [[1, 2]], workers=1, checkpoint=tmp_path / "kept")
+    assert list(found) == [1, 2]
+
+
+def test_a_checkpoint_that_cannot_be_written_costs_a_warning(tmp_path):
+    (tmp_path / "kept").write_text("a file")
+    with pytest.warns(MemoryWarning, match=r"nothing more is kept there"):
+        assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept") == [0, 1, 2]
+
+
+def test_the_resources_in_use_name_the_folder(tmp_path):
+    with using(checkpoint=tmp_path / "kept"):
+        map_tasks(slow_first, range(3), workers=1)
+    map_tasks(slow_first, range(5), workers=1)
+    assert len(list((tmp_path / "kept").rglob("*.npz"))) == 3
 
 
 def test_another_function_or_item_finds_nothing(tmp_path):
@@ -192,34 +273,6 @@ def test_another_function_or_item_finds_nothing(tmp_path):
     assert [len(starts(marks, item)) for item in range(4)] == [1, 1, 1, 1]
     map_tasks(functools.partial(task, die_at=99), range(1, 4), workers=1, checkpoint=tmp_path / "kept")
     assert [len(starts(marks, item)) for item in range(4)] == [1, 2, 2, 2]
-
-
-@dataclasses.dataclass(frozen=True)
-class Task:
-    friction: float
-    forces: np.ndarray
-
-
-def test_digests_are_equal_for_equal_values_only():
-    def task(friction=0.2, last=3.0):
-        return {"task": Task(friction, np.array([1.0, last])), "seed": 1}
-
-    assert digest(task()) == digest(dict(reversed(task().items())))
-    different = [task(), task(friction=0.3), task(last=4.0), (1, 2), [1, 2], (1, 2.0), "12", b"12", {1, 2}]
-    assert len({digest(value) for value in different}) == len(different)
-
-
-def test_digests_are_equal_in_every_process():
-    script = "import sys; sys.path.insert(0, sys.argv[1]); from test_tasks import *;print(digest((Task, {'b', 'a'})))"
-    for seed in ("1", "2"):
-        name = subprocess.run(
-            [sys.executable, "-c", script, Path(__file__).parent],
-            env={**os.environ, "PYTHONHASHSEED": seed},
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout.strip()
-        assert name == digest((Task, {"a", "b"}))
 
 
 @pytest.fixture(scope="module")
@@ -258,7 +311,7 @@ class TestDask:
         again = [item for item in range(16) if len(starts(marks, item)) > 1]
         assert 12 in again
         assert len(again) <= 3  # with what it had not yet handed over; not all that it ever finished
-        assert len(list((tmp_path / "kept").iterdir())) == 16
+        assert len(list((tmp_path / "kept").rglob("*.npz"))) == 16
 
     def test_workers_that_round_otherwise_are_reported(self, cluster, monkeypatch):
         with warnings.catch_warnings():

@@ -18,7 +18,6 @@ import yaml
 from granular_response.cli import main as cli
 from granular_response.paper.pipeline import simulation
 from granular_response.store import files as store
-from granular_response.sweeps import rest as settled
 from granular_response.sweeps import tasks
 
 GROUP = "superposition"
@@ -133,20 +132,22 @@ def test_a_killed_run_continues_from_its_checkpoint(folder, expected) -> None:
     """SIGKILL, as from a batch system out of patience: what is finished is on disk."""
     kept = folder / ".here.checkpoint"
     arguments = ["simulate", GROUP, "-o", "here.nc", "--workers", "1"]
-    environment = {**os.environ, settled.FOLDER_VARIABLE: ""}
+    (folder / ".rest_states").write_text("no folder, so that every rest state takes its time")
     run = subprocess.Popen(
-        [sys.executable, "-m", "granular_response", *arguments], env=environment, stdout=subprocess.DEVNULL
+        [sys.executable, "-m", "granular_response", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
     deadline = time.monotonic() + 60
-    while len(list(kept.glob("*.pickle"))) < 6 and run.poll() is None:
+    while len(list(kept.rglob("*.npz"))) < 6 and run.poll() is None:
         assert time.monotonic() < deadline
         time.sleep(0.005)
     run.kill()
-    run.wait()
-    finished = len(list(kept.glob("*.pickle")))
+    said = run.communicate()[1].decode().splitlines()
+    assert len(said) == 1 and ".rest_states: nothing more is kept there" in said[0]
+    finished = len(list(kept.rglob("*.npz")))
     assert 6 <= finished < TASKS
     assert not (folder / "here.nc").exists()
 
+    (folder / ".rest_states").unlink()
     calls = []
     path = simulation.simulate(
         GROUP, folder / "here.nc", workers=1, progress=lambda done, total, what="": calls.append((what, done))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
+import warnings
 from pathlib import Path
 from typing import Annotated
 
@@ -406,6 +407,7 @@ def main() -> None:
     end goes with the process. Both take a tenth of a second and more off every command.
     """
     gc.disable()
+    warnings.formatwarning = lambda message, *_, **__: f"granular-response: {message}\n"
     try:
         app()
     except Exception as error:

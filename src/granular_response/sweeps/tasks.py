@@ -12,41 +12,33 @@ draws random numbers only from seeds in its item. A script that calls ``map_task
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import functools
-import hashlib
-import inspect
 import multiprocessing
 import os
-import pickle
 import reprlib
 import signal
 import threading
 import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-import numpy as np
-
-from .. import __version__
 from ..machine import floating_point
-from ..store import atomic
+from .digest import Indistinct, digest, sources
+from .memory import MISSING, Memory, warn
+from .resources import current, using
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 #: Environment variable with the address of a running Dask scheduler, the one that Dask itself reads.
 SCHEDULER_VARIABLE = "DASK_SCHEDULER_ADDRESS"
-#: Environment variable with the folder in which finished tasks are kept, where the caller names none.
-CHECKPOINT_VARIABLE = "GRANULAR_RESPONSE_CHECKPOINT"
 
 #: How many workers may die at one task before the sweep gives up.
 ATTEMPTS = 3
-
-_MISSING: Any = object()
 
 Finished = Generator[tuple[int, Any], None, None]
 
@@ -83,13 +75,14 @@ def map_tasks(
     workers
         Number of local processes; all cores if None, this process if 1.
     scheduler
-        Address of a Dask scheduler (``tcp://host:8786``). If None, ``DASK_SCHEDULER_ADDRESS`` is asked.
+        Address of a Dask scheduler (``tcp://host:8786``). If None, the :mod:`.resources` in use and
+        ``DASK_SCHEDULER_ADDRESS`` are asked.
     progress
         Called as ``progress(done, total, what)`` at the start and after each task.
     checkpoint
         Folder in which the result of each finished task is kept until the caller removes it. A later call
-        finds it there if function, item, package version and source are the same. If None,
-        ``GRANULAR_RESPONSE_CHECKPOINT`` is asked; nothing is kept if that is not set either.
+        finds it there if function, item and the sources of this package are the same (see :mod:`.digest`). If None,
+        that of the resources in use; nothing is kept if there is none either.
     what
         What the tasks are, for the progress line.
 
@@ -102,18 +95,20 @@ def map_tasks(
     if workers is not None and workers < 1:
         raise SweepError(f"workers = {workers}: must be 1 or more")
     items = list(items)
-    scheduler = scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
-    folder = checkpoint or os.environ.get(CHECKPOINT_VARIABLE) or None
-    kept = _Checkpoint(folder, function) if folder and items else None
+    scheduler = scheduler or current().scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
+    folder = checkpoint or current().checkpoint
+    kept = _Checkpoint(folder, function, items) if folder and items else None
 
-    results: list[Any] = [kept.load(item) if kept else _MISSING for item in items]
-    todo = [index for index, result in enumerate(results) if result is _MISSING]
+    results: list[Any] = [kept.load(index) if kept else MISSING for index in range(len(items))]
+    todo = [index for index, result in enumerate(results) if result is MISSING]
     done = len(items) - len(todo)
     if progress:
         progress(done, len(items), what)
     if not todo:
         return results
     count = min(workers or _cores(), len(todo))
+    # the nodes of a cluster may not share the folder
+    function = _Task(function, None if scheduler else current().rest_states)
     if scheduler:
         finished = _over_dask(function, items, todo, scheduler)
     elif count == 1 and workers in (1, None):
@@ -124,11 +119,23 @@ def map_tasks(
         for index, result in finished:
             results[index] = result
             if kept:
-                kept.save(items[index], result)
+                kept.save(index, items[index], result)
             done += 1
             if progress:
                 progress(done, len(items), what)
     return results
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A function with what it may use where it runs."""
+
+    function: Callable
+    rest_states: Path | None
+
+    def __call__(self, item: Any) -> Any:
+        with using(scheduler=None, checkpoint=None, rest_states=self.rest_states):
+            return self.function(item)
 
 
 def _cores() -> int:
@@ -274,84 +281,34 @@ def _settings() -> dict[str, str | None]:
 
 
 class _Checkpoint:
-    """Finished results of one function in a folder, one file each."""
+    """Finished results of one function in a folder; nothing is kept of what has no name of its own."""
 
-    def __init__(self, folder: str | os.PathLike[str], function: Callable) -> None:
-        self.folder = Path(folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self.base = digest(function, __version__, _source_digest(function))
+    def __init__(self, folder: str | os.PathLike[str], function: Callable, items: Sequence[Any]) -> None:
+        module = getattr(_bare(function), "__module__", None)
+        self.memory = Memory(folder, sources(), (module,) if module else ())
+        self.function = self._name(function)
+        self.names = [self._name(self.function, item) if self.function else None for item in items]
 
-    def _path(self, item: Any) -> Path:
-        return self.folder / f"{digest(self.base, item)}.pickle"
-
-    def load(self, item: Any) -> Any:
-        """The kept result, or _MISSING if there is none that can be read."""
+    def _name(self, *values: Any) -> str | None:
         try:
-            return pickle.loads(self._path(item).read_bytes())
-        except FileNotFoundError:
-            return _MISSING
-        except Exception:  # a file that does not load is as good as none
-            return _MISSING
+            return digest(*values)
+        except Indistinct as error:
+            warn(f"{self.memory.folder}: {error}, so results are not kept")
+            return None
 
-    def save(self, item: Any, result: Any) -> None:
-        atomic.write_bytes(self._path(item), pickle.dumps(result, protocol=5))
+    def load(self, index: int) -> Any:
+        """The kept result of an item, or MISSING."""
+        name = self.names[index]
+        return MISSING if name is None else self.memory.load(name)
 
-
-def digest(*values: Any) -> str:
-    """A short name for values that is the same in every process: equal values, equal names.
-
-    Knows numbers, text, arrays, containers, dataclasses, pydantic models and functions; of anything else the
-    pickle is taken.
-    """
-    state = hashlib.sha256()
-    for value in values:
-        state.update(_describe(value))
-    return state.hexdigest()[:32]
-
-
-def _describe(value: Any) -> bytes:
-    kind = type(value)
-    name = f"{kind.__module__}.{kind.__qualname__}"
-    if value is None or isinstance(value, (bool, int, str, bytes)):
-        body = repr(value).encode()
-    elif isinstance(value, float):
-        body = value.hex().encode()
-    elif isinstance(value, (np.ndarray, np.generic)) and not value.dtype.hasobject:
-        body = f"{value.dtype.str}{value.shape}".encode() + value.tobytes()
-    elif isinstance(value, functools.partial):
-        body = digest(value.func, value.args, value.keywords).encode()
-    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
-        fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-        body = digest(fields).encode()
-    elif hasattr(value, "model_dump"):
-        body = digest(value.model_dump()).encode()
-    elif isinstance(value, Mapping):
-        body = b"".join(sorted(digest(key, entry).encode() for key, entry in value.items()))
-    elif isinstance(value, (set, frozenset)):
-        body = b"".join(sorted(digest(entry).encode() for entry in value))
-    elif isinstance(value, (list, tuple)):
-        body = b"".join(digest(entry).encode() for entry in value)
-    elif inspect.isroutine(value) or isinstance(value, type):
-        body = f"{value.__module__}.{value.__qualname__}".encode()
-    elif hasattr(value, "__fspath__"):
-        body = os.fsencode(value)
-    else:
-        body = pickle.dumps(value, protocol=5)
-    return f"{name}:{len(body)}:".encode() + body
+    def save(self, index: int, item: Any, result: Any) -> None:
+        """Keep a result, unless what it was made from has changed meanwhile."""
+        name = self.names[index]
+        if name is not None and self._name(self.function, item) == name:
+            self.memory.save(name, result)
 
 
 def _bare(function: Callable) -> Callable:
-    while isinstance(function, functools.partial):
-        function = function.func
+    while isinstance(function, (functools.partial, _Task)):
+        function = function.func if isinstance(function, functools.partial) else function.function
     return function
-
-
-def _source_digest(function: Callable) -> str:
-    """Changes with the code of this package, and with the file of a function from outside of it."""
-    folder = Path(__file__).parent
-    files = sorted(folder.rglob("*.py"))
-    with contextlib.suppress(TypeError, OSError):
-        file = Path(inspect.getfile(_bare(function)))
-        if folder not in file.parents:
-            return digest(_source_digest(digest), file.read_bytes())
-    return digest({str(path.relative_to(folder)): path.read_bytes() for path in files})

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from granular_response.paper.pipeline import GroupError, data_path, group_function
 from granular_response.scene import SceneError, text
 from granular_response.store import files as store
-from granular_response.sweeps import rest as settled
-from granular_response.sweeps import tasks
+from granular_response.sweeps.resources import using
+from granular_response.sweeps.tasks import Progress
 
 PARAMETERS = Path("params.yaml")
 
@@ -55,7 +52,7 @@ def simulate(
     parameter_file: Path = PARAMETERS,
     workers: int | None = None,
     scheduler: str | None = None,
-    progress: tasks.Progress | None = None,
+    progress: Progress | None = None,
 ) -> Path:
     """Run the simulations of a group and store its datasets; returns the path of the file.
 
@@ -67,13 +64,7 @@ def simulate(
     output = output or data_path(group)
     store.check_writable(output, [parameter_file])
     kept = output.parent / f".{output.stem}.checkpoint"
-    environment = {
-        tasks.CHECKPOINT_VARIABLE: str(kept),
-        settled.FOLDER_VARIABLE: os.environ.get(settled.FOLDER_VARIABLE, str(output.parent / REST_STATES)),
-    }
-    if scheduler:
-        environment[tasks.SCHEDULER_VARIABLE] = scheduler
-    with _environment(environment):
+    with using(scheduler=scheduler, checkpoint=kept, rest_states=output.parent.absolute() / REST_STATES):
         try:
             datasets = function(given, workers=workers, progress=progress)
         except _PARAMETER_ERRORS as error:
@@ -92,17 +83,3 @@ def _said(error: Exception, given: dict[str, Any]) -> str:
     if isinstance(error, KeyError):
         return f"key {error} is missing; there are {', '.join(map(str, given))} (with those of common)"
     return " ".join(str(error).split()) or type(error).__name__
-
-
-@contextmanager
-def _environment(changes: dict[str, str]) -> Iterator[None]:
-    before = {name: os.environ.get(name) for name in changes}
-    os.environ.update(changes)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

@@ -1,0 +1,45 @@
+"""What a computation may use beside its arguments: a scheduler, and folders that remember.
+
+Studies call ``map_tasks`` and ``rest_state`` deep inside; who starts a study says once what these find:
+
+    with using(checkpoint="kept/study", rest_states="kept/rest"):
+        study()
+
+It holds within the block, in this thread, and for rest states in the worker processes of its sweeps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Resources:
+    """What is there to be used; None: nothing of the kind."""
+
+    scheduler: str | None = None  #: address of a Dask scheduler
+    checkpoint: Path | None = None  #: folder for the results of finished tasks
+    rest_states: Path | None = None  #: folder for states at rest
+
+
+_CURRENT: ContextVar[Resources] = ContextVar("resources", default=Resources())  # noqa: B039, it is frozen
+
+
+def current() -> Resources:
+    """What is in use here."""
+    return _CURRENT.get()
+
+
+@contextmanager
+def using(**given: Any) -> Iterator[Resources]:
+    """Use ``given`` fields of :class:`Resources` within the block, and what was in use before for the others."""
+    token = _CURRENT.set(replace(current(), **given))
+    try:
+        yield current()
+    finally:
+        _CURRENT.reset(token)

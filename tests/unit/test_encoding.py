@@ -1,0 +1,114 @@
+"""What is kept on disk comes back to the last bit, and no file can make anything run."""
+
+import dataclasses
+import json
+import pickle
+from collections import namedtuple
+from io import BytesIO
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from granular_response.scene import Scene
+from granular_response.solve import solve_scene
+from granular_response.state import State
+from granular_response.sweeps.digest import digest
+from granular_response.sweeps.encoding import NotDecodable, NotEncodable, decode, encode
+
+HERE = (__name__,)
+Pair = namedtuple("Pair", "one other")
+
+
+@dataclasses.dataclass(frozen=True)
+class Kept:
+    values: np.ndarray
+    numbers: dict
+    inner: object = None
+
+
+def test_plain_values_come_back_equal():
+    values = [
+        None, True, 3, -0.0, 1e-300, float("inf"), "text with ü", b"\0\xff", 2**80, (1, (2.0, "x")), [1, [2]],
+        {"a": 1, 2: "b", (1, 2): [3]}, {1, 2}, frozenset({"a"}), np.float32(1.5), np.int8(3), np.bool_(True),
+        np.arange(6.0).reshape(2, 3), np.asfortranarray(np.arange(6.0).reshape(2, 3)), np.array("text"),
+        np.array([True]), np.zeros((0, 3), np.int8), Pair(1, np.ones(2)), Kept(np.ones(3), {"a": np.float64(1)}),
+    ]  # fmt: skip
+    again = decode(encode(values, HERE), HERE)
+    assert digest(again) == digest(values)
+    assert again[18].flags.f_contiguous and again[17].flags.writeable
+    assert np.isnan(decode(encode(float("nan"))))
+
+
+def test_a_solution_comes_back_equal():
+    solution = solve_scene(Scene().updated({"packing.layers": 4, "packing.disks_per_row": 7}))
+    again = decode(encode(solution))
+    assert digest(again) == digest(solution)
+    assert again.scene == solution.scene
+    assert isinstance(again.rest, State)
+
+
+def test_a_dataset_comes_back_identical():
+    data = xr.Dataset(
+        {"y": (("k", "name"), np.ones((2, 2)), {"units": "1"}), "n": ((), 3)},
+        {"k": [0.5, 1.5], "name": ["a", "b"]},
+        {"title": "response", "number": np.float64(2.5), "list": [1, 2]},
+    )
+    assert decode(encode(data)).identical(data)
+
+
+def test_what_holds_code_is_not_kept():
+    class Local:
+        pass
+
+    loop: list = []
+    loop.append(loop)
+    for value in (Local(), len, lambda: 1, np.array([None]), Kept, loop, Kept(np.ones(1), {}), {"a": object()}):
+        with pytest.raises(NotEncodable) as refused:
+            encode(value)
+        assert "\n" not in str(refused.value)
+
+
+def planted(tree, **arrays):
+    stream = BytesIO()
+    np.savez(stream, tree=np.frombuffer(json.dumps(tree).encode(), np.uint8), **arrays)
+    return stream.getvalue()
+
+
+class Runs:
+    """Its pickle leaves a mark when it is read."""
+
+    def __reduce__(self):
+        return (exec, ("import builtins; builtins.planted_code_has_run = True",))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"PK\3\4 damaged",
+        pickle.dumps(Runs()),
+        planted({"array": "a0"}, a0=np.array([Runs()], dtype=object)),
+        planted({"array": "a9"}),
+        planted({"unknown": 1}),
+        planted([1, 2]),
+        planted({"dataclass": "os:system", "fields": {}}),
+        planted({"dataclass": "subprocess:Popen", "fields": {"args": "ls"}}),
+        planted({"dataclass": "granular_response.__main__:x", "fields": {}}),
+        planted({"dataclass": "granular_response.cli.main:Path", "fields": {}}),
+        planted({"dataclass": "granular_response.state.state:np.ndarray", "fields": {}}),
+        planted({"dataclass": "granular_response.state.state:State", "fields": {"position": 1}}),
+        planted({"dataclass": "granular_response.nowhere:State", "fields": {}}),
+        planted({"named": "granular_response.store.labelled:Values", "parts": [1]}),
+        planted({"enumeration": "granular_response.state.state:State", "name": "x"}),
+        planted({"description": "granular_response.scene.scene:Scene", "values": {"packing": 3}}),
+        planted({"scene": {"packing": {"kind": "sphere"}}, "folder": None}),
+        planted({"dataset": [[["x", ["i", "j"], {"array": "a0"}, {"dict": []}]], [], {"dict": []}]}, a0=np.ones(3)),
+    ],
+)
+def test_a_planted_file_runs_nothing_and_is_refused(data):
+    import builtins
+
+    with pytest.raises(NotDecodable):
+        decode(data, HERE)
+    assert not hasattr(builtins, "planted_code_has_run")
