@@ -8,7 +8,7 @@ import pytest
 
 from granular_response.plot import network as nd
 from granular_response.plot import style
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, Box
 
 POSITION = np.array([[1.0, 1.0], [3.0, 1.0], [2.0, 1.0 + np.sqrt(3.0)], [4.2, 2.5]])
 RADIUS = np.array([1.0, 1.0, 1.0, 0.5])
@@ -95,7 +95,7 @@ def test_rotation_marks_start_vertical_and_turn_counter_clockwise(axes) -> None:
 
 
 def test_annotations_extend_the_view(axes) -> None:
-    nd.draw_box(axes, 8.0, 5.0)
+    nd.draw_box(axes, Box(8.0), 5.0)
     nd.draw_load(axes, (4.0, 5.0), length=4.0)
     assert axes.dataLim.ymax >= 9.0 and axes.dataLim.xmax >= 8.0
     nd.draw_force_key(axes, (0.0, -1.0), 2.0, length_per_force=0.5, width_per_force=0.3)

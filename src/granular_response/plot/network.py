@@ -7,16 +7,18 @@ Positions and radii are in mean radii, forces in mean disk weights. Everything t
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike, NDArray
 
 from granular_response.plot import style
-from granular_response.state import OPEN, foot_points
+from granular_response.state import OPEN, Box, foot_points
 
 FloatArray = NDArray[np.float64]
 
@@ -68,10 +70,18 @@ def draw_rotations(
     return _segments(axes, centre - arm, centre + arm, {"color": style.MUTED, "linewidth": 0.4, **lines})
 
 
-def draw_contacts(axes: Axes, position: ArrayLike, first: ArrayLike, second: ArrayLike, **lines: Any) -> LineCollection:
-    """Connect the centres of the pairs ``first``, ``second`` (m,): thin black lines unless said otherwise."""
+def draw_contacts(
+    axes: Axes, position: ArrayLike, first: ArrayLike, second: ArrayLike, *, box: Box | None = None, **lines: Any
+) -> LineCollection:
+    """Connect the centres of the pairs ``first``, ``second`` (m,): thin black lines unless said otherwise.
+
+    With a periodic ``box``, a pair across its sides is half a line at each.
+    """
     centre = _points(position, "position")
     start, end = centre[np.asarray(first, dtype=int)], centre[np.asarray(second, dtype=int)]
+    if box is not None and box.periodic:
+        half = 0.5 * box.separation(end, start)
+        start, end = np.concatenate([start, end]), np.concatenate([start + half, end - half])
     return _segments(axes, start, end, {"color": style.BLACK, "linewidth": 0.35, **lines})
 
 
@@ -93,6 +103,7 @@ def draw_contact_changes(
     touching_before: ArrayLike,
     touching: ArrayLike,
     sliding: ArrayLike | None = None,
+    box: Box | None = None,
     **lines: Any,
 ) -> dict[str, LineCollection]:
     """What a load changes in the contact network (Figs. 4, 8, 9); the masks are over candidate pairs, (m,).
@@ -114,7 +125,7 @@ def draw_contact_changes(
     for name, mask in masks.items():
         if mask.any():
             look = {**CONTACT_LINES[name], "label": name, **lines}
-            drawn[name] = draw_contacts(axes, position, i[mask], j[mask], **look)
+            drawn[name] = draw_contacts(axes, position, i[mask], j[mask], box=box, **look)
     return drawn
 
 
@@ -146,12 +157,17 @@ def draw_state_changes(
     return drawn
 
 
-def pair_points(position: ArrayLike, radius: ArrayLike, first: ArrayLike, second: ArrayLike) -> FloatArray:
-    """(m, 2) contact points: on the line of centres, dividing the overlap (or gap) evenly."""
+def pair_points(
+    position: ArrayLike, radius: ArrayLike, first: ArrayLike, second: ArrayLike, *, box: Box | None = None
+) -> FloatArray:
+    """(m, 2) contact points: on the line of centres, dividing the overlap (or gap) evenly.
+
+    With a periodic ``box``, that of a pair across its sides lies beside the first disk.
+    """
     centre = _points(position, "position")
     i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
     size = np.broadcast_to(np.asarray(radius, dtype=float), len(centre))
-    between = centre[j] - centre[i]
+    between = centre[j] - centre[i] if box is None else box.separation(centre[j], centre[i])
     distance = np.linalg.norm(between, axis=1)
     from_first = 0.5 * (distance + size[i] - size[j])
     return centre[i] + between * (from_first / distance)[:, None]
@@ -189,6 +205,30 @@ def draw_force_chains(
     keywords: dict[str, Any] = {"color": style.BLACK, "capstyle": "butt", **lines}
     keywords["linewidths"] = width_per_force * magnitude[shown]
     return _segments(axes, centre[shown] - half, centre[shown] + half, keywords)
+
+
+#: How a magnitude, per largest one, becomes a length and a width.
+SCALES: dict[str, Callable[[FloatArray], FloatArray]] = {
+    "linear": lambda part: part,
+    "sqrt": np.sqrt,
+    # the part of all forces that are not larger; where the load acts, a few forces are larger than all others together
+    "percentile": lambda part: np.searchsorted(np.sort(part), part, side="right") / max(len(part), 1),
+}
+
+
+def rescaled(force: ArrayLike, scale: Literal["linear", "sqrt", "percentile"], *, largest: float) -> FloatArray:
+    """Forces (m, 2) in their directions with magnitudes in place of which stands 1 for ``largest``, 0 for none.
+
+    ``sqrt`` and ``percentile`` let small forces be seen beside large ones: of a point load, the chains beyond its
+    first rows.
+    """
+    vector = _points(force, "force")
+    magnitude = np.linalg.norm(vector, axis=1)
+    # forces that are rounding only stay without length on every scale
+    seen = magnitude > 1e-9 * largest
+    size = np.zeros(len(vector))
+    size[seen] = SCALES[scale](magnitude[seen] / largest)
+    return vector * (size / np.where(seen, magnitude, 1.0))[:, None]
 
 
 def force_scale(*forces: ArrayLike, longest: float = 2.0, widest: float = 3.0) -> dict[str, float]:
@@ -250,11 +290,53 @@ def draw_load(
     _include(axes, np.stack([tail, np.asarray(at, dtype=float)]))
 
 
-def draw_box(axes: Axes, width: float, height: float, **lines: Any) -> LineCollection:
-    """The floor at z = 0 and the side walls at x = 0 and x = ``width``, up to ``height``."""
-    start = np.array([[0.0, 0.0], [0.0, 0.0], [width, 0.0]])
-    end = np.array([[width, 0.0], [0.0, height], [width, height]])
-    return _segments(axes, start, end, {"color": style.MUTED, "linewidth": 0.8, **lines})
+def draw_torque(axes: Axes, at: tuple[float, float], torque: float, *, radius: float = 1.7) -> None:
+    """An arc with an arrow over a disk at ``at``, the way that ``torque`` turns it; nothing for zero."""
+    if not torque:
+        return
+    start, end = np.radians(20.0), np.radians(150.0)
+    if torque < 0.0:
+        start, end = end, start
+    ends = [(at[0] + radius * np.cos(a), at[1] + radius * np.sin(a)) for a in (start, end)]
+    axes.add_patch(
+        FancyArrowPatch(
+            ends[0],
+            ends[1],
+            # a circle through both ends: the bulge over half the chord is tan(angle / 4)
+            connectionstyle=f"arc3,rad={-2.0 * np.tan((start - end) / 4.0) * 0.5:.4f}",
+            arrowstyle="-|>",
+            mutation_scale=8.0,
+            color=style.BLUE,
+            linewidth=1.2,
+            shrinkA=0.0,
+            shrinkB=0.0,
+            zorder=11,
+        )
+    )
+
+
+def draw_box(
+    axes: Axes,
+    box: Box,
+    height: float,
+    *,
+    between: tuple[float, float] | None = None,
+    shift: float = 0.0,
+    **lines: Any,
+) -> LineCollection:
+    """The floor and the sides up to ``height``, dashed where they are periodic; only what lies ``between`` two x.
+
+    ``shift`` is added to x where the picture counts it from another place.
+    """
+    left, right = between or (0.0, box.width)
+    start, end, dashes = [(max(left, 0.0), 0.0)], [(min(right, box.width), 0.0)], ["-"]
+    for x in (0.0, box.width):
+        if left <= x <= right:
+            start.append((x, 0.0))
+            end.append((x, height))
+            dashes.append("--" if box.periodic else "-")
+    look = {"color": style.MUTED, "linewidth": 0.8, "linestyles": dashes, "capstyle": "butt", **lines}
+    return _segments(axes, np.array(start) + (shift, 0.0), np.array(end) + (shift, 0.0), look)
 
 
 def _segments(axes: Axes, start: FloatArray, end: FloatArray, keywords: dict[str, Any]) -> LineCollection:

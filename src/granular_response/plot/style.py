@@ -52,6 +52,14 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 #: Colour map of magnitudes.
 SEQUENTIAL = "viridis"
 
+#: One label for each quantity.
+POSITION = "$x/\\bar R$"
+HEIGHT = "$z/\\bar R$"
+FORCE = "$F_{\\mathrm{ext}}/\\bar m g$"
+RESPONSE = "floor response$\\,/\\,F_{\\mathrm{ext}}$"
+#: A difference of stresses has both signs: blue is compression, red the loss of it, white neither.
+SIGNED = "RdBu"
+
 #: Greys of things that are there for orientation only.
 FAINT, MUTED = "#C8C8C8", "#707070"
 

@@ -24,7 +24,7 @@ from granular_response.plot.network import (
     pair_points,
     wall_points,
 )
-from granular_response.state import WALL_NORMAL, contact_force
+from granular_response.state import WALL_NORMAL, Box, contact_force
 
 FloatArray = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def _forces(data: xr.Dataset) -> Figure:
         scale = force_scale(*shown, longest=3.2 if index == 0 else 4.4, widest=3.4 if index == 0 else 4.2)
         draw_disks(axes, position, radius, edgecolor="#C4C4C4", linewidth=0.35)
         draw_rotations(axes, position, radius, data["angle"].values[index], color=style.SKY, linewidth=0.45)
-        draw_box(axes, width, top)
+        draw_box(axes, Box(width), top)
         pairs = data["contact_disk"].values, data["contact_partner"].values
         draw_force_chains(axes, pair_points(position, radius, *pairs), shown[0], **scale)
         at_wall = wall_points(position, radius, data["wall_disk"].values, data["wall_index"].values)

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyArrowPatch
 
 from granular_response.plot import style
 from granular_response.plot.network import (
@@ -16,6 +15,7 @@ from granular_response.plot.network import (
     draw_force_chains,
     draw_force_key,
     draw_load,
+    draw_torque,
     force_scale,
     pair_points,
 )
@@ -59,26 +59,7 @@ def _chains(data: xr.Dataset) -> Figure:
 def _loads(axes: Axes, centre: np.ndarray, force: np.ndarray, torque: float) -> None:
     """The force as a straight arrow to the disk's centre, a clockwise torque as an arc over it."""
     draw_load(axes, (float(centre[0]), float(centre[1])), (float(force[0]), float(force[1])), length=4.6)
-    if torque:
-        start, end = np.radians(150.0), np.radians(20.0)
-        if torque < 0.0:
-            start, end = end, start
-        ends = [(centre[0] + 1.7 * np.cos(a), centre[1] + 1.7 * np.sin(a)) for a in (start, end)]
-        axes.add_patch(
-            FancyArrowPatch(
-                ends[0],
-                ends[1],
-                # a circle through both ends: the bulge over half the chord is tan(angle / 4)
-                connectionstyle=f"arc3,rad={-2.0 * np.tan((start - end) / 4.0) * 0.5:.4f}",
-                arrowstyle="-|>",
-                mutation_scale=8.0,
-                color=style.BLUE,
-                linewidth=1.2,
-                shrinkA=0.0,
-                shrinkB=0.0,
-                zorder=11,
-            )
-        )
+    draw_torque(axes, (float(centre[0]), float(centre[1])), -torque)
 
 
 def _reach(data: xr.Dataset) -> Figure:

@@ -1,0 +1,438 @@
+"""Pictures of a result: its response, the forces that the load adds, contacts, stress, and the packing itself.
+
+Each takes a ``Result`` or the dataset of one (``Result.to_dataset``, or a stored file as xarray opens it). ``state`` is
+0 at rest, then one for each load factor, -1 the last. Without ``ax`` a picture has a figure of its own, made by pyplot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
+
+from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
+from ..state import OPEN, SLIDING, Box, FloatArray, contact_force, wall_normals
+from . import network, style
+from .field import draw_field, root_norm
+
+Scale = Literal["linear", "sqrt", "percentile"]
+
+
+class HasDataset(Protocol):
+    """A result."""
+
+    def to_dataset(self) -> xr.Dataset: ...
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One state of a result as pictures take it: plain arrays, contacts on the list that all states share."""
+
+    data: xr.Dataset
+    index: int
+
+    @classmethod
+    def of(cls, result: HasDataset | xr.Dataset, state: int = -1) -> Shown:
+        """Raises TypeError for what is no result, ValueError for a dataset without states, IndexError."""
+        if not isinstance(result, xr.Dataset):
+            if not hasattr(result, "to_dataset"):
+                kind = type(result).__name__
+                raise TypeError(f"result: must be a Result or its dataset, not {kind} (open_result reads a file)")
+            result = result.to_dataset()
+        if not {"position", "contact_status", "wall_disk"} <= set(result.variables) or "state" not in result.dims:
+            raise ValueError("result: the dataset holds no states of a packing")
+        count = result.sizes["state"]
+        if not -count <= state < count:
+            raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
+        return cls(result, state % count)
+
+    def values(self, name: str, index: int | None = None) -> np.ndarray:
+        """A variable in this state, or in another one."""
+        variable = self.data[name]
+        if "state" in variable.dims:
+            variable = variable.isel(state=self.index if index is None else index)
+        return variable.values
+
+    @property
+    def position(self) -> FloatArray:
+        return self.values("position")
+
+    @property
+    def radius(self) -> FloatArray:
+        return self.values("radius")
+
+    @property
+    def box(self) -> Box:
+        return Box(float(self.data.attrs["width"]), self.data.attrs.get("sides") == "periodic")
+
+    @property
+    def top(self) -> float:
+        """Highest point of a disk."""
+        return float((self.position[:, 1] + self.radius).max())
+
+    @property
+    def origin(self) -> float:
+        """Where ``x`` of the response is 0."""
+        return float(self.values("position", 0)[int(self.data["floor_disk"][0]), 0] - self.data["x"].values[0])
+
+    @property
+    def pairs(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.values("contact_disk"), self.values("contact_partner")
+
+    def pair_force(self, index: int | None = None) -> FloatArray:
+        """(m, 2) force on the first disk of each pair."""
+        position = self.values("position", index)
+        first, second = self.pairs
+        branch = self.box.separation(position[first], position[second])
+        normal = branch / np.linalg.norm(branch, axis=1, keepdims=True)
+        parts = (self.values(f"contact_{part}_force", index) for part in ("normal", "tangential"))
+        return contact_force(normal, *parts)
+
+    def wall_force(self, index: int | None = None) -> FloatArray:
+        """(w, 2) force of each wall on its disk."""
+        parts = (self.values(f"wall_{part}_force", index) for part in ("normal", "tangential"))
+        return contact_force(wall_normals(self.values("wall_index")), *parts)
+
+    @cached_property
+    def loads(self) -> list[tuple[int, FloatArray, float]]:
+        """Disk, force and torque of each load in this state."""
+        if not self.index:
+            return []
+        factors = self.data["load_factor"]
+        factor = float(factors.values[self.index if "state" in factors.dims else self.index - 1])
+        applied = factor * self.values("applied_load")
+        return [
+            (int(disk), load[:2], float(load[2]))
+            for disk, load in zip(self.values("loaded_disk"), applied, strict=True)
+            if load.any()
+        ]
+
+
+def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """The floor response against the place from the loaded disk, a curve for each load (Fig. 7).
+
+    ``line`` goes to ``Axes.plot``. Raises ValueError for a result without loads.
+    """
+    shown = Shown.of(result)
+    values = np.atleast_2d(shown.data["floor_response"].values)
+    if not np.isfinite(values).any():
+        raise ValueError("result: no loads, so there is no response")
+    with style.context():
+        axes = _axes(ax, 0.36)
+        forces = np.atleast_1d(shown.data["total_force"].values)
+        for k, (curve, force) in enumerate(zip(values, forces, strict=True)):
+            colour = style.ordered_colours(len(values))[k]
+            look = {**style.marked_line(k, colour=colour), "markersize": 2.6, "label": f"{force:g}", **line}
+            axes.plot(shown.data["x"].values, curve, **look)
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
+        axes.margins(x=0.02)
+        axes.legend(title=style.FORCE)
+    return axes
+
+
+def forces(
+    result: HasDataset | xr.Dataset,
+    *,
+    ax: Axes | None = None,
+    state: int = -1,
+    added: bool | None = None,
+    scale: Scale = "sqrt",
+    largest: float | None = None,
+) -> Axes:
+    """Force chains: each contact force is a line along it, as long and as wide as it is large (Figs. 2, 13).
+
+    Parameters
+    ----------
+    added : draw the force that the load adds at each contact, gravity subtracted as a vector (Sec. III.C): black where
+        it presses the disks together, red where it takes compression away. By default so but at rest.
+    scale : of lengths and widths: linear in the force as in the paper, by its square root, which shows the
+        chains of a point load beyond its first rows, or by the percentile of the force among all.
+    largest : magnitude that has full length, in mean disk weights; by default that of the largest force. Give several
+        pictures the same one to compare them (not for percentiles).
+    """
+    shown = Shown.of(result, state)
+    added = shown.index > 0 if added is None else added
+    if scale not in network.SCALES:
+        raise ValueError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
+    if largest is not None and not largest > 0.0:
+        raise ValueError(f"largest = {largest}: must be positive")
+    pair, wall = shown.pair_force(), shown.wall_force()
+    normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
+    inward = wall_normals(shown.values("wall_index"))
+    if added:
+        pair, wall = pair - shown.pair_force(0), wall - shown.wall_force(0)
+    point = np.concatenate(
+        [
+            network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box),
+            network.wall_points(shown.position, shown.radius, shown.values("wall_disk"), shown.values("wall_index")),
+        ]
+    )
+    force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
+    pushes = np.sum(force * direction, axis=1) >= 0.0
+    reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if largest is None else largest
+    drawn = network.rescaled(force, scale, largest=reference)
+    with style.context():
+        axes = _axes(ax, _aspect(shown))
+        _packing(axes, shown)
+        # by percentile, half of all forces are large: shorter and thinner lines keep them apart
+        crowded = 0.5 if scale == "percentile" else 1.0
+        widest = crowded * _width_per_radius(axes, shown)
+        factors = {"length_per_force": 4.0 * crowded, "width_per_force": widest}
+        kinds = {"presses more": (pushes, style.BLACK, 3), "presses less": (~pushes, style.VERMILION, 4)}
+        for mask, colour, order in kinds.values():
+            network.draw_force_chains(
+                axes, point[mask], drawn[mask], smallest=0.02, color=colour, zorder=order, **factors
+            )
+        handles = [
+            Line2D([], [], color=colour, linewidth=1.6, label=name)
+            for name, (mask, colour, _) in kinds.items()
+            if added and (np.linalg.norm(drawn[mask], axis=1) > 0.02).any()
+        ]
+        if reference > 0.0 and scale != "percentile":
+            sizes = [reference, 0.1 * reference]
+            for size in sizes:
+                part = float(network.SCALES[scale](np.array([size / reference]))[0])
+                name = f"${size:.2g}\\,\\bar m g$"
+                handles.append(Line2D([], [], color=style.BLACK, linewidth=widest * part, label=name))
+        _legend(axes, handles, shown)
+    return axes
+
+
+def contacts(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: int = -1) -> Axes:
+    """What a load changes in the contact network: opened, closed and sliding contacts (Figs. 4, 8, 9)."""
+    shown = Shown.of(result, state)
+    before, now = shown.values("contact_status", 0), shown.values("contact_status")
+    with style.context():
+        axes = _axes(ax, _aspect(shown))
+        _packing(axes, shown)
+        drawn = network.draw_contact_changes(
+            axes,
+            shown.position,
+            *shown.pairs,
+            touching_before=before != OPEN,
+            touching=now != OPEN,
+            sliding=now == SLIDING,
+            box=shown.box,
+        )
+        _legend(axes, list(drawn.values())[::-1], shown)
+    return axes
+
+
+def stress(
+    result: HasDataset | xr.Dataset,
+    *,
+    ax: Axes | None = None,
+    state: int = -1,
+    added: bool | None = None,
+    component: Literal["xx", "xz", "zx", "zz"] = "zz",
+    width: float = 2.0,
+    largest: float | None = None,
+) -> Axes:
+    """A component of the coarse-grained stress, by default the part that the load adds (Fig. 14).
+
+    Compression is blue, its loss red, in steps of the square root. Within ``width`` of the floor and of side walls
+    (dotted) part of the Gaussian lies outside the packing, so the stress falls there.
+
+    Parameters
+    ----------
+    added : draw what the load adds rather than the whole; by default so but at rest.
+    component : indices of the tensor, the force's first.
+    width : of the Gaussian in mean radii (Sec. V.C).
+    largest : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.
+    """
+    shown = Shown.of(result, state)
+    added = shown.index > 0 if added is None else added
+    if component not in ("xx", "xz", "zx", "zz"):
+        raise ValueError(f"component = {component!r}: must be one of xx, xz, zx, zz")
+    first, second = shown.pairs
+    at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
+    pair_force, wall_force = shown.pair_force(), shown.wall_force()
+    if added:
+        pair_force, wall_force = pair_force - shown.pair_force(0), wall_force - shown.wall_force(0)
+    separation = shown.box.separation(shown.position[first], shown.position[second])
+    carried = ContactForces(
+        point=np.concatenate([shown.position[first], at_wall]),
+        branch=np.concatenate([separation, at_wall - shown.box.on_wall(at_wall, wall)]),
+        force=np.concatenate([pair_force, wall_force]),
+    )
+    step = max(0.5, shown.box.width / 240.0)
+    x = np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
+    z = np.linspace(0.0, shown.top, round(shown.top / step) + 1)
+    tensor = coarse_grained_stress(carried, grid_points(x, z), width)
+    field = tensor[..., "xz".index(component[0]), "xz".index(component[1])]
+    end = float(np.abs(field).max()) if largest is None else largest
+    with style.context():
+        axes = _axes(ax, _aspect(shown))
+        norm = root_norm(end if end > 0.0 else 1.0, signed=True)
+        image = draw_field(axes, x - shown.origin, z, field, norm=norm, cmap=style.SIGNED)
+        near = {"color": style.MUTED, "linewidth": 0.5, "linestyle": ":"}
+        axes.axhline(width, **near)
+        for side in () if shown.box.periodic else (width, shown.box.width - width):
+            axes.axvline(side - shown.origin, **near)
+        network.draw_box(axes, shown.box, shown.top, shift=-shown.origin)
+        _loads(axes, shown, shift=-shown.origin)
+        axes.set_ylim(-0.03 * shown.top, None)
+        axes.tick_params(top=False, right=False)
+        what = "added " if added else ""
+        bar = axes.figure.colorbar(image, ax=axes, shrink=0.9, aspect=14, pad=0.02)
+        bar.set_label(f"{what}$\\sigma_{{{component}}}\\bar R/\\bar m g$")
+        ticks = [end * part for part in (-1.0, -0.25, 0.0, 0.25, 1.0)]
+        bar.set_ticks(ticks, labels=[f"${tick:.2g}$" for tick in ticks])
+        bar.ax.minorticks_off()
+    return axes
+
+
+def packing(
+    result: HasDataset | xr.Dataset,
+    *,
+    ax: Axes | None = None,
+    state: int = -1,
+    values: ArrayLike | None = None,
+    label: str = "",
+    colour_map: str = style.SEQUENTIAL,
+) -> Axes:
+    """The disks with their contacts, the box and the loads.
+
+    ``values`` (n,) fill the disks with colours; ``label`` names them at the colour bar.
+    """
+    shown = Shown.of(result, state)
+    touching = shown.values("contact_status") != OPEN
+    with style.context():
+        axes = _axes(ax, _aspect(shown))
+        if values is None:
+            _packing(axes, shown, edgecolor=style.MUTED, facecolor="#EDF2F6")
+            network.draw_rotations(
+                axes, shown.position, shown.radius, shown.values("angle"), color=style.SKY, linewidth=0.5
+            )
+        else:
+            number = np.asarray(values, dtype=float)
+            if number.shape != shown.radius.shape:
+                raise ValueError(f"values: must have shape {shown.radius.shape}, one for each disk, not {number.shape}")
+            disks = _packing(axes, shown, values=number, cmap=colour_map, edgecolor=style.MUTED)
+            axes.figure.colorbar(disks, ax=axes, shrink=0.9, aspect=14, pad=0.02).set_label(label)
+        network.draw_contacts(
+            axes, shown.position, *(disks[touching] for disks in shown.pairs), box=shown.box, linewidth=0.5, zorder=3
+        )
+    return axes
+
+
+#: The pictures of a page, by name.
+PICTURES: Mapping[str, Callable[..., Axes]] = {
+    "response": response,
+    "forces": forces,
+    "contacts": contacts,
+    "stress": stress,
+    "packing": packing,
+}
+
+
+def page(
+    result: HasDataset | xr.Dataset,
+    what: Sequence[str] = ("response", "forces", "contacts", "stress"),
+    *,
+    state: int = -1,
+) -> Figure:
+    """One figure with a picture for each of ``what``, in this order: names of the functions of this module.
+
+    Raises ValueError for another name, and what the pictures raise.
+    """
+    for name in what:
+        if name not in PICTURES:
+            raise ValueError(f"what = {name!r}: must be among {', '.join(PICTURES)}")
+    if not what:
+        raise ValueError(f"what: nothing to draw, must be among {', '.join(PICTURES)}")
+    shown = Shown.of(result, state)
+    with style.context():
+        columns = 1 if len(what) == 1 or _aspect(shown) < 0.6 else 2
+        rows = -(-len(what) // columns)
+        wide = style.DOUBLE / columns
+        heights = [0.36 * wide if name == "response" else _aspect(shown) * wide + 0.25 for name in what]
+        in_row = [max(heights[k * columns : (k + 1) * columns]) + 0.12 for k in range(rows)]
+        figure, panels = style.figure(rows, columns, width="double", height=sum(in_row), height_ratios=in_row)
+        figure.set_layout_engine("compressed")
+        for k, axes in enumerate(panels.ravel()):
+            if k >= len(what):
+                axes.set_axis_off()
+                continue
+            PICTURES[what[k]](shown.data, ax=axes, **({} if what[k] == "response" else {"state": state}))
+            if what[k] == "response" and columns > 1:
+                axes.set_box_aspect(0.75)
+            style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
+    return figure
+
+
+def _title(what: str, shown: Shown) -> str:
+    load = "at rest"
+    if shown.index:
+        total = sum(float(np.hypot(*force)) for _, force, _ in shown.loads)
+        load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$"
+    text = {"forces": "forces", "contacts": "contacts", "stress": "stress", "packing": "packing"}
+    return "floor response" if what == "response" else f"{text[what]}, {load}"
+
+
+def _axes(ax: Axes | None, aspect: float) -> Axes:
+    """The given axes, or those of a new figure as high as ``aspect`` times its width."""
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # here, so that figures without a display never touch it
+
+    figure = plt.figure(figsize=(style.DOUBLE, max(1.4, aspect * style.DOUBLE + 0.35)), layout="constrained")
+    return figure.subplots()
+
+
+def _aspect(shown: Shown) -> float:
+    """Height over width of a picture of the packing, with room for the arrow of a load."""
+    return 1.2 * shown.top / (shown.box.width + 2.0)
+
+
+def _width_per_radius(axes: Axes, shown: Shown) -> float:
+    """Points that one mean radius takes across the page: the largest force is as wide as a disk's radius."""
+    inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width  # type: ignore[union-attr]
+    return float(np.clip(72.0 * inches / shown.box.width, 0.8, 5.0))
+
+
+def _packing(axes: Axes, shown: Shown, **disks: Any) -> Any:
+    """Disks, box and loads, without axes."""
+    look = {"edgecolor": "#DCDCDC", "linewidth": 0.4, **disks}
+    drawn = network.draw_disks(axes, shown.position, shown.radius, zorder=1, **look)
+    network.draw_box(axes, shown.box, shown.top)
+    _loads(axes, shown)
+    style.no_axes(axes)
+    axes.set(xlim=(-1.5, shown.box.width + 1.5), ylim=(-1.2, max(axes.dataLim.ymax, shown.top) + 0.5))
+    return drawn
+
+
+def _loads(axes: Axes, shown: Shown, *, shift: float = 0.0) -> None:
+    """Loaded disks, and an arrow for each force that ends at the disk it pushes, the largest a fifth of the height."""
+    largest = max((float(np.hypot(*force)) for _, force, _ in shown.loads), default=0.0)
+    for disk, force, torque in shown.loads:
+        centre, radius = shown.position[disk] + (shift, 0.0), float(shown.radius[disk])
+        network.draw_disks(axes, [centre], radius, edgecolor=style.VERMILION, linewidth=0.9, zorder=6)
+        size = float(np.hypot(*force))
+        if size > 0.0:
+            tip = centre - radius * force / size
+            length = max(3.0, 0.16 * shown.top) * size / largest
+            network.draw_load(axes, (float(tip[0]), float(tip[1])), (float(force[0]), float(force[1])), length=length)
+        network.draw_torque(axes, (float(centre[0]), float(centre[1])), torque, radius=1.7 * radius)
+
+
+def _legend(axes: Axes, handles: Sequence[Any], shown: Shown) -> None:
+    """Below the picture, in two columns where that is narrow."""
+    if handles:
+        axes.legend(
+            handles=handles,
+            loc="upper center",
+            bbox_to_anchor=(0.5, 0.0),
+            ncols=len(handles) if _aspect(shown) < 0.6 else 2,
+            columnspacing=1.4,
+            borderaxespad=0.2,
+        )
