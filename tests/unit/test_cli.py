@@ -30,7 +30,8 @@ from granular_response.store import files as store
 from granular_response.sweeps.resources import Resources, current
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ["run", "continue", "simulate", "draw", "show", "keys", "export", "claims", "report", "cite", "version"]
+COMMANDS = ["run", "continue", "simulate", "draw", "show", "plot", "keys"]
+COMMANDS += ["export", "claims", "report", "cite", "version"]
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
 contact: {friction: 0.0}

@@ -270,6 +270,30 @@ def show(
 
 @app.command(
     epilog=_examples(
+        "granular-response plot slab.nc -o slab.pdf",
+        "granular-response plot slab.nc -o chains.png --what forces --scale percentile",
+        "granular-response plot slab.nc -o rest.png --what packing,forces --state 0",
+    )
+)
+def plot(
+    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to make: .pdf, .png or .svg.")],
+    what: Annotated[
+        str, typer.Option(help="Pictures on the page, among response, forces, contacts, stress, packing.")
+    ] = "response,forces,contacts,stress",
+    state: Annotated[int, typer.Option(help="State: 0 at rest, then one for each load factor, -1 the last.")] = -1,
+    scale: Annotated[str, typer.Option(help="Scale of the forces: linear, sqrt or percentile.")] = "sqrt",
+) -> None:
+    """Draw a result: response, force chains, contacts and stress on one page."""
+    from ..plot import pictures
+
+    _loaded()
+
+    typer.echo(str(pictures.draw_file(result, output, what.split(","), state=state, scale=scale)))
+
+
+@app.command(
+    epilog=_examples(
         "granular-response keys",
         "granular-response keys protocol",
         "granular-response keys --page docs/scene-reference.md",
@@ -383,6 +407,7 @@ def _expected_errors() -> tuple[type[BaseException], ...]:
         "paper.claims": ["ClaimsError"],
         "paper.pipeline": ["GroupError"],
         "paper.report": ["ReportError"],
+        "plot.pictures": ["PictureError"],
         "scene": ["SceneError"],
         "solve": ["SOLVE_ERRORS"],
         "store.export": ["ExportError"],

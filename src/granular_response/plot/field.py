@@ -33,11 +33,14 @@ def root_norm(largest: float, *, signed: bool = False) -> Normalize:
 def draw_field(
     axes: Axes, x: ArrayLike, z: ArrayLike, field: ArrayLike, *, norm: Normalize, levels: ArrayLike = (), **mesh: Any
 ) -> QuadMesh:
-    """Draw ``field`` (len(z), len(x)) with equal scales; thin contours at ``levels``. Returns what a colour bar takes."""
+    """Draw ``field`` (len(z), len(x)) with equal scales; thin contours at ``levels``.
+
+    Returns what a colour bar takes.
+    """
     values = np.asarray(field, dtype=float)
     image = axes.pcolormesh(x, z, values, norm=norm, shading="gouraud", rasterized=True, **mesh)
     if np.size(levels):
         colour = style.MUTED if "cmap" in mesh else "white"
         axes.contour(x, z, values, levels, colors=colour, linewidths=0.4, linestyles="-")
-    axes.set(aspect="equal", xlabel=style.POSITION, ylabel=style.HEIGHT)
+    axes.set_aspect("equal")
     return image

@@ -336,7 +336,8 @@ def draw_box(
             end.append((x, height))
             dashes.append("--" if box.periodic else "-")
     look = {"color": style.MUTED, "linewidth": 0.8, "linestyles": dashes, "capstyle": "butt", **lines}
-    return _segments(axes, np.array(start) + (shift, 0.0), np.array(end) + (shift, 0.0), look)
+    offset = np.array([shift, 0.0])
+    return _segments(axes, np.array(start) + offset, np.array(end) + offset, look)
 
 
 def _segments(axes: Axes, start: FloatArray, end: FloatArray, keywords: dict[str, Any]) -> LineCollection:

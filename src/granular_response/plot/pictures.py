@@ -6,9 +6,11 @@ Each takes a ``Result`` or the dataset of one (``Result.to_dataset``, or a store
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -20,10 +22,15 @@ from numpy.typing import ArrayLike
 
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
 from ..state import OPEN, SLIDING, Box, FloatArray, contact_force, wall_normals
+from ..store import atomic, files
 from . import network, style
 from .field import draw_field, root_norm
 
 Scale = Literal["linear", "sqrt", "percentile"]
+
+
+class PictureError(ValueError):
+    """A picture that cannot be drawn as asked. The message is one line."""
 
 
 class HasDataset(Protocol):
@@ -41,17 +48,17 @@ class Shown:
 
     @classmethod
     def of(cls, result: HasDataset | xr.Dataset, state: int = -1) -> Shown:
-        """Raises TypeError for what is no result, ValueError for a dataset without states, IndexError."""
+        """Raises TypeError for what is no result, PictureError for a dataset or a state that is not there."""
         if not isinstance(result, xr.Dataset):
             if not hasattr(result, "to_dataset"):
                 kind = type(result).__name__
                 raise TypeError(f"result: must be a Result or its dataset, not {kind} (open_result reads a file)")
             result = result.to_dataset()
         if not {"position", "contact_status", "wall_disk"} <= set(result.variables) or "state" not in result.dims:
-            raise ValueError("result: the dataset holds no states of a packing")
+            raise PictureError("result: the dataset holds no states of a packing")
         count = result.sizes["state"]
         if not -count <= state < count:
-            raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
+            raise PictureError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
         return cls(result, state % count)
 
     def values(self, name: str, index: int | None = None) -> np.ndarray:
@@ -119,12 +126,12 @@ class Shown:
 def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line: Any) -> Axes:
     """The floor response against the place from the loaded disk, a curve for each load (Fig. 7).
 
-    ``line`` goes to ``Axes.plot``. Raises ValueError for a result without loads.
+    ``line`` goes to ``Axes.plot``. Raises PictureError for a result without loads.
     """
     shown = Shown.of(result)
     values = np.atleast_2d(shown.data["floor_response"].values)
     if not np.isfinite(values).any():
-        raise ValueError("result: no loads, so there is no response")
+        raise PictureError("result: no loads, so there is no response")
     with style.context():
         axes = _axes(ax, 0.36)
         forces = np.atleast_1d(shown.data["total_force"].values)
@@ -162,9 +169,9 @@ def forces(
     shown = Shown.of(result, state)
     added = shown.index > 0 if added is None else added
     if scale not in network.SCALES:
-        raise ValueError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
+        raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
     if largest is not None and not largest > 0.0:
-        raise ValueError(f"largest = {largest}: must be positive")
+        raise PictureError(f"largest = {largest}: must be positive")
     pair, wall = shown.pair_force(), shown.wall_force()
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
@@ -252,7 +259,7 @@ def stress(
     shown = Shown.of(result, state)
     added = shown.index > 0 if added is None else added
     if component not in ("xx", "xz", "zx", "zz"):
-        raise ValueError(f"component = {component!r}: must be one of xx, xz, zx, zz")
+        raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
     pair_force, wall_force = shown.pair_force(), shown.wall_force()
@@ -274,13 +281,13 @@ def stress(
         axes = _axes(ax, _aspect(shown))
         norm = root_norm(end if end > 0.0 else 1.0, signed=True)
         image = draw_field(axes, x - shown.origin, z, field, norm=norm, cmap=style.SIGNED)
-        near = {"color": style.MUTED, "linewidth": 0.5, "linestyle": ":"}
+        near: dict[str, Any] = {"color": style.MUTED, "linewidth": 0.5, "linestyle": ":"}
         axes.axhline(width, **near)
         for side in () if shown.box.periodic else (width, shown.box.width - width):
             axes.axvline(side - shown.origin, **near)
         network.draw_box(axes, shown.box, shown.top, shift=-shown.origin)
         _loads(axes, shown, shift=-shown.origin)
-        axes.set_ylim(-0.03 * shown.top, None)
+        axes.set(ylim=(-0.03 * shown.top, None), xlabel=style.POSITION, ylabel=style.HEIGHT)
         axes.tick_params(top=False, right=False)
         what = "added " if added else ""
         bar = axes.figure.colorbar(image, ax=axes, shrink=0.9, aspect=14, pad=0.02)
@@ -316,7 +323,7 @@ def packing(
         else:
             number = np.asarray(values, dtype=float)
             if number.shape != shown.radius.shape:
-                raise ValueError(f"values: must have shape {shown.radius.shape}, one for each disk, not {number.shape}")
+                raise PictureError(f"values: must have shape {shown.radius.shape}, a disk each, not {number.shape}")
             disks = _packing(axes, shown, values=number, cmap=colour_map, edgecolor=style.MUTED)
             axes.figure.colorbar(disks, ax=axes, shrink=0.9, aspect=14, pad=0.02).set_label(label)
         network.draw_contacts(
@@ -340,16 +347,19 @@ def page(
     what: Sequence[str] = ("response", "forces", "contacts", "stress"),
     *,
     state: int = -1,
+    scale: Scale = "sqrt",
 ) -> Figure:
     """One figure with a picture for each of ``what``, in this order: names of the functions of this module.
 
-    Raises ValueError for another name, and what the pictures raise.
+    ``scale`` is that of :func:`forces`. The figure is none of pyplot's; ``style.render`` makes a file of it.
+
+    Raises PictureError for another name, and what the pictures raise.
     """
     for name in what:
         if name not in PICTURES:
-            raise ValueError(f"what = {name!r}: must be among {', '.join(PICTURES)}")
+            raise PictureError(f"what = {name!r}: must be among {', '.join(PICTURES)}")
     if not what:
-        raise ValueError(f"what: nothing to draw, must be among {', '.join(PICTURES)}")
+        raise PictureError(f"what: nothing to draw, must be among {', '.join(PICTURES)}")
     shown = Shown.of(result, state)
     with style.context():
         columns = 1 if len(what) == 1 or _aspect(shown) < 0.6 else 2
@@ -363,11 +373,45 @@ def page(
             if k >= len(what):
                 axes.set_axis_off()
                 continue
-            PICTURES[what[k]](shown.data, ax=axes, **({} if what[k] == "response" else {"state": state}))
+            options: dict[str, Any] = {} if what[k] == "response" else {"state": state}
+            options |= {"scale": scale} if what[k] == "forces" else {}
+            PICTURES[what[k]](shown.data, ax=axes, **options)
             if what[k] == "response" and columns > 1:
                 axes.set_box_aspect(0.75)
             style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
     return figure
+
+
+def draw_file(
+    result: str | os.PathLike[str],
+    output: str | os.PathLike[str],
+    what: Sequence[str],
+    *,
+    state: int = -1,
+    scale: Any = "sqrt",
+) -> Path:
+    """Write the :func:`page` of a stored result as ``.pdf``, ``.png`` or ``.svg``, whole or not at all.
+
+    Raises
+    ------
+    granular_response.store.files.StoreError
+        If the result cannot be read.
+    PictureError
+        For another format, what :func:`page` refuses, and a place that cannot be written.
+    """
+    path = Path(output)
+    if path.suffix not in (".pdf", ".png", ".svg"):
+        raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
+    stored = files.read(result).get("")
+    if stored is None:
+        raise PictureError(f"{os.fspath(result)}: holds no states, must be a result of granular-response run")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        atomic.check_output(path, [result])
+        atomic.write_bytes(path, style.render(page(stored, what, state=state, scale=scale), path.suffix[1:]))
+    except OSError as error:
+        raise PictureError(f"{path}: cannot be written: {error.strerror or error}") from error
+    return path
 
 
 def _title(what: str, shown: Shown) -> str:
@@ -396,7 +440,7 @@ def _aspect(shown: Shown) -> float:
 
 def _width_per_radius(axes: Axes, shown: Shown) -> float:
     """Points that one mean radius takes across the page: the largest force is as wide as a disk's radius."""
-    inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width  # type: ignore[union-attr]
+    inches = axes.figure.get_figure(root=True).get_size_inches()[0] * axes.get_position().width
     return float(np.clip(72.0 * inches / shown.box.width, 0.8, 5.0))
 
 

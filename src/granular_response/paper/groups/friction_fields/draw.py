@@ -6,11 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
-from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
+from granular_response.plot.field import draw_field, root_norm
 from granular_response.plot.network import (
+    draw_box,
     draw_disks,
     draw_force_chains,
     draw_force_key,
@@ -19,6 +20,7 @@ from granular_response.plot.network import (
     pair_points,
     wall_points,
 )
+from granular_response.state import Box
 
 #: Half of the width of the stress maps and of the profiles, in mean radii.
 MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
@@ -59,7 +61,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
             draw_force_chains(axes, point[shown], force[shown], smallest=smallest, **scale)
         top = (float(position[disk, 0]), float(position[disk, 1]) + 1.0)
         draw_load(axes, top)
-        axes.plot([width / 3.0, 2.0 * width / 3.0], [0.0, 0.0], color=style.MUTED, linewidth=0.8, linestyle="-")
+        draw_box(axes, Box(width), top[1], between=(width / 3.0, 2.0 * width / 3.0))
         style.no_axes(axes)
         axes.set(xlim=(width / 3.0 - 0.5, 2.0 * width / 3.0 + 0.5), ylim=(-0.8, top[1] + 4.2))
         style.letter(axes, chr(ord("a") + index), text=_friction(frictions[index]))
@@ -80,12 +82,11 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
     half = min(MAP_HALF_WIDTH, float(x.max()))
     largest = max(float(field.max()) for field, _ in maps)
     # the stress falls like 1/depth: equal steps of its square root show the lower part of the slab too
-    norm = PowerNorm(0.5, vmin=0.0, vmax=largest)
+    norm = root_norm(largest)
     levels = largest * np.array([0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7])
     for index, (axes, (field, name)) in enumerate(zip(panels.ravel(), maps, strict=False)):
-        image = axes.pcolormesh(x, z, np.clip(field, 0.0, None), norm=norm, shading="gouraud", rasterized=True)
-        axes.contour(x, z, field, levels, colors="white", linewidths=0.4)
-        axes.set(xlim=(-half, half), ylim=(0.0, z.max()), aspect="equal")
+        image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=levels)
+        axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
         style.letter(axes, chr(ord("a") + index), place="above", text=name)
     for axes in panels.ravel()[len(maps) :]:
         axes.set_axis_off()

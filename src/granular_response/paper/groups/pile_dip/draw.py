@@ -7,10 +7,13 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
+from granular_response.plot.field import draw_field
 from granular_response.plot.network import (
+    draw_box,
     draw_contacts,
     draw_disks,
     draw_force_chains,
@@ -19,6 +22,7 @@ from granular_response.plot.network import (
     pair_points,
     wall_points,
 )
+from granular_response.state import Box
 
 #: Cases that are drawn, left and right; of the two frictionless minima one, the other is its mirror image.
 DRAWN = {"frictionless": "without friction", "frictional": "with friction"}
@@ -45,18 +49,14 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         _forces(forces, one, scale)
         style.letter(forces, "ab"[column], place="above", text=f"forces, {name}")
         field = fields.sel(case=case)
-        image = map_axes.pcolormesh(
-            stress["x"], stress["z"], field, vmin=0.0, vmax=largest, shading="gouraud", rasterized=True
-        )
-        map_axes.contour(
-            stress["x"], stress["z"], field, largest * np.arange(0.1, 1.0, 0.1), colors="white", linewidths=0.4
-        )
-        map_axes.set(aspect="equal", xlabel="$x/R$", ylabel="$z/R$" if column == 0 else "")
+        levels = largest * np.arange(0.1, 1.0, 0.1)
+        image = draw_field(map_axes, stress["x"], stress["z"], field, norm=Normalize(0.0, largest), levels=levels)
+        map_axes.set(xlabel="$x/R$", ylabel="$z/R$" if column == 0 else "")
         style.letter(map_axes, "cd"[column], place="above", text="$\\sigma_{zz}$")
         _network(network, one)
         style.letter(network, "ef"[column], place="above", text="contacts")
         for axes in (forces, network):
-            axes.plot([0.0, width], [0.0, 0.0], color=style.MUTED, linewidth=0.8, linestyle="-")
+            draw_box(axes, Box(width), 2.0)
             style.no_axes(axes)
             axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
