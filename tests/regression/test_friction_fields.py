@@ -24,7 +24,7 @@ SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "a
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "friction_fields.nc"
-    store.write(path, study.simulate(PARAMETERS, workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
     return store.read(path)
 
 
@@ -83,6 +83,6 @@ def test_figures(datasets) -> None:
 
 def test_bad_parameters_are_named() -> None:
     with pytest.raises(ValueError, match=r"profiles\.frictions = \[0\.5\]"):
-        study.simulate({**PARAMETERS, "profiles": {**PARAMETERS["profiles"], "frictions": [0.5]}}, workers=1)
-    with pytest.raises(ValueError, match="stress_width = 0: must be above 0"):
-        study.simulate({**PARAMETERS, "stress_width": 0}, workers=1)
+        study.Parameters(**{**PARAMETERS, "profiles": {**PARAMETERS["profiles"], "frictions": [0.5]}})
+    with pytest.raises(ValueError, match="stress_width = 0: must be a number greater than 0"):
+        study.Parameters(**{**PARAMETERS, "stress_width": 0})

@@ -25,7 +25,7 @@ PARAMETERS = {
 
 @pytest.fixture(scope="module")
 def datasets():
-    return study.simulate(PARAMETERS, workers=1)
+    return study.simulate(study.Parameters(**PARAMETERS), workers=1)
 
 
 def bracket(datasets, name, friction):

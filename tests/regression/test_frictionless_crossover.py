@@ -10,9 +10,7 @@ from granular_response.store import files as store
 
 PARAMETERS = {
     "method": "auto",
-    "layers": 7,
-    "disks_per_row": 21,
-    "normal_stiffness": 3000.0,
+    "scene": {"packing": {"layers": 7, "disks_per_row": 21}},
     "forces": [0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 15.0],
     "tolerance": 0.002,
     "sizes": [[7, 21], [8, 24], [9, 27]],
@@ -37,7 +35,7 @@ TOLERANCE = {"rtol": 1e-8, "atol": 1e-10}
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "frictionless_crossover.nc"
-    store.write(path, study.simulate(PARAMETERS, workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
     return store.read(path)
 
 

@@ -25,7 +25,7 @@ PARAMETERS = {
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "pile_dip.nc"
-    store.write(path, study.simulate(PARAMETERS, workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
     return store.read(path)
 
 
@@ -81,5 +81,5 @@ def test_figures(datasets) -> None:
 
 
 def test_bad_parameter_is_named() -> None:
-    with pytest.raises(ValueError, match=r"dip_height = -1\.0: must be above 0"):
-        study.simulate({**PARAMETERS, "dip_height": -1.0}, workers=1)
+    with pytest.raises(ValueError, match=r"dip_height = -1\.0: must be a number greater than 0"):
+        study.Parameters(**{**PARAMETERS, "dip_height": -1.0})

@@ -1,6 +1,5 @@
 """Figs. 2 and 19 to 21 on slabs of 5 layers, from parameters through a file to figures."""
 
-import copy
 from dataclasses import replace
 
 import numpy as np
@@ -14,11 +13,11 @@ from granular_response.store import files as store
 
 PARAMETERS = {
     "method": "auto",
-    "scene": {"packing.layers": 5, "packing.disks_per_row": 13, "protocol.integrator": "verlet"},
-    "lattice_constant": "touching-largest",
-    "stop_kinetic_energy": 1e-9,
+    "scene": {
+        "packing": {"layers": 5, "disks_per_row": 13, "lattice_constant": "touching-largest"},
+        "protocol": {"integrator": "verlet", "stop_kinetic_energy": 1e-9, "maximum_steps": 200_000},
+    },
     "loading": {"ramp_time": 5.0, "largest_rate": 5.0, "stop_kinetic_energy": 1e-8},
-    "maximum_steps": 200_000,
     "time_step_part": 0.9,
     "longest_time_step": 1e-3,
     "collapse_depth": 2.0,
@@ -48,7 +47,7 @@ PARAMETERS = {
 
 @pytest.fixture(scope="module")
 def simulated():
-    return study.simulate(PARAMETERS, workers=1)
+    return study.simulate(study.Parameters(**PARAMETERS), workers=1)
 
 
 @pytest.fixture(scope="module")
@@ -111,17 +110,17 @@ def test_packings_differ_and_are_the_same_for_every_friction(datasets) -> None:
 
 
 def test_two_workers_give_the_same_bits(simulated) -> None:
-    again = study.simulate(PARAMETERS, workers=2)
+    again = study.simulate(study.Parameters(**PARAMETERS), workers=2)
     assert again.keys() == simulated.keys()
     for name, dataset in simulated.items():
         xr.testing.assert_identical(dataset, again[name])
 
 
 def test_collapse_and_failure_are_reported() -> None:
-    parameters = copy.deepcopy(PARAMETERS)
-    case = {"polydispersities": [0.25], "friction": 0.2, "forces": [5.0, 60.0, 80.0], "realizations": 1}
+    parameters = study.Parameters(**PARAMETERS)
+    case = study.Case(0.25, 0.2, "touching-largest", (5.0, 60.0, 80.0), 1)
     # so shallow that every load collapses the packing, but the one that moves nothing
-    scene = study.ensemble_scene(parameters, study.read_cases({**parameters, "cases": [case]})[0], 0)
+    scene = study.ensemble_scene(parameters, case, 0)
     task = study.Task(
         scene, (0.01, 5.0, 10.0), collapse_depth=1e-3, ramp_time=5.0, largest_rate=5.0, stop_kinetic_energy=1e-8
     )
@@ -157,10 +156,15 @@ def test_figures(datasets) -> None:
     [
         ("collapse_depth", 0.0, "collapse_depth = 0"),
         ("realizations", 0, "realizations = 0"),
-        ("cases", [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0, 1.0]}], "cases.forces = "),
-        ("forces_picture", {"polydispersity": 0.3, "friction": 0.2, "force": 5.0, "realization": 0}, "forces_picture"),
+        ("cases", [{"polydispersities": [0.0], "friction": 0.0, "forces": [2.0, 1.0]}], r"cases\[0\].forces = "),
+        (
+            "forces_picture",
+            {"polydispersity": 0.3, "friction": 0.2, "force": 5.0, "realization": 0},
+            "forces_picture = ",
+        ),
+        ("individual", {**PARAMETERS["individual"], "force": 7.0}, "individual = "),
     ],
 )
 def test_bad_parameter_is_named(key, value, named) -> None:
     with pytest.raises(ValueError, match=f"{named}.*: must be"):
-        study.simulate({**PARAMETERS, key: value}, workers=1)
+        study.Parameters(**{**PARAMETERS, key: value})

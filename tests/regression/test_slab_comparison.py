@@ -16,7 +16,7 @@ def case(friction, floor, layers, gravity="at-once"):
 PARAMETERS = {
     "method": "auto",
     "force": 0.01,
-    "stiffness_ratio": 0.8,
+    "scene": {"contact": {"stiffness_ratio": 0.8}},
     "cases": [case(0.0, "smooth", [4, 8, 16]), case(1.0, "smooth", [4, 7]), case(1.0, "rough", [4, 7])],
 }
 
@@ -24,7 +24,7 @@ PARAMETERS = {
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "slab_comparison.nc"
-    store.write(path, study.simulate(PARAMETERS, workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
     return store.read(path)
 
 
@@ -76,15 +76,15 @@ def test_figure(datasets) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"force": 0.0}, r"force = 0\.0: must be above 0"),
+        ({"force": 0.0}, r"force = 0\.0: must be a number greater than 0"),
         ({"cases": []}, r"cases = \[\]"),
-        ({"cases": [{"friction": 0.2}]}, "is missing"),
+        ({"cases": [{"friction": 0.2}]}, r"cases\[0\]\.floor: missing"),
         ({"cases": [case(0.0, "rough", [4])]}, "floor = 'rough': must be smooth, or rough with friction above 0"),
-        ({"cases": [case(0.2, "smooth", [4], "never")]}, "gravity = 'never': must be one of at-once, slow"),
-        ({"cases": [case(0.2, "smooth", [4.5])]}, r"layers = \[4\.5\]"),
+        ({"cases": [case(0.2, "smooth", [4], "never")]}, "gravity = 'never': must be at-once or slow"),
+        ({"cases": [case(0.2, "smooth", [4.5])]}, r"cases\[0\]\.layers\[0\] = 4\.5"),
         ({"cases": [{**case(0.2, "smooth", [4]), "disks_per_layer": 1}]}, "disks_per_layer = 1"),
     ],
 )
 def test_bad_parameter_is_named(change, message) -> None:
     with pytest.raises(ValueError, match=message):
-        study.simulate({**PARAMETERS, **change}, workers=1)
+        study.Parameters(**{**PARAMETERS, **change})

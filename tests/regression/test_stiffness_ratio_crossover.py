@@ -26,7 +26,7 @@ PARAMETERS = {
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "stiffness_ratio_crossover.nc"
-    store.write(path, study.simulate(PARAMETERS, workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
     return store.read(path)
 
 
@@ -81,4 +81,4 @@ def test_figures(datasets) -> None:
 )
 def test_bad_parameter_is_named(key, value) -> None:
     with pytest.raises(ValueError, match=f"{key} = .*: must be"):
-        study.simulate({**PARAMETERS, key: value}, workers=1)
+        study.Parameters(**{**PARAMETERS, key: value})

@@ -37,7 +37,7 @@ CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "superposition.nc"
-    store.write(path, study.simulate(PARAMETERS, workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
     return store.read(path)
 
 
@@ -140,16 +140,16 @@ def test_figures(datasets) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
-        ("forces", [1.0, 0.5], r"forces = \[1.0, 0.5\]: must be two or more increasing numbers above 0"),
+        ("forces", [1.0, 0.5], r"forces = \[1.0, 0.5\]: must be two or more growing numbers above 0"),
         ("single_forces", [1.0], r"single_forces = \[1.0\]: must be two or more"),
-        ("offsets", [0], r"offsets = \[0\]: must be places from 1 to 9"),
+        ("offsets", [0], r"offsets = \[0\]: must be a list of different whole numbers from 1 on"),
         ("offsets", [10], "must be places from 1 to 9"),
-        ("offsets", [], "must be places"),
-        ("realizations", 0, "realizations = 0: must be at least 1"),
-        ("pair_realizations", 4, "pair_realizations = 4: must be from 1 to 3"),
-        ("tolerance", 0.0, "tolerance = 0.0: must be above 0"),
+        ("offsets", [], "must be a list"),
+        ("realizations", 0, "realizations = 0: must be a whole number, 1 or greater"),
+        ("pair_realizations", 4, "pair_realizations = 4: must be from 1 to realizations = 3"),
+        ("tolerance", 0.0, "tolerance = 0.0: must be a number greater than 0"),
     ],
 )
 def test_bad_parameters_are_named(key, value, message) -> None:
     with pytest.raises(ValueError, match=message):
-        study.simulate({**PARAMETERS, key: value}, workers=1)
+        study.Parameters(**{**PARAMETERS, key: value})

@@ -29,7 +29,7 @@ PARAMETERS = {
 
 @pytest.fixture(scope="module")
 def datasets():
-    return study.simulate(PARAMETERS, workers=1)
+    return study.simulate(study.Parameters(**PARAMETERS), workers=1)
 
 
 def test_symmetry_is_lost_between_symmetric_and_asymmetric_runs(datasets):

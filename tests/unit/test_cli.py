@@ -26,6 +26,7 @@ from granular_response.machine import floating_point
 from granular_response.paper import pipeline
 from granular_response.paper.pipeline import drawing, simulation
 from granular_response.scene import SceneError
+from granular_response.scene.base import Description
 from granular_response.store import files as store
 from granular_response.sweeps.resources import Resources, current
 
@@ -160,8 +161,13 @@ def test_datasets_of_another_group_are_not_drawn(tmp_path):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (("stress_spacing:", "stress_spacng:"), "section pile_dip: key 'stress_spacing' is missing; there are"),
-        (("dip_height: 4.0", "dip_height: high"), "section pile_dip: "),
+        (
+            ("stress_spacing:", "stress_spacng:"),
+            "pile_dip.stress_spacng = 0.25: unknown key, did you mean",
+        ),
+        (("dip_height: 4.0", "dip_height: high"), "pile_dip.dip_height = 'high': must be a number greater than 0"),
+        (("friction: 0.94", "friction: -0.94"), "pile_dip.scene.contact.friction = -0.94: must be a number from 0 to"),
+        (("layers: 11", "kind: slab"), "pile_dip.scene.packing.kind = 'slab': must be pile"),
     ],
 )
 def test_damaged_parameters_are_one_line(tmp_path, change, said):
@@ -249,13 +255,17 @@ def square(item):
 
 
 class Study:
-    """Stands where the module of a figure group would."""
+    """Stands where the modules of a figure group would."""
+
+    class Parameters(Description):
+        count: int
+        method: str
 
     @staticmethod
     def simulate(parameters, *, workers=None, progress=None):
         from granular_response.sweeps.tasks import map_tasks
 
-        squares = map_tasks(square, range(parameters["count"]), workers=workers, progress=progress)
+        squares = map_tasks(square, range(parameters.count), workers=workers, progress=progress)
         return {"squares": xr.Dataset({"square": ("item", np.array(squares), LABEL)})}
 
     @staticmethod
@@ -270,14 +280,15 @@ class Study:
 @pytest.fixture
 def group(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "params.yaml").write_text("common: {count: 2, scale: 1e-3}\nsquares: {count: 4}\n")
-    monkeypatch.setattr(pipeline, "_names", lambda: ["squares"])
-    monkeypatch.setattr(pipeline, "_verb", lambda verb, name: getattr(Study, verb))
+    (tmp_path / "params.yaml").write_text("common: {method: auto}\nsquares: {count: 4}\n")
+    for module in (simulation, drawing):
+        monkeypatch.setattr(module, "group_member", lambda group, module, name: getattr(Study, name))
     return "squares"
 
 
 def test_a_group_has_the_common_parameters_and_its_own(group):
-    assert simulation.parameters(group) == {"count": 4, "scale": 1e-3}
+    given, described = simulation.parameters(group)
+    assert given == {"count": 4, "method": "auto"} and described == Study.Parameters(count=4, method="auto")
     with pytest.raises(pipeline.GroupError, match=r"params.yaml: section cubes is missing"):
         simulation.parameters("cubes")
 

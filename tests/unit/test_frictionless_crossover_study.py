@@ -14,9 +14,7 @@ from granular_response.solve import Problem
 
 PARAMETERS = {
     "method": "auto",
-    "layers": 5,
-    "disks_per_row": 11,
-    "normal_stiffness": 3000.0,
+    "scene": {"packing": {"layers": 5, "disks_per_row": 11}},
     "forces": [0.5, 1],
     "tolerance": 0.01,
     "sizes": [[5, 11], [6, 12]],
@@ -29,9 +27,11 @@ PARAMETERS = {
     "compared_stiffnesses": [1000.0, 1e5],
 }
 
+BASE = study.Parameters(**PARAMETERS).base
+
 
 def test_each_slab_is_one_task_with_all_its_forces() -> None:
-    tasks = study.Parameters(PARAMETERS).tasks()
+    tasks = study.tasks(study.Parameters(**PARAMETERS))
     forces = {task.slab: task.forces for task in tasks}
     assert len(forces) == len(tasks) == 7
     assert forces[Slab(5, 11, 3000.0)] == (0.5, 0.75, 1.0, 2.0)
@@ -47,14 +47,18 @@ def test_each_slab_is_one_task_with_all_its_forces() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"layers": None}, "layers is missing from the parameters of the study 'frictionless_crossover'"),
-        ({"layers": 1}, "layers = 1: must be a whole number from 2"),
-        ({"disks_per_row": 11.0}, "disks_per_row = 11.0: must be a whole number from 7"),
-        ({"normal_stiffness": True}, "normal_stiffness = True: must be a positive number"),
-        ({"tolerance": 0.0}, "tolerance = 0.0: must be a positive number"),
-        ({"forces": [1.0, 0.5]}, "forces = [1.0, 0.5]: must be a list of positive numbers in increasing order"),
-        ({"forces": [0.0, 0.5]}, "forces = [0.0, 0.5]: must be a list of positive numbers in increasing order"),
-        ({"size_forces": "1"}, "size_forces = '1': must be a list of positive numbers in increasing order"),
+        ({"sizes": None}, "sizes: missing, must be given"),
+        ({"scene": {"packing": {"layers": 0}}}, "scene.packing.layers = 0: must be a whole number from 1"),
+        ({"scene": {"packing": {"kind": "pile"}}}, "scene.packing.kind = 'pile': must be slab"),
+        ({"scene": {"contact": {"friction": 0.2}}}, "scene.contact.friction = 0.2: is decided by the group"),
+        ({"scene": {"loads.0.force": [0, -4]}}, "scene.loads.0.force = [0, -4]: is decided by the group"),
+        ({"scene": {"protocol": {"method": "path"}}}, "scene.protocol.method = 'path': is decided by the group"),
+        ({"scene": {"packing.layers": 3, "packing": {"layers": 4}}}, "'layers' is named twice"),
+        ({"tolerance": 0.0}, "tolerance = 0.0: must be a number greater than 0"),
+        ({"forces": [1.0, 0.5]}, "forces = [1.0, 0.5]: must be a list of growing numbers above 0"),
+        ({"forces": [0.0, 0.5]}, "forces = [0.0, 0.5]: must be a list of growing numbers above 0"),
+        ({"size_forces": "1"}, "size_forces = '1': must be a list of growing numbers above 0"),
+        ({"tolerence": 0.1}, "tolerence = 0.1: unknown key, did you mean tolerance?"),
         ({"sizes": [[5, 11], [6]]}, "sizes = [[5, 11], [6]]: must be a list of [layers, disks_per_row], from 2 and 7"),
         ({"widths": []}, "widths = []: must be a list of [layers, disks_per_row], from 2 and 7 on"),
         ({"compared_stiffnesses": [1000.0, 2000.0]}, "compared_stiffnesses = [1000.0, 2000.0]: must be two of"),
@@ -63,12 +67,12 @@ def test_each_slab_is_one_task_with_all_its_forces() -> None:
 def test_a_bad_parameter_is_named(change: dict, message: str) -> None:
     given = {key: value for key, value in {**PARAMETERS, **change}.items() if value is not None}
     with pytest.raises(ValueError, match=re.escape(message)):
-        study.simulate(given)
+        study.Parameters(**given)
 
 
 def test_asymmetry_is_the_lean_alone() -> None:
     """Spreading apart is symmetric, a shift is not; heights do not count."""
-    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene("auto"))
+    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene(BASE))
     packing: Packing = problem.packing
     state = problem.bare_state()
     middle = 0.5 * packing.width
@@ -84,7 +88,7 @@ def test_asymmetry_is_the_lean_alone() -> None:
 
 
 def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
-    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene("auto"))
+    problem = Problem.from_scene(Slab(3, 7, 3000.0).scene(BASE))
     packing = problem.packing
     pushed = packing.position.copy()
     pushed[:, 0] *= 0.999
@@ -103,8 +107,8 @@ def test_new_neighbours_are_touching_pairs_that_were_apart() -> None:
 def test_soft_disks_are_settled_by_dynamics() -> None:
     """Where the lattice does not hold, the rest state comes from the fall; elsewhere from the minimum."""
     soft, stiff = Slab(8, 24, 20.0), Slab(8, 24, 3000.0)
-    packing = Problem.from_scene(soft.scene("auto")).packing
-    fallen, held = study.settle(soft, "auto"), study.settle(stiff, "auto")
+    packing = Problem.from_scene(soft.scene(BASE)).packing
+    fallen, held = study.settle(soft.scene(BASE)), study.settle(stiff.scene(BASE))
     assert fallen.certificate.stable
     assert fallen.certificate.force_residual < 1e-9
     assert study.new_neighbours(packing.position, fallen) > 0
@@ -117,8 +121,8 @@ def test_a_wide_slab_leans_to_one_side() -> None:
     wide, narrow = Slab(15, 241, 3000.0), Slab(15, 61, 3000.0)
     lean = {}
     for slab in (wide, narrow):
-        packing = Problem.from_scene(slab.scene("auto")).packing
-        rest = study.settle(slab, "auto")
+        packing = Problem.from_scene(slab.scene(BASE)).packing
+        rest = study.settle(slab.scene(BASE))
         assert rest.certificate.stable
         lean[slab] = study.rest_asymmetry(packing.position, rest, packing.width)
     assert lean[narrow] < 1e-10

@@ -27,7 +27,7 @@ ALLOWED = {
     "store": {"gsd", "netCDF4", "numpy", "pyevtk", "rich", "xarray"},
     "sweeps": {"distributed", "numpy"},
     "api": {"numpy", "xarray"},
-    "paper": {"PIL", "jinja2", "matplotlib", "numpy", "scipy", "xarray"},
+    "paper": {"PIL", "jinja2", "matplotlib", "numpy", "pydantic", "scipy", "xarray"},
     "cli": {"rich", "typer"},
 }
 

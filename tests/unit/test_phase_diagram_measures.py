@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from granular_response.paper.groups.phase_diagram import draw as figures
+from granular_response.paper.groups.phase_diagram.parameters import Parameters
 from granular_response.paper.groups.phase_diagram.simulate import (
     ABOVE,
     BELOW,
@@ -198,8 +199,9 @@ def stored(tmp_path_factory):
 
 def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     parameters = {"draws": 50, "few": 5, "seed": 0, "least_part": 0.5, "spacing": 0.5, "reach": 30.0}
-    found = simulate({**parameters, "widths": [3.0, 6.0], "responses": stored})
-    again = simulate({**parameters, "widths": [3.0, 6.0], "responses": stored}, workers=2)
+    described = Parameters(**parameters, widths=[3.0, 6.0], responses=str(stored))
+    found = simulate(described)
+    again = simulate(described, workers=2)
     for name, dataset in found.items():
         xr.testing.assert_identical(dataset, again[name])
     data = found["crossovers"]
@@ -224,4 +226,4 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
 def test_bad_parameter_is_named(key, value, named) -> None:
     parameters = {"draws": 10, "few": 5, "seed": 0, "least_part": 0.5, "spacing": 0.5, "reach": 30.0, "widths": [6.0]}
     with pytest.raises(ValueError, match=f"{named}.*: must be"):
-        simulate({**parameters, "responses": "nowhere.nc", key: value})
+        Parameters(**{**parameters, "responses": "nowhere.nc", key: value})

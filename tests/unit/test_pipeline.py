@@ -7,17 +7,26 @@ from pathlib import Path
 import pytest
 import yaml
 
+from granular_response.paper.groups import NAMES
+from granular_response.paper.pipeline import simulation
+from granular_response.scene import SceneError
+
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 
 PIPELINE = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
 PARAMETERS = yaml.safe_load((ROOT / "params.yaml").read_text())
 
+SIMULATION = [
+    "granular_response.paper.pipeline.simulation",
+    *(f"granular_response.paper.groups.{{}}.{module}" for module in ("parameters", "simulate")),
+]
+
 #: Modules at which a stage starts; {} is its figure group.
 STARTS = {
-    "simulate": ["granular_response.paper.pipeline.simulation", "granular_response.paper.groups.{}.simulate"],
-    "derive": ["granular_response.paper.pipeline.simulation", "granular_response.paper.groups.{}.simulate"],
-    "stress": ["granular_response.paper.pipeline.simulation", "granular_response.paper.groups.{}.simulate"],
+    "simulate": SIMULATION,
+    "derive": SIMULATION,
+    "stress": SIMULATION,
     "draw": ["granular_response.paper.pipeline.drawing", "granular_response.paper.groups.{}.draw"],
     "claims": ["granular_response.paper.claims"],
     "report": ["granular_response.paper.report"],
@@ -172,13 +181,57 @@ def test_what_is_derived_comes_after_the_data_that_it_reads():
         assert PARAMETERS[group]["responses"] in PIPELINE["derive"]["do"]["deps"]
 
 
-@pytest.mark.parametrize(("package", "kind"), [("studies", "simulate"), ("figures", "draw")])
-def test_every_group_module_is_in_the_pipeline(package, kind):
-    for path in (SOURCE / "granular_response" / package).glob("*.py"):
-        body = ast.parse(path.read_text()).body
-        if any(isinstance(node, ast.FunctionDef) and node.name == kind for node in body):
-            kinds = SIMULATING if kind == "simulate" else (kind,)
-            assert path.stem in [group for kind in kinds for group in PIPELINE[kind]["foreach"]]
+def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():
+    folders = {path.parent.name for path in SOURCE.glob("granular_response/paper/groups/*/__init__.py")}
+    assert len(NAMES) == len(set(NAMES)) and set(NAMES) == folders == set(PARAMETERS) - {"common"}
+    assert PIPELINE["draw"]["foreach"] == list(NAMES)
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_every_group_describes_its_section(group):
+    given, described = simulation.parameters(group, ROOT / "params.yaml")
+    assert set(PARAMETERS[group]) <= set(given) <= set(type(described).model_fields)
+
+
+def test_an_experiment_changes_exactly_the_value_that_it_names(tmp_path):
+    """What ``dvc exp run -S`` does to the file, and what the group makes of it."""
+    hydra = pytest.importorskip("dvc.utils.hydra")
+    path = tmp_path / "params.yaml"
+    path.write_text((ROOT / "params.yaml").read_text())
+    _, before = simulation.parameters("pile_dip", path)
+    hydra.apply_overrides(path, ["pile_dip.scene.contact.friction=0.5"])
+    _, after = simulation.parameters("pile_dip", path)
+    assert after == before.model_copy(update={"scene": before.scene.updated({"contact.friction": 0.5})}) != before
+    hydra.apply_overrides(path, ["+pile_dip.scene.contact.normal_stiffness=1e4", "common.method=dynamics"])
+    _, last = simulation.parameters("pile_dip", path)
+    assert last.base == after.scene.updated({"contact.normal_stiffness": 1e4, "protocol.method": "dynamics"})
+    hydra.apply_overrides(path, ["+pile_dip.scene.contact.fricton=0.5"])
+    with pytest.raises(
+        SceneError, match=r"pile_dip\.scene\.contact\.fricton = 0\.5: unknown key, did you mean friction"
+    ):
+        simulation.parameters("pile_dip", path)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("method: auto", "method: quick"), "common.method = 'quick': must be auto"),
+        (("method: auto", "metod: auto"), "common.metod = 'auto': unknown key"),
+        (("force: 15.0", "force: true"), "sensitivity.force = true: must be a number greater than 0"),
+        (("packing: {layers: 15", "packing: {kind: pile, layers: 15"), "sensitivity.scene.packing.kind = 'pile': must"),
+        (("friction: [0.2, 1.0]", "friction: 0.2"), "sensitivity.friction = 0.2: must be a list"),
+        (("literal_steps: 200000 ", "5: 3 "), "sensitivity.5 = 3: unknown key"),
+    ],
+)
+def test_a_mistake_is_one_line_with_its_key(tmp_path, change, said):
+    text = (ROOT / "params.yaml").read_text()
+    common, section = (text[text.index(f"{name}:\n") :].split("\n\n")[0] for name in ("common", "sensitivity"))
+    assert change[0] in common + section
+    path = tmp_path / "params.yaml"
+    path.write_text(f"{common}\n\n{section}\n".replace(*change))
+    with pytest.raises(SceneError) as caught:
+        simulation.parameters("sensitivity", path)
+    assert str(caught.value).startswith(f"{path}: {said}") and "\n" not in str(caught.value)
 
 
 def test_dvc_reads_the_pipeline():

@@ -16,14 +16,13 @@ PARAMETERS = {
     "depths": [26.0, 52.0],
     "half_width": 3.0,
     "points": 121,
-    "some_other_key": "left alone",
 }
 
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("theory") / "theory.nc"
-    store.write(path, theory.simulate(PARAMETERS))
+    store.write(path, theory.simulate(theory.Parameters(**PARAMETERS)))
     return store.read(path)
 
 
@@ -77,9 +76,9 @@ def test_figures(datasets) -> None:
 )
 def test_bad_parameter_is_named(key: str, value) -> None:
     with pytest.raises(ValueError, match=f"{key} = .*: must be"):
-        theory.simulate({**PARAMETERS, key: value})
+        theory.Parameters(**{**PARAMETERS, key: value})
 
 
 def test_missing_parameter_is_named() -> None:
-    with pytest.raises(ValueError, match="ray_angle is missing"):
-        theory.simulate({key: value for key, value in PARAMETERS.items() if key != "ray_angle"})
+    with pytest.raises(ValueError, match="ray_angle: missing, must be given"):
+        theory.Parameters(**{key: value for key, value in PARAMETERS.items() if key != "ray_angle"})

@@ -42,7 +42,7 @@ SMALL = {"packing": {"kind": "slab", "layers": 4, "disks_per_row": 7}, "loads": 
 )
 def test_the_predicted_time_step_is_neither_too_long_nor_much_too_short(integrator, changes):
     """What is settled stays so at 0.95 of the limit, and not at twice the limit."""
-    scene = scene_of(SMALL, {"protocol.integrator": integrator, **changes})
+    scene = scene_of(Scene.from_dict(SMALL), {"protocol.integrator": integrator, **changes})
     limit, outcomes = StepTrial(scene, (0.95, 2.0), 4000, SEED).run()
     assert limit > 0
     assert outcomes[0] == SETTLES
@@ -230,7 +230,7 @@ REDUCED = {
 
 
 def test_the_study_and_its_figures():
-    datasets = stability.simulate(REDUCED, workers=1)
+    datasets = stability.simulate(stability.Parameters(**REDUCED), workers=1)
     assert set(datasets) == {f"time_step_{name}" for name in stability.AXES} | {
         "drift", "collisions", "rolling", "rounding", "random_scenes",
     }  # fmt: skip

@@ -73,7 +73,9 @@ def from_validation(error: ValidationError, kinds: Iterable[str]) -> SceneError:
     """
     found = error.errors(include_url=False)
     first = found[0]
-    path = tuple(part for place, part in enumerate(first["loc"]) if place != 1 or part not in tuple(kinds))
+    found_at = first["loc"]
+    tags = tuple(kinds)
+    path = tuple(part for k, part in enumerate(found_at) if not (k and found_at[k - 1] == "packing" and part in tags))
     value = first["input"]
     problem = first.get("ctx", {}).get("error")
     if first["type"] == "missing":
@@ -85,6 +87,7 @@ def from_validation(error: ValidationError, kinds: Iterable[str]) -> SceneError:
         choices = re.findall(r"'([^']*)'", first["ctx"]["expected"])
         message = describe(path, value, f"must be {' or '.join(choices)}{suggestion(value, choices)}")
     else:
-        message = describe(path, value, first["msg"].replace("Input should be", "must be"))
+        said = first["msg"].replace("Input should be", "must be")
+        message = describe(path, value, said.replace("valid tuple", "list").replace("valid dictionary", "mapping"))
     more = len(found) - 1
     return SceneError(message + (f" (and {more} more mistake{'s' * (more > 1)})" if more else ""))

@@ -14,6 +14,10 @@ TimeStep = Annotated[
 ]
 
 
+Method = Literal["auto", "dynamics", "path", "minimise"]
+Integrator = Literal["beeman", "verlet", "gear"]
+
+
 class Preparation(Description):
     """How gravity is brought onto the unloaded packing. A rest state with friction remembers it."""
 
@@ -33,13 +37,13 @@ class Preparation(Description):
 class Protocol(Description):
     """How equilibrium is reached. Sec. III of the paper, with its values as defaults."""
 
-    method: Literal["auto", "dynamics", "path", "minimise"] = Field(
+    method: Method = Field(
         default="auto",
         description="auto: the cheapest method that is valid for the scene; dynamics: equations of motion "
         "until rest, as in the paper; path: a sequence of equilibria under a slowly growing "
         "load; minimise: the nearest minimum of the energy, for scenes without friction.",
     )
-    integrator: Literal["beeman", "verlet", "gear"] = Field(
+    integrator: Integrator = Field(
         default="beeman",
         description="Integrator of the equations of motion: Beeman, velocity Verlet, or the Gear "
         "predictor-corrector with five values.",

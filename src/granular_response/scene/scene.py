@@ -184,6 +184,11 @@ class Scene(Description):
         SceneError
             If a value is named twice, in different spellings, or is not allowed: the copy is validated.
         """
+        folders = [value.folder for value in changes.values() if isinstance(value, FilePacking)]
+        return type(self).from_dict(self.merged(changes), folder=(folders or [self.folder])[0])
+
+    def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """The data of ``updated`` as nested mappings, not validated yet."""
         named: dict[str, Any] = {}
         # Descriptions first, so that paths lead into them.
         for key, value in sorted(changes.items(), key=lambda item: not isinstance(item[1], Description)):
@@ -194,8 +199,7 @@ class Scene(Description):
             for part in reversed(parts):
                 nested = {str(int(part)) if part.isdecimal() else part: nested}
             _name(named, nested, key)
-        folders = [value.folder for value in changes.values() if isinstance(value, FilePacking)]
-        return type(self).from_dict(_merged(self.to_dict(), named, ()), folder=(folders or [self.folder])[0])
+        return _merged(self.to_dict(), named, ())
 
 
 class _Whole(dict[str, Any]):
@@ -211,7 +215,7 @@ def _as_data(value: Any) -> Any:
         whole.named = frozenset(value.model_fields_set)
         return whole
     if isinstance(value, Mapping):
-        return {key: _as_data(part) for key, part in value.items()}
+        return {str(key): _as_data(part) for key, part in value.items()}
     if isinstance(value, (list, tuple)):
         return [_as_data(part) for part in value]
     return value

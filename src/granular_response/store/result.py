@@ -42,6 +42,9 @@ _CONTACT_VARIABLES = {
     "spring": f"elongation of the tangential spring {LENGTH}",
     "status": "contact status",
 }
+#: The system of units of everything stored.
+UNITS = "reduced: mean disk radius, mean disk mass, g"
+
 _FLAGS = {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
 _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 
@@ -263,7 +266,7 @@ def to_labelled(solution: Solution) -> Labelled:
         "method_reason": json.dumps(reasons),
         "stable": _verdict([s.certificate.stable for s in states]),
         "settled": _verdict([s.reached.settled is not False for s in states]),
-        "units": "reduced: mean disk radius, mean disk mass, g",
+        "units": UNITS,
     }
     return Labelled(data, frozenset({"axis", "floor_disk", "x", "component"}), attributes)
 

@@ -1,1 +1,24 @@
-"""One folder for each figure group: ``simulate`` (parameters to datasets) and ``draw`` (datasets to figures)."""
+"""Figure groups, a folder for each; ``NAMES`` is their list.
+
+A folder holds ``parameters.py`` (the class ``Parameters``, the group's section of ``params.yaml``), ``simulate.py``
+(parameters to datasets), ``draw.py`` (datasets to figures) and ``captions.py`` (what the figures show).
+"""
+
+#: In the order in which they are drawn.
+NAMES = (
+    "theory",
+    "slab_comparison",
+    "frictionless_crossover",
+    "friction_linear_range",
+    "symmetry_breaking",
+    "stiffness_ratio_crossover",
+    "friction_fields",
+    "pile_dip",
+    "torque",
+    "polydisperse_averages",
+    "phase_diagram",
+    "sensitivity",
+    "superposition",
+    "numerics",
+    "stability",
+)

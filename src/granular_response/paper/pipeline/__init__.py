@@ -1,19 +1,16 @@
 """Two stages of a figure group: ``simulation`` (parameters to datasets), ``drawing`` (datasets to figures).
 
-A group is a folder of ``paper.groups``, with a module for each stage. The command line and the
-pipeline come here; a stage depends on its module and on what the group imports, not on the command line.
+A group is a folder of ``paper.groups``, with a module for each stage and one for its parameters. The command line and
+the pipeline come here; a stage depends on its module and on what the group imports, not on the command line.
 """
 
 from __future__ import annotations
 
 import importlib
-import importlib.util
-import pkgutil
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-_PACKAGE = "granular_response.paper.groups"
+from granular_response.paper.groups import NAMES
 
 
 class GroupError(Exception):
@@ -30,24 +27,11 @@ def figures_folder(group: str) -> Path:
     return Path("figures") / group
 
 
-def groups(verb: str) -> list[str]:
-    """Names of the groups that can ``"simulate"`` or ``"draw"``."""
-    return [name for name in _names() if _verb(verb, name) is not None]
+def group_member(group: str, module: str, name: str) -> Any:
+    """What the ``module`` of a group calls ``name``: its function ``simulate`` or ``draw``, its class ``Parameters``.
 
-
-def group_function(verb: str, group: str) -> Callable[..., Any]:
-    """The function ``simulate`` or ``draw`` of a group. Raises GroupError if there is no such group."""
-    function = _verb(verb, group) if group in _names() else None
-    if function is None:
-        known = ", ".join(groups(verb)) or "none"
-        raise GroupError(f"{group}: no such figure group to {verb}, must be one of {known}")
-    return function
-
-
-def _names() -> list[str]:
-    return [module.name for module in pkgutil.iter_modules(importlib.import_module(_PACKAGE).__path__)]
-
-
-def _verb(verb: str, name: str) -> Callable[..., Any] | None:
-    module = f"{_PACKAGE}.{name}.{verb}"
-    return getattr(importlib.import_module(module), verb) if importlib.util.find_spec(module) else None
+    Raises GroupError if there is no such group.
+    """
+    if group not in NAMES:
+        raise GroupError(f"{group}: no such figure group, must be one of {', '.join(NAMES)}")
+    return getattr(importlib.import_module(f"granular_response.paper.groups.{group}.{module}"), name)

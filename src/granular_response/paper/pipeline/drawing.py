@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from granular_response.paper.pipeline import GroupError, data_path, figures_folder, group_function
+from granular_response.paper.pipeline import GroupError, data_path, figures_folder, group_member
 from granular_response.store import files as store
 
 
@@ -20,7 +20,7 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
         If its datasets cannot be read.
     """
     os.environ.setdefault("MPLBACKEND", "Agg")
-    function = group_function("draw", group)
+    function = group_member(group, "draw", "draw")
     path = data or data_path(group)
     datasets = store.read(path)
     stored = store.read_attributes(path).get("group")

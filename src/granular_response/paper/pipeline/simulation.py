@@ -6,8 +6,10 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from granular_response.paper.pipeline import GroupError, data_path, group_function
+from granular_response.paper.parameters import Common
+from granular_response.paper.pipeline import GroupError, data_path, group_member
 from granular_response.scene import SceneError, text
+from granular_response.scene.base import Description
 from granular_response.store import files as store
 from granular_response.sweeps.resources import using
 from granular_response.sweeps.tasks import Progress
@@ -18,16 +20,19 @@ PARAMETERS = Path("params.yaml")
 REST_STATES = ".rest_states"
 
 
-def parameters(group: str, path: Path = PARAMETERS) -> dict[str, Any]:
-    """The section ``common`` of a parameter file together with the group's own, which has precedence.
+def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Description]:
+    """The section of a group in a parameter file with what it takes of the section ``common``: as written, validated.
+
+    Its own section has precedence.
 
     Raises
     ------
     GroupError
-        If the file or a section is missing.
+        If there is no such group, or the file or a section is missing.
     granular_response.scene.SceneError
-        If the file is not YAML.
+        If the file is not YAML, or a parameter is missing, unknown or not what it must be: one line with its key.
     """
+    kind: type[Description] = group_member(group, "parameters", "Parameters")
     try:
         sections = text.read(path.read_text(encoding="utf-8"))
     except SceneError as error:
@@ -36,13 +41,27 @@ def parameters(group: str, path: Path = PARAMETERS) -> dict[str, Any]:
         raise GroupError(f"{path}: is not a text file in UTF-8") from None
     except OSError as error:
         raise GroupError(f"{path}: cannot be read: {error.strerror}") from None
-    merged: dict[str, Any] = {}
-    for name in ("common", group):
-        section = sections.get(name) if isinstance(sections, dict) else None
-        if not isinstance(section, dict):
-            raise GroupError(f"{path}: section {name} is missing, must be a mapping ({{}} for no parameters)")
-        merged |= section
-    return merged
+    common, own = (_section(sections, name, path) for name in ("common", group))
+    try:
+        _describe(Common, common, "common")
+        taken = {key: value for key, value in common.items() if key in kind.model_fields}
+        return taken | own, _describe(kind, taken | own, group)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from None
+
+
+def _section(sections: Any, name: str, path: Path) -> dict[str, Any]:
+    section = sections.get(name) if isinstance(sections, dict) else None
+    if not isinstance(section, dict):
+        raise GroupError(f"{path}: section {name} is missing, must be a mapping ({{}} for no parameters)")
+    return section
+
+
+def _describe(kind: type[Description], section: dict[str, Any], name: str) -> Description:
+    try:
+        return kind(**{str(key): value for key, value in section.items()})
+    except SceneError as error:
+        raise SceneError(f"{name}.{error}") from None
 
 
 def simulate(
@@ -59,27 +78,16 @@ def simulate(
     Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
     continues; rest states are kept there for other groups.
     """
-    function = group_function("simulate", group)
-    given = parameters(group, parameter_file)
+    function = group_member(group, "simulate", "simulate")
+    given, described = parameters(group, parameter_file)
     output = output or data_path(group)
     store.check_writable(output, [parameter_file])
     kept = output.parent / f".{output.stem}.checkpoint"
     with using(scheduler=scheduler, checkpoint=kept, rest_states=output.parent.absolute() / REST_STATES):
         try:
-            datasets = function(given, workers=workers, progress=progress)
-        except _PARAMETER_ERRORS as error:
-            raise GroupError(f"{parameter_file}: section {group}: {_said(error, given)}") from error
+            datasets = function(described, workers=workers, progress=progress)
+        except SceneError as error:
+            raise SceneError(f"{parameter_file}: section {group}: {error}") from error
     store.write(output, datasets, {"group": group, "parameters": text.write(given)})
     shutil.rmtree(kept, ignore_errors=True)
     return output
-
-
-#: What studies raise on parameters that are missing or not what they must be.
-_PARAMETER_ERRORS = (KeyError, TypeError, ValueError, ZeroDivisionError)
-
-
-def _said(error: Exception, given: dict[str, Any]) -> str:
-    """One line; a missing key with those that are there, so that a misspelt one shows."""
-    if isinstance(error, KeyError):
-        return f"key {error} is missing; there are {', '.join(map(str, given))} (with those of common)"
-    return " ".join(str(error).split()) or type(error).__name__

@@ -108,6 +108,6 @@ def outcome(problem: Problem, kicked: State, load: float, integrator: str, step:
     return SETTLES if max(energy[PARTS // 2 :]) < FALLEN * start else CYCLES
 
 
-def scene_of(base: dict[str, Any], changes: dict[str, Any]) -> Scene:
+def scene_of(base: Scene, changes: dict[str, Any]) -> Scene:
     """The base scene with changes, solved with a time step that is safe for it."""
-    return Scene.from_dict(base).updated({**changes, "protocol.time_step": "auto"})
+    return base.updated({**changes, "protocol.time_step": "auto"})

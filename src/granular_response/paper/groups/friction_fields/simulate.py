@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,6 +23,8 @@ from granular_response.observe import stress as coarse
 from granular_response.observe.difference import force_misalignment, pair_force_difference
 from granular_response.observe.network import contact_centre
 from granular_response.observe.profile import ROW_SPACING, force_profile, row_depth
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.friction_fields.parameters import Parameters
 from granular_response.paper.slab_response import LoadPath
 from granular_response.scene import Packing, Scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, State
@@ -91,36 +92,11 @@ def load(task: Friction) -> Loaded:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``forces``, ``stress`` and ``profiles``.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` (of ``protocol``); ``scene``, changes to the default scene by paths of keys; ``frictions``, each
-        that of the walls too; ``force``; ``stress_width`` w of the Gaussian; ``stress_spacing`` and
-        ``stress_half_width`` of the grid; ``profiles`` with its own ``frictions`` (among the others), ``force`` and
-        ``rows`` below the loaded disk (half-integers are between rows).
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If a profile is asked for a friction that is not among ``frictions``, or a number is not positive.
-    """
-    frictions = [float(mu) for mu in parameters["frictions"]]
-    profiles = parameters["profiles"]
-    of_profiles = [float(mu) for mu in profiles["frictions"]]
-    if not set(of_profiles) <= set(frictions):
-        raise ValueError(f"profiles.frictions = {of_profiles}: must be among frictions = {frictions}")
-    for key in ("force", "stress_width", "stress_spacing", "stress_half_width"):
-        if not float(parameters[key]) > 0.0:
-            raise ValueError(f"{key} = {parameters[key]}: must be above 0")
-    base = Scene().updated({"loads": [{"disk": "top-centre", "force": [0.0, -1.0]}]})
-    base = base.updated({"protocol.method": parameters["method"], **parameters.get("scene", {})})
-    force, profile_force = float(parameters["force"]), float(profiles["force"])
+    """Datasets ``forces``, ``stress`` and ``profiles``."""
+    base, frictions, force = parameters.base, parameters.frictions, parameters.force
+    of_profiles, profile_force = parameters.profiles.frictions, parameters.profiles.force
     tasks = [
         Friction(
             base.updated({"contact.friction": mu, "wall.friction": mu}),
@@ -146,12 +122,10 @@ def simulate(
     }
     if of_profiles:
         chosen = [results[frictions.index(mu)] for mu in of_profiles]
-        datasets["profiles"] = _profiles_dataset(packing, chosen, profiles["rows"], profile_force).assign_coords(
-            friction=variable(("friction",), np.array(of_profiles), coordinate.attrs["long_name"])
-        )
-    for dataset in datasets.values():
-        dataset.attrs.update(scene=base.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
+        datasets["profiles"] = _profiles_dataset(
+            packing, chosen, parameters.profiles.rows, profile_force
+        ).assign_coords(friction=variable(("friction",), np.array(of_profiles), coordinate.attrs["long_name"]))
+    return labelled(datasets, base)
 
 
 def harmonic_lattice(
@@ -245,7 +219,7 @@ def _forces_dataset(
 
 
 def _stress_dataset(
-    parameters: Mapping[str, Any],
+    parameters: Parameters,
     base: Scene,
     rest: Sequence[State],
     loaded: Sequence[State],
@@ -254,9 +228,9 @@ def _stress_dataset(
     scalars: Mapping[str, Sequence[float]],
 ) -> xr.Dataset:
     packing = base.packing.build()
-    w, spacing = float(parameters["stress_width"]), float(parameters["stress_spacing"])
+    w, spacing = parameters.stress_width, parameters.stress_spacing
     middle = packing.position[disk]
-    half = min(float(parameters["stress_half_width"]), 0.5 * packing.width)
+    half = min(parameters.stress_half_width, 0.5 * packing.width)
     steps = int(half / spacing)
     x = spacing * np.arange(-steps, steps + 1)
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)

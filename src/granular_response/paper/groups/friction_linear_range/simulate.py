@@ -17,6 +17,8 @@ import numpy as np
 import xarray as xr
 
 from granular_response.observe import events
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.friction_linear_range.parameters import LargeForces, Parameters, Tolerance
 from granular_response.paper.slab_response import (
     Event,
     LoadPath,
@@ -58,7 +60,7 @@ class PathTask:
 
     scene: Scene
     forces: tuple[float, ...]
-    tolerance: tuple[tuple[str, float], ...] = ()  #: see ``simulate``; none: no events
+    tolerance: Tolerance | None = None  #: none: no events
     all_events: bool = False
     keep_states: bool = False
 
@@ -71,15 +73,14 @@ class PathTask:
             self.scene.contact.friction,
             self.forces,
             Measured.of(measures, states),
-            tuple(self._events(path, measures)) if self.tolerance else (),
+            tuple(self._events(path, measures, self.tolerance)) if self.tolerance else (),
             crossings,
             path.method,
             path.rest,
             tuple(states) if self.keep_states else (),
         )
 
-    def _events(self, path: LoadPath, measures: Measures) -> list[Event]:
-        tolerance = dict(self.tolerance)
+    def _events(self, path: LoadPath, measures: Measures, tolerance: Tolerance) -> list[Event]:
         smallest = measures.centre(path.known[self.forces[0]])
 
         def nonlinear(state: State) -> bool:
@@ -91,7 +92,7 @@ class PathTask:
                 path,
                 self.forces,
                 lambda state: measures.opened(state) > 0,
-                tolerance["first_opening"],
+                tolerance.first_opening,
                 "a contact of disks in the central third of the slab is open that touches at rest",
             ),
             locate(
@@ -99,13 +100,13 @@ class PathTask:
                 path,
                 self.forces,
                 nonlinear,
-                tolerance["linear_range"],
+                tolerance.linear_range,
                 f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {self.forces[0]:g}",
             ),
         ]
         if not self.all_events:
             return found
-        shape = tolerance["shape"]
+        shape = tolerance.shape
         return [
             *found,
             locate(
@@ -136,9 +137,9 @@ class PathTask:
                 "loss_of_symmetry_path",
                 path,
                 self.forces,
-                lambda state: measures.asymmetry(state) > tolerance["asymmetry"],
+                lambda state: measures.asymmetry(state) > tolerance.asymmetry,
                 shape,
-                f"along the load path, the asymmetry of the floor response exceeds {tolerance['asymmetry']:g}",
+                f"along the load path, the asymmetry of the floor response exceeds {tolerance.asymmetry:g}",
             ),
         ]
 
@@ -184,54 +185,31 @@ def _run(task: Task) -> Any:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets of Figs. 6 to 9, 12 and 16.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` of the protocol; ``scene``, changes to the default scene by paths of keys; ``frictions``
-        and ``forces`` of Fig. 6; ``extra_forces``, a list of further ``forces`` of one ``friction``;
-        ``ends``, a list of the last ``force`` of the path of one ``friction``, if below the last of ``forces``;
-        ``states_of``, the frictions whose states are stored and whose events are all located; ``tolerance``
-        of the events (``first_opening``, ``linear_range``, ``shape``: widths of brackets; ``asymmetry``: what
-        counts as lost symmetry); ``friction_axis`` of Fig. 12
-        (``frictions``, ``force``, ``tolerance``); ``dynamics`` of Fig. 16b (``friction``, ``forces``,
-        ``ramp_time``, ``time_step``; no ``forces``: left out).
-    workers, progress
-        As of ``map_tasks``.
 
     Returns
     -------
     ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
     ``large_forces`` (force) with ``large_force_states``, ``events`` and ``crossings``.
     """
-    base = Scene().updated(
-        {
-            "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
-            "protocol.method": parameters["method"],
-            **parameters.get("scene", {}),
-        }
-    )
-    frictions = [float(mu) for mu in parameters["frictions"]]
-    axis = parameters["friction_axis"]
-    axis_frictions = sorted(float(mu) for mu in axis["frictions"])
-    axis_force = float(axis["force"])
-    tasks = _path_tasks(parameters, base, frictions, axis_frictions, axis_force)
+    base, frictions, axis = parameters.base, parameters.frictions, parameters.friction_axis
+    axis_frictions, axis_force = sorted(axis.frictions), axis.force
+    tasks = _path_tasks(parameters, base, axis_frictions)
     results: list[PathResult] = map_tasks(_run, tasks, workers=workers, progress=progress, what="load paths")
     paths = {result.friction: result for result in results}
 
     on_axis = {mu: _at_force(paths[mu], axis_force) for mu in axis_frictions}
     double = [bool(measured.scalars["double_peaked"][0]) for measured in on_axis.values()]
     low, high = first_change(axis_frictions, [not two for two in double])
-    refine = [FrictionTask(base, axis_force, low, high, float(axis["tolerance"]))]
+    refine = [FrictionTask(base, axis_force, low, high, axis.tolerance)]
     if not (double[0] and np.isfinite(high)):
         refine = []
-    dynamics = _dynamics_tasks(parameters["dynamics"], base, paths)
+    dynamics = _dynamics_tasks(parameters.dynamics, base, paths)
     later: list[Task] = [*refine, *dynamics]
     done = map_tasks(_run, later, workers=workers, progress=progress, what="large forces")
-    crossover = done[0] if refine else _friction_crossover(axis_force, low, high, float(axis["tolerance"]), 0)
+    crossover = done[0] if refine else _friction_crossover(axis_force, low, high, axis.tolerance, 0)
     shaken: list[tuple[State, Measured]] = done[len(refine) :]
 
     main = [paths[mu] for mu in frictions]
@@ -248,53 +226,44 @@ def simulate(
         if result.states:
             datasets[f"states_mu_{result.friction:g}"] = _picture(base, [result.rest, *result.states])
     if dynamics:
-        mu = float(parameters["dynamics"]["friction"])
+        mu = parameters.dynamics.friction
         large = _large_forces_dataset(mu, dynamics, [measured for _, measured in shaken])
         datasets["large_forces"] = large
         datasets["large_force_states"] = _picture(base, [paths[mu].rest, *(state for state, _ in shaken)])
-        found.append(_loss_of_symmetry(mu, large, float(parameters["tolerance"]["asymmetry"])))
+        found.append(_loss_of_symmetry(mu, large, parameters.tolerance.asymmetry))
     datasets["events"] = events_dataset(found)
-    for dataset in datasets.values():
-        dataset.attrs.update(scene=base.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
+    return labelled(datasets, base)
 
 
-def _path_tasks(
-    parameters: Mapping[str, Any],
-    base: Scene,
-    frictions: Sequence[float],
-    axis_frictions: Sequence[float],
-    axis_force: float,
-) -> list[Task]:
-    keep = {float(mu) for mu in parameters["states_of"]}
-    tolerance = tuple((str(name), float(value)) for name, value in parameters["tolerance"].items())
-    further = {float(extra["friction"]): extra["forces"] for extra in parameters.get("extra_forces", [])}
-    largest = {float(end["friction"]): float(end["force"]) for end in parameters.get("ends", [])}
+def _path_tasks(parameters: Parameters, base: Scene, axis_frictions: Sequence[float]) -> list[Task]:
+    frictions, axis_force = parameters.frictions, parameters.friction_axis.force
+    further = {extra.friction: extra.forces for extra in parameters.extra_forces}
+    largest = {end.friction: end.force for end in parameters.ends}
 
     def task(mu: float) -> PathTask:
         scene = base.updated({"contact.friction": mu})
         if mu not in frictions:
             return PathTask(scene, (axis_force,))
-        forces = {axis_force, *map(float, parameters["forces"]), *map(float, further.get(mu, []))}
+        forces = {axis_force, *parameters.forces, *further.get(mu, ())}
         reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
-        return PathTask(scene, reached, tolerance, mu in keep, mu in keep)
+        keep = mu in parameters.states_of
+        return PathTask(scene, reached, parameters.tolerance, keep, keep)
 
     return [task(mu) for mu in [*frictions, *(mu for mu in axis_frictions if mu not in frictions)]]
 
 
-def _dynamics_tasks(given: Mapping[str, Any], base: Scene, paths: Mapping[float, PathResult]) -> list[DynamicsTask]:
-    if not given["forces"]:
+def _dynamics_tasks(given: LargeForces, base: Scene, paths: Mapping[float, PathResult]) -> list[DynamicsTask]:
+    if not given.forces:
         return []
-    mu = float(given["friction"])
     scene = base.updated(
         {
-            "contact.friction": mu,
+            "contact.friction": given.friction,
             "protocol.method": "dynamics",
-            "protocol.ramp_time": given["ramp_time"],
-            "protocol.time_step": given["time_step"],
+            "protocol.ramp_time": given.ramp_time,
+            "protocol.time_step": given.time_step,
         }
     )
-    return [DynamicsTask(scene, paths[mu].rest, force) for force in sorted(map(float, given["forces"]))]
+    return [DynamicsTask(scene, paths[given.friction].rest, force) for force in sorted(given.forces)]
 
 
 def _at_force(result: PathResult, force: float) -> Measured:

@@ -15,7 +15,7 @@ their rows (``new_neighbours``); the rest state then depends on the fall and is 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.observe import network
+from granular_response.paper.groups.frictionless_crossover.parameters import Parameters
 from granular_response.paper.slab_response import (
     SCALARS,
     Event,
@@ -33,7 +34,7 @@ from granular_response.paper.slab_response import (
     locate,
     states_picture,
 )
-from granular_response.scene import Scene
+from granular_response.scene import Scene, SlabPacking
 from granular_response.solve import Problem
 from granular_response.solve.equilibrium import Rearranged
 from granular_response.state import State
@@ -65,15 +66,12 @@ class Slab:
     disks_per_row: int
     normal_stiffness: float
 
-    def scene(self, method: str) -> Scene:
-        """With walls twice as stiff as the disks and a unit force."""
-        return Scene.from_dict(
+    def scene(self, base: Scene) -> Scene:
+        """``base`` with this slab."""
+        return base.updated(
             {
-                "packing": {"kind": "slab", "layers": self.layers, "disks_per_row": self.disks_per_row},
-                "contact": {"normal_stiffness": self.normal_stiffness, "friction": 0.0},
-                "wall": {"normal_stiffness": 2.0 * self.normal_stiffness, "friction": 0.0},
-                "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
-                "protocol": {"method": method},
+                "packing": {"layers": self.layers, "disks_per_row": self.disks_per_row},
+                "contact.normal_stiffness": self.normal_stiffness,
             }
         )
 
@@ -83,8 +81,8 @@ class Task:
     """A slab with everything asked of it."""
 
     slab: Slab
+    scene: Scene
     forces: tuple[float, ...]
-    method: str
     tolerance: float  #: width of the brackets of events, per force at which they happen
     keep_states: bool
 
@@ -107,8 +105,7 @@ class Outcome:
 
 def solve(task: Task) -> Outcome:
     """Settle a slab, load it step by step, measure it and locate its events."""
-    scene = task.slab.scene(task.method)
-    path = LoadPath.of(scene, settle(task.slab, task.method))
+    path = LoadPath.of(task.scene, settle(task.scene))
     states = path.through(task.forces)
     measures = Measures(path)
     happened: dict[str, Callable[[State], bool]] = {
@@ -137,12 +134,12 @@ def solve(task: Task) -> Outcome:
     )
 
 
-def settle(slab: Slab, method: str) -> State:
+def settle(scene: Scene) -> State:
     """The rest state: by dynamics, as the paper has it, where the lattice does not hold."""
     try:
-        return rest_state(Problem.from_scene(slab.scene(method)))
+        return rest_state(Problem.from_scene(scene))
     except Rearranged:
-        return rest_state(Problem.from_scene(slab.scene("dynamics")))
+        return rest_state(Problem.from_scene(scene.updated({"protocol.method": "dynamics"})))
 
 
 def _width(task: Task, states: Sequence[State], happened: Callable[[State], bool]) -> float:
@@ -170,44 +167,60 @@ def new_neighbours(position: FloatArray, rest: State) -> int:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``widths`` and ``stiffness``.
 
-    Parameters
-    ----------
-    parameters
-        ``method`` (as ``protocol.method`` of a scene); ``layers``, ``disks_per_row``, ``normal_stiffness``
-        and increasing ``forces`` of the slab whose states are kept; ``sizes`` and ``widths``, lists of
-        [layers, disks_per_row], each with all of ``size_stiffnesses`` and ``size_forces``; ``stiffnesses`` of
-        the first slab, with ``stiffness_forces``; ``compared_stiffnesses``, the two of them that
-        ``response_change`` compares (Sec. IV.C); ``tolerance`` and ``size_tolerance``, widths of the brackets
-        of events per force at which they happen, of the first slab and of the others.
-    workers, progress
-        Of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is missing or out of range.
     SweepError
         If a slab cannot be solved.
     """
-    values = Parameters(parameters)
-    solved = map_tasks(solve, values.tasks(), workers=workers, progress=progress, what="slabs")
+    main, sizes, widths, stiff = slabs(parameters)
+    solved = map_tasks(solve, tasks(parameters), workers=workers, progress=progress, what="slabs")
     outcomes = {outcome.slab: outcome for outcome in solved}
-    main = outcomes[values.main]
+    first = outcomes[main]
     return {
-        "response": response(main, values.forces),
-        "rest": states_picture([main.rest], main.problem),
-        "states": pictures(main, values.forces),
-        "events": events_dataset(list(main.events.values())),
-        "sizes": table("slab", [outcomes[slab] for slab in values.size_slabs], values.size_forces),
-        "widths": table("slab", [outcomes[slab] for slab in values.width_slabs], values.size_forces),
+        "response": response(first, parameters.forces),
+        "rest": states_picture([first.rest], first.problem),
+        "states": pictures(first, parameters.forces),
+        "events": events_dataset(list(first.events.values())),
+        "sizes": table("slab", [outcomes[slab] for slab in sizes], parameters.size_forces),
+        "widths": table("slab", [outcomes[slab] for slab in widths], parameters.size_forces),
         "stiffness": stiffness_table(
-            [outcomes[slab] for slab in values.stiffness_slabs], values.stiffness_forces, values.compared
+            [outcomes[slab] for slab in stiff], parameters.stiffness_forces, parameters.compared_stiffnesses
         ),
     }
+
+
+def slabs(parameters: Parameters) -> tuple[Slab, list[Slab], list[Slab], list[Slab]]:
+    """The slab whose states are kept, those of several depths, of several widths, and of several stiffnesses."""
+    scene = parameters.scene
+    assert isinstance(scene.packing, SlabPacking)
+    main = Slab(scene.packing.layers, scene.packing.disks_per_row, scene.contact.normal_stiffness)
+    sizes, widths = (
+        [Slab(layers, across, stiffness) for stiffness in parameters.size_stiffnesses for layers, across in shapes]
+        for shapes in (parameters.sizes, parameters.widths)
+    )
+    return main, sizes, widths, [replace(main, normal_stiffness=stiffness) for stiffness in parameters.stiffnesses]
+
+
+def tasks(parameters: Parameters) -> list[Task]:
+    """One task for each different slab, the longest first."""
+    main, sizes, widths, stiff = slabs(parameters)
+    asked: dict[Slab, set[float]] = {main: set(parameters.forces)}
+    for slab in [*sizes, *widths]:
+        asked.setdefault(slab, set()).update(parameters.size_forces)
+    for slab in stiff:
+        asked.setdefault(slab, set()).update(parameters.stiffness_forces)
+    return [
+        Task(
+            slab=slab,
+            scene=slab.scene(parameters.base),
+            forces=tuple(sorted(asked[slab])),
+            tolerance=parameters.tolerance if slab == main else parameters.size_tolerance,
+            keep_states=slab == main,
+        )
+        for slab in sorted(asked, key=lambda s: (-s.layers * s.disks_per_row, s.normal_stiffness))
+    ]
 
 
 def pictures(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
@@ -323,90 +336,3 @@ def _scalar(name: str) -> Callable[[Measured], NDArray]:
 
 def _certified(name: str) -> Callable[[Measured], NDArray]:
     return lambda part: part.certificates[name].values
-
-
-class Parameters:
-    """The keys this study reads, checked, and the tasks that they ask for."""
-
-    def __init__(self, given: Mapping[str, Any]) -> None:
-        self.given = given
-        self.method = str(self._value("method"))
-        self.main = Slab(self._whole("layers", 2), self._whole("disks_per_row", 7), self._positive("normal_stiffness"))
-        self.forces = self._increasing("forces")
-        self.size_forces = self._increasing("size_forces")
-        self.stiffness_forces = self._increasing("stiffness_forces")
-        self.stiffnesses = self._increasing("stiffnesses")
-        self.compared = self._increasing("compared_stiffnesses")
-        if len(self.compared) != 2 or not set(self.compared) <= set(self.stiffnesses):
-            raise ValueError(f"compared_stiffnesses = {list(self.compared)}: must be two of stiffnesses")
-        self.tolerance = self._positive("tolerance")
-        self.size_tolerance = self._positive("size_tolerance")
-        self.size_stiffnesses = self._increasing("size_stiffnesses")
-        self.size_slabs = self._slabs("sizes")
-        self.width_slabs = self._slabs("widths")
-        self.stiffness_slabs = [
-            Slab(self.main.layers, self.main.disks_per_row, stiffness) for stiffness in self.stiffnesses
-        ]
-
-    def tasks(self) -> list[Task]:
-        """One task for each different slab, the longest first."""
-        asked: dict[Slab, set[float]] = {self.main: set(self.forces)}
-        for slabs, forces in (
-            (self.size_slabs, self.size_forces),
-            (self.width_slabs, self.size_forces),
-            (self.stiffness_slabs, self.stiffness_forces),
-        ):
-            for slab in slabs:
-                asked.setdefault(slab, set()).update(forces)
-        by_cost = sorted(asked, key=lambda s: (-s.layers * s.disks_per_row, s.normal_stiffness))
-        return [
-            Task(
-                slab=slab,
-                forces=tuple(sorted(asked[slab])),
-                method=self.method,
-                tolerance=self.tolerance if slab == self.main else self.size_tolerance,
-                keep_states=slab == self.main,
-            )
-            for slab in by_cost
-        ]
-
-    def _value(self, key: str) -> Any:
-        if key not in self.given:
-            raise ValueError(f"{key} is missing from the parameters of the study 'frictionless_crossover'")
-        return self.given[key]
-
-    def _positive(self, key: str) -> float:
-        value = self._value(key)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < np.inf:
-            raise ValueError(f"{key} = {value!r}: must be a positive number")
-        return float(value)
-
-    def _whole(self, key: str, least: int) -> int:
-        value = self._value(key)
-        if isinstance(value, bool) or not isinstance(value, int) or value < least:
-            raise ValueError(f"{key} = {value!r}: must be a whole number from {least}")
-        return value
-
-    def _increasing(self, key: str) -> tuple[float, ...]:
-        value = self._value(key)
-        try:
-            numbers = np.asarray(value, dtype=float)
-        except (TypeError, ValueError):
-            numbers = np.empty(0)
-        if numbers.ndim != 1 or not numbers.size or not (numbers[0] > 0.0 and np.all(np.diff(numbers) > 0.0)):
-            raise ValueError(f"{key} = {value!r}: must be a list of positive numbers in increasing order")
-        return tuple(float(number) for number in numbers)
-
-    def _slabs(self, key: str) -> list[Slab]:
-        value = self._value(key)
-        pairs = value if isinstance(value, list | tuple) else []
-        if not pairs or not all(
-            isinstance(pair, list | tuple)
-            and len(pair) == 2
-            and all(isinstance(n, int) and not isinstance(n, bool) for n in pair)
-            and pair[0] >= 2
-            and pair[1] >= 7
-            for pair in pairs
-        ):
-            raise ValueError(f"{key} = {value!r}: must be a list of [layers, disks_per_row], from 2 and 7 on")
-        return [Slab(layers, across, stiffness) for stiffness in self.size_stiffnesses for layers, across in pairs]

@@ -8,7 +8,7 @@ the static finish unless that is what is measured.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,6 +17,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.observe.floor import floor_force
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.numerics.parameters import Parameters
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
 from granular_response.solve.timestep import resolve_time_step
@@ -139,41 +141,14 @@ def rest_and_loaded(scene: Scene) -> tuple[State, State, NDArray[np.intp]]:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``stop_energy``, ``restart``, ``at_rest``, ``time_step``, ``integrators`` and ``damping``.
-
-    Parameters
-    ----------
-    parameters
-        ``scene``, changes to the default scene by paths of keys; ``force``; ``frictions`` of ``stop_energy`` with its
-        ``stop_energies``; ``restart`` (``forces``, 0 for gravity alone, and ``steps``); ``friction`` of the other
-        datasets; ``time_steps``, the first one the paper's; ``integrators`` with their common
-        ``integrator_time_step``; ``damping`` (``ratios``, ``time_step``, ``stop_kinetic_energy``).
-        ``method`` is not read: this is about the dynamics.
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If fewer than two time steps or integrators are given.
-    """
-    for key in ("time_steps", "integrators"):
-        if len(parameters[key]) < 2:
-            raise ValueError(f"{key} = {parameters[key]}: must be at least two, to compare")
-    force = float(parameters["force"])
-    base = Scene().updated(parameters.get("scene", {}))
+    """Datasets ``stop_energy``, ``restart``, ``at_rest``, ``time_step``, ``integrators`` and ``damping``."""
+    base, force, friction = parameters.scene, parameters.force, parameters.friction
     loaded = base.updated({"loads": [{"disk": "top-centre", "force": [0.0, -force]}]})
-    frictions = [float(mu) for mu in parameters["frictions"]]
-    energies = [float(energy) for energy in parameters["stop_energies"]]
-    friction = float(parameters["friction"])
     with_friction = loaded.updated({"contact.friction": friction})
-    restart, damping = parameters["restart"], parameters["damping"]
-    restart_forces = [float(f) for f in restart["forces"]]
-    steps = [float(step) for step in parameters["time_steps"]]
-    integrators = [str(name) for name in parameters["integrators"]]
-    ratios = [float(ratio) for ratio in damping["ratios"]]
+    frictions, energies, ratios = parameters.frictions, parameters.stop_energies, parameters.damping.ratios
+    restart, steps, integrators = parameters.restart, parameters.time_steps, parameters.integrators
 
     frictionless = base.updated({"contact.friction": 0.0, "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}]})
     tasks: dict[str, list[Task]] = {
@@ -184,20 +159,20 @@ def simulate(
                         "contact.friction": friction,
                         "contact.damping_ratio": ratio,
                         "protocol.integrator": "verlet",
-                        "protocol.stop_kinetic_energy": damping["stop_kinetic_energy"],
+                        "protocol.stop_kinetic_energy": parameters.damping.stop_kinetic_energy,
                     }
                 ),
-                float(damping["time_step"]),
+                parameters.damping.time_step,
             )
             for ratio in ratios
         ],
-        "stop_energy": [StopTask(loaded.updated({"contact.friction": mu}), tuple(energies)) for mu in frictions],
-        "restart": [RestartTask(frictionless, f, int(restart["steps"])) for f in restart_forces],
+        "stop_energy": [StopTask(loaded.updated({"contact.friction": mu}), energies) for mu in frictions],
+        "restart": [RestartTask(frictionless, f, restart.steps) for f in restart.forces],
         "time_step": [ResponseTask(with_friction.updated({"protocol.time_step": step})) for step in steps],
         "integrators": [
             ResponseTask(
                 with_friction.updated(
-                    {"protocol.integrator": name, "protocol.time_step": parameters["integrator_time_step"]}
+                    {"protocol.integrator": name, "protocol.time_step": parameters.integrator_time_step}
                 )
             )
             for name in integrators
@@ -213,7 +188,7 @@ def simulate(
     x = packing.position[disks, 0] - 0.5 * packing.width
     datasets = {
         "stop_energy": _stop_energy(frictions, energies, [one for several in found["stop_energy"] for one in several]),
-        "restart": _restart(restart_forces, found["restart"]),
+        "restart": _restart(restart.forces, found["restart"]),
         "time_step": _responses("time_step", np.array(steps), "time step in sqrt(radius/g)", x, found["time_step"]),
         "integrators": _responses("integrator", np.array(integrators), "integrator", x, found["integrators"]),
         "damping": _damping(ratios, found["damping"]),
@@ -221,11 +196,10 @@ def simulate(
     datasets["at_rest"] = datasets["time_step"].drop_vars(["floor_response", "difference"]).isel(time_step=0)
     for dataset in datasets.values():
         dataset["force"] = variable((), force, f"applied force {FORCE}")
-        dataset.attrs.update(scene=with_friction.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
+    return labelled(datasets, with_friction)
 
 
-def _stop_energy(frictions: list[float], energies: list[float], found: list[dict[str, float]]) -> xr.Dataset:
+def _stop_energy(frictions: Sequence[float], energies: Sequence[float], found: list[dict[str, float]]) -> xr.Dataset:
     shape = (len(frictions), len(energies))
     texts = {
         "rest_error": "largest error of a floor force at rest, per largest floor force",
@@ -247,7 +221,7 @@ def _stop_energy(frictions: list[float], energies: list[float], found: list[dict
     )
 
 
-def _restart(forces: list[float], found: list[FloatArray]) -> xr.Dataset:
+def _restart(forces: Sequence[float], found: list[FloatArray]) -> xr.Dataset:
     return xr.Dataset(
         {
             "kinetic_energy": variable(
@@ -292,7 +266,7 @@ def _responses(
     )
 
 
-def _damping(ratios: list[float], found: list[tuple[float, float]]) -> xr.Dataset:
+def _damping(ratios: Sequence[float], found: list[tuple[float, float]]) -> xr.Dataset:
     values = np.array(found)
     return xr.Dataset(
         {

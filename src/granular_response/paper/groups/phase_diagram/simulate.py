@@ -23,10 +23,9 @@ found; draws without one count as beyond the bound.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -34,6 +33,7 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from granular_response.observe.floor import smoothed_response
+from granular_response.paper.groups.phase_diagram.parameters import Parameters
 from granular_response.store import files as store
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import Progress
@@ -169,18 +169,9 @@ def cross(ensemble: Ensemble, x: FloatArray, width: float, *, few: int, draws: i
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets ``crossovers``, one entry for each case, and ``shapes``, the shape against the force.
-
-    Parameters
-    ----------
-    parameters
-        ``responses``, the file with the datasets of ``polydisperse_averages``; ``widths`` of the smoothing
-        Gaussian; ``reach`` and ``spacing`` of the x axis; ``draws`` of the bootstrap and its ``seed``; ``few``, the
-        size of the small averages of D5; ``least_part`` of the realizations that must be at rest.
-    workers
-        Not used: it takes seconds.
 
     Raises
     ------
@@ -189,19 +180,14 @@ def simulate(
     ValueError
         If a parameter is out of range.
     """
-    draws, few, seed = int(parameters["draws"]), int(parameters["few"]), int(parameters["seed"])
-    part, spacing = float(parameters["least_part"]), float(parameters["spacing"])
-    if draws < 1 or few < 1:
-        raise ValueError(f"draws = {draws}, few = {few}: must be at least 1")
-    if not 0.0 < part <= 1.0:
-        raise ValueError(f"least_part = {part:g}: must be above 0, at most 1")
-    x = np.arange(round(float(parameters["reach"]) / spacing) + 1, dtype=float) * spacing
-    widths = [float(w) for w in parameters["widths"]]
-    source = store.read(Path(parameters["responses"]))["ensembles"]
+    draws, few, seed = parameters.draws, parameters.few, parameters.seed
+    spacing, widths = parameters.spacing, parameters.widths
+    x = np.arange(round(parameters.reach / spacing) + 1, dtype=float) * spacing
+    source = store.read(Path(parameters.responses))["ensembles"]
     cases = source.sizes["case"]
     table: list[list[Crossing]] = []
     for done, width in enumerate(widths, 1):
-        ensembles = (read_ensemble(source, case, x, width, part) for case in range(cases))
+        ensembles = (read_ensemble(source, case, x, width, parameters.least_part) for case in range(cases))
         table.append([cross(one, x, width, few=few, draws=draws, seed=seed) for one in ensembles])
         if progress is not None:
             progress(done, len(widths), "crossovers")

@@ -9,9 +9,8 @@ preparation, the case ``frictional``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,6 +21,8 @@ from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.observe.network import contact_centre, mirror_disks
 from granular_response.observe.peaks import central_dip
 from granular_response.observe.teardrop import open_region
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.pile_dip.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, minimise
 from granular_response.state import State
@@ -70,44 +71,17 @@ def mirrored(state: State, packing: Packing) -> State:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``piles`` (states and numbers of the three cases) and ``stress``.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` (of ``protocol``); ``scene``, changes to a scene with a pile by paths of keys, which describe
-        the frictional case; ``stress_width`` w of the Gaussian and ``stress_spacing`` of the grid;
-        ``dip_height`` at which the stress under the apex is compared with that beside it.
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If a number is not positive.
-    """
-    for key in ("stress_width", "stress_spacing", "dip_height"):
-        if not float(parameters[key]) > 0.0:
-            raise ValueError(f"{key} = {parameters[key]}: must be above 0")
-    scene = Scene().updated({"packing": {"kind": "pile"}, "loads": [], "protocol.method": parameters["method"]})
-    frictional = scene.updated(parameters.get("scene", {}))
+    """Datasets ``piles`` (states and numbers of the three cases) and ``stress``."""
+    frictional = parameters.base
     without = frictional.updated({"contact.friction": 0.0, "wall.friction": 0.0})
     found = map_tasks(settle, [Pile(without), Pile(frictional)], workers=workers, progress=progress, what="piles")
     packing = frictional.packing.build()
     states = common_candidates([state for states in found for state in states], packing.radius)
-    stress = _stress_dataset(
-        packing,
-        states,
-        float(parameters["stress_width"]),
-        float(parameters["stress_spacing"]),
-        float(parameters["dip_height"]),
-    )
+    stress = _stress_dataset(packing, states, parameters.stress_width, parameters.stress_spacing, parameters.dip_height)
     datasets = {"piles": _piles_dataset(packing, states), "stress": stress}
-    for dataset in datasets.values():
-        dataset.attrs.update(scene=frictional.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
+    return labelled(datasets, frictional)
 
 
 def _case() -> xr.Variable:
@@ -215,9 +189,7 @@ def _stress_dataset(packing: Packing, states: Sequence[State], w: float, spacing
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
 
     def fields(points: FloatArray) -> FloatArray:
-        return np.stack(
-            [coarse.coarse_grained_stress(coarse.contact_forces(s), points, w) for s in states]
-        )
+        return np.stack([coarse.coarse_grained_stress(coarse.contact_forces(s), points, w) for s in states])
 
     grid = fields(coarse.grid_points(x + half, z))
     line = fields(coarse.grid_points(x + half, np.array([height])))[:, 0, :, 1, 1]

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -23,7 +22,9 @@ from numpy.typing import NDArray
 
 from granular_response.observe import network
 from granular_response.observe.floor import floor_disks, floor_force, smoothed_response
-from granular_response.scene import Scene
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.polydisperse_averages.parameters import Case, Individual, Parameters
+from granular_response.scene import Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Problem, loaded_states
 from granular_response.solve.stages import Collapsed, climb
 from granular_response.solve.timestep import stability_limit
@@ -67,17 +68,6 @@ LOADED = {
     "negative_modes": "unstable directions of the tangent stiffness under load",
     "static_until": f"force up to which the stage that ends here was solved by statics, dynamics after it {FORCE}",
 }
-
-
-@dataclass(frozen=True)
-class Case:
-    """One column of an ensemble."""
-
-    polydispersity: float
-    friction: float
-    lattice_constant: float | str
-    forces: tuple[float, ...]
-    realizations: int
 
 
 @dataclass(frozen=True)
@@ -232,136 +222,65 @@ def _packing_numbers(problem: Problem, rest: State) -> dict[str, float]:
 
 
 def ensemble_scene(
-    parameters: Mapping[str, Any], case: Case, realization: int, *, wall_friction: float | None = None
+    parameters: Parameters, case: Case, realization: int, *, wall_friction: float | None = None
 ) -> Scene:
     """The scene of one realization of a case.
 
     The time step is ``time_step_part`` of the stability limit of its lightest disk, at most
     ``longest_time_step``: without friction the limit is far beyond what the collisions of the fall need.
     """
-    scene = Scene().updated(
+    scene = parameters.base.updated(
         {
-            **parameters.get("scene", {}),
             "packing.polydispersity": case.polydispersity,
             "packing.lattice_constant": case.lattice_constant,
             "packing.realization": realization,
             "contact.friction": case.friction,
             "wall.friction": case.friction if wall_friction is None else wall_friction,
-            "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
-            "protocol.method": parameters["method"],
-            "protocol.stop_kinetic_energy": float(parameters["stop_kinetic_energy"]),
-            "protocol.maximum_steps": int(parameters["maximum_steps"]),
         }
     )
     limit = stability_limit(Problem.from_scene(scene), smallest=True)
-    step = min(float(parameters["time_step_part"]) * limit, float(parameters["longest_time_step"]))
+    step = min(parameters.time_step_part * limit, parameters.longest_time_step)
     return scene.updated({"protocol.time_step": step})
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``ensembles``, ``averages``, ``individual``, ``packings``, ``linear_range`` and ``forces``.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` (of ``protocol``); ``scene``, changes to the default scene by paths of keys;
-        ``stop_kinetic_energy`` of the fall, ``maximum_steps``, ``time_step_part``, ``longest_time_step``;
-        ``loading``: ``{ramp_time, largest_rate, stop_kinetic_energy}``, the time of a stage of the load, which is
-        longer where the load would else grow faster than ``largest_rate``, and the kinetic energy at which dynamics
-        hands over to statics; ``collapse_depth``; ``realizations`` of a disordered case; ``cases``, a list of
-        ``{polydispersities, friction, forces, lattice_constant, realizations}``, the last two optional, the default
-        lattice constant being ``lattice_constant``; ``widths`` of the smoothing Gaussian, and ``reach`` and
-        ``spacing`` of the x axis of averages; ``few``, the size of the small average; ``individual``:
-        ``{polydispersity, frictions, force, realizations, width}`` of Fig. 19; ``linear_range``:
-        ``{polydispersities, frictions, forces, ramp_time, width, tolerance}`` of Fig. 20; ``forces_picture``:
-        ``{polydispersity, friction, force, realization}`` of Fig. 2.
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is out of range.
-    """
-    cases = read_cases(parameters)
-    picture = parameters["forces_picture"]
-    depth = float(parameters["collapse_depth"])
-    if not depth > 0.0:
-        raise ValueError(f"collapse_depth = {depth:g}: must be above 0")
-
-    loading = parameters["loading"]
-    usual = (depth, float(loading["ramp_time"]), float(loading["largest_rate"]), float(loading["stop_kinetic_energy"]))
-    if min(usual) <= 0.0:
-        raise ValueError(f"loading = {dict(loading)}: must be numbers above 0")
+    """Datasets ``ensembles``, ``averages``, ``individual``, ``packings``, ``linear_range`` and ``forces``."""
+    cases, picture, linear = parameters.columns, parameters.forces_picture, parameters.linear_range
+    loading = parameters.loading
+    usual = (parameters.collapse_depth, loading.ramp_time, loading.largest_rate, loading.stop_kinetic_energy)
     tasks: list[Task] = []
     shown = -1
     for case in cases:
         for realization in range(case.realizations):
             task = Task(ensemble_scene(parameters, case, realization), case.forces, *usual)
-            asked = (picture["polydispersity"], picture["friction"], picture["realization"])
+            asked = (picture.polydispersity, picture.friction, picture.realization)
             this = (case.polydispersity, case.friction, realization)
-            if shown < 0 and this == asked and picture["force"] in case.forces:
+            if shown < 0 and this == asked and picture.force in case.forces:
                 shown = len(tasks)
-                task = replace(task, keep=(float(picture["force"]),))
+                task = replace(task, keep=(picture.force,))
             tasks.append(task)
-    if shown < 0:
-        raise ValueError(f"forces_picture = {dict(picture)}: must be a realization and a force of one of the cases")
-    linear = parameters["linear_range"]
-    forces = _increasing("linear_range.forces", linear["forces"])
-    grid = [(float(delta), float(mu)) for delta in linear["polydispersities"] for mu in linear["frictions"]]
+    grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for delta, mu in grid:
-        case = Case(delta, mu, parameters["lattice_constant"], forces, 1)
-        task = Task(ensemble_scene(parameters, case, 0, wall_friction=0.0), forces, *usual)
-        tasks.append(replace(task, ramp_time=float(linear["ramp_time"])))
+        case = Case(delta, mu, parameters.lattice_constant, linear.forces, 1)
+        task = Task(ensemble_scene(parameters, case, 0, wall_friction=0.0), linear.forces, *usual)
+        tasks.append(replace(task, ramp_time=linear.ramp_time))
 
     found = map_tasks(realize, tasks, workers=workers, progress=progress, what="realizations")
     ensemble, single = found[: len(found) - len(grid)], found[len(found) - len(grid) :]
     ensembles = _ensembles_dataset(cases, ensemble)
-    spacing = float(parameters["spacing"])
-    half = round(float(parameters["reach"]) / spacing)
-    x = np.arange(-half, half + 1, dtype=float) * spacing
+    half = round(parameters.reach / parameters.spacing)
+    x = np.arange(-half, half + 1, dtype=float) * parameters.spacing
     datasets = {
         "ensembles": ensembles,
-        "averages": averages_dataset(
-            ensembles,
-            x,
-            widths=[float(w) for w in parameters["widths"]],
-            few=int(parameters["few"]),
-        ),
-        "individual": individual_dataset(ensembles, parameters["individual"], x),
+        "averages": averages_dataset(ensembles, x, widths=parameters.widths, few=parameters.few),
+        "individual": individual_dataset(ensembles, parameters.individual, x),
         "packings": _packings_dataset(cases, ensemble),
-        "linear_range": _linear_range_dataset(grid, forces, single, float(linear["width"]), float(linear["tolerance"])),
-        "forces": _forces_dataset(tasks[shown], found[shown], float(picture["polydispersity"])),
+        "linear_range": _linear_range_dataset(grid, linear.forces, single, linear.width, linear.tolerance),
+        "forces": _forces_dataset(tasks[shown], found[shown], picture.polydispersity),
     }
-    attributes = {"units": "reduced: mean disk radius, mean disk mass, g", "scene": tasks[0].scene.to_yaml()}
-    for dataset in datasets.values():
-        dataset.attrs.update(attributes)
-    return datasets
-
-
-def read_cases(parameters: Mapping[str, Any]) -> list[Case]:
-    """The cases that ``parameters`` describe. Raises ValueError for a number of realizations below 1."""
-    usual = parameters["lattice_constant"]
-    cases = []
-    for entry in parameters["cases"]:
-        forces = _increasing("cases.forces", entry["forces"])
-        number = int(entry.get("realizations", parameters["realizations"]))
-        if number < 1:
-            raise ValueError(f"realizations = {number}: must be at least 1")
-        for delta in entry["polydispersities"]:
-            alike = 1 if float(delta) == 0.0 else number
-            lattice = entry.get("lattice_constant", usual)
-            cases.append(Case(float(delta), float(entry["friction"]), lattice, forces, alike))
-    return cases
-
-
-def _increasing(key: str, values: Sequence[float]) -> tuple[float, ...]:
-    forces = tuple(float(value) for value in values)
-    if not forces or not forces[0] > 0.0 or not np.all(np.diff(forces) > 0.0):
-        raise ValueError(f"{key} = {list(values)}: must be increasing numbers above 0")
-    return forces
+    return labelled(datasets, tasks[0].scene)
 
 
 def _case_coordinates(cases: Sequence[Case]) -> dict[str, xr.Variable]:
@@ -478,17 +397,15 @@ def averages_dataset(ensembles: xr.Dataset, x: FloatArray, *, widths: Sequence[f
     )
 
 
-def individual_dataset(ensembles: xr.Dataset, shown: Mapping[str, Any], x: FloatArray) -> xr.Dataset:
+def individual_dataset(ensembles: xr.Dataset, shown: Individual, x: FloatArray) -> xr.Dataset:
     """Fig. 19: smoothed responses of single realizations at one force, of every start that has a case.
 
     nan where there are fewer realizations at rest than asked for.
     """
-    delta, force, most = float(shown["polydispersity"]), float(shown["force"]), int(shown["realizations"])
-    width = float(shown["width"])
-    alike = (ensembles["polydispersity"].values == delta) & np.isin(ensembles["friction"].values, shown["frictions"])
+    force, most, width = shown.force, shown.realizations, shown.width
+    alike = ensembles["polydispersity"].values == shown.polydispersity
+    alike &= np.isin(ensembles["friction"].values, shown.frictions)
     cases = np.flatnonzero(alike & (ensembles["force"].values == force).any(axis=1))
-    if not cases.size:
-        raise ValueError(f"individual = {dict(shown)}: must be a polydispersity, frictions and a force of the cases")
     response = np.full((len(cases), most, len(x)), np.nan)
     for k, case in enumerate(cases):
         step = int(np.flatnonzero(ensembles["force"].values[case] == force)[0])
@@ -592,7 +509,7 @@ def _forces_dataset(task: Task, found: Realization, polydispersity: float) -> xr
     """The states of Fig. 2: at rest, and under load."""
     problem = Problem.from_scene(task.scene)
     if len(found.states) != 2:
-        raise ValueError(f"forces_picture: the realization does not reach its force ({found.message or 'collapsed'})")
+        raise SceneError(f"forces_picture: the realization does not reach its force ({found.message or 'collapsed'})")
     packing = problem.packing
     problem = problem.with_loads(found.states[0].position)
     states = common_candidates(found.states, packing.radius)

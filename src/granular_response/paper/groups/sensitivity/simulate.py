@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.observe.floor import floor_disks, floor_response
+from granular_response.paper.groups.sensitivity.parameters import Parameters
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
 from granular_response.solve.timestep import resolve_time_step
@@ -114,35 +115,28 @@ def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """One dataset for each coefficient of friction in ``parameters["friction"]``; see the module."""
+    """One dataset for each coefficient of friction; see the module."""
     known = variants()
     literal = Variant("literal_friction", "the paper's equation for the spring taken literally", {}, {})
+    load = {"disk": "top-centre", "force": [0.0, -parameters.force]}
     tasks = []
-    for friction in parameters["friction"]:
-        scene = Scene.from_dict(
-            {
-                "packing": {
-                    "kind": "slab",
-                    "layers": parameters["layers"],
-                    "disks_per_row": parameters["disks_per_row"],
-                },
-                "contact": {"friction": friction},
-                "loads": [{"disk": "top-centre", "force": [0.0, -float(parameters["force"])]}],
-            }
-        )
+    for friction in parameters.friction:
+        scene = parameters.scene.updated({"contact.friction": friction, "loads": [load]})
         tasks += [Task(scene, variant) for variant in known]
-        tasks.append(Task(scene, literal, parameters["literal_steps"]))
+        tasks.append(Task(scene, literal, parameters.literal_steps))
     outcomes = map_tasks(compute, tasks, workers=workers, progress=progress)
+    attributes = {"force": parameters.force, "layers": int(parameters.scene.packing.build().row_count.size)}
     datasets = {}
     per = len(known) + 1
-    for k, friction in enumerate(parameters["friction"]):
-        datasets[f"mu_{friction:g}"] = _dataset([*known, literal], outcomes[k * per : (k + 1) * per], parameters)
+    for k, friction in enumerate(parameters.friction):
+        dataset = _dataset([*known, literal], outcomes[k * per : (k + 1) * per])
+        datasets[f"mu_{friction:g}"] = dataset.assign_attrs(attributes)
     return datasets
 
 
-def _dataset(known: list[Variant], outcomes: list[Outcome], parameters: Mapping[str, Any]) -> xr.Dataset:
+def _dataset(known: list[Variant], outcomes: list[Outcome]) -> xr.Dataset:
     response = np.stack([o.response for o in outcomes])
     difference = response - response[0]
     return xr.Dataset(
@@ -171,5 +165,4 @@ def _dataset(known: list[Variant], outcomes: list[Outcome], parameters: Mapping[
             "variant": variable(("variant",), np.array([v.name for v in known]), "name of the variant"),
             "x": variable(("floor_disk",), outcomes[0].x, "lattice position from the loaded disk in mean radii"),
         },
-        attrs={"force": float(parameters["force"]), "layers": parameters["layers"]},
     )

@@ -11,7 +11,6 @@ and contacts that slide (gravity that grows slowly leaves some at the Coulomb li
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +19,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.observe import network
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.slab_comparison.parameters import Case, Parameters
 from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import Scene
 from granular_response.state import SLIDING, State
@@ -32,39 +33,9 @@ from granular_response.theory.slab import Floor, response_of_layers
 FloatArray = NDArray[np.float64]
 
 FLOORS: tuple[Floor, ...] = ("smooth", "rough")
-GRAVITY = ("at-once", "slow")
 
 #: Floor disks within this many slab heights of the load are compared; the walls are farther off.
 COMPARED = 1.5
-
-
-@dataclass(frozen=True)
-class Case:
-    """One material and shape, at several depths."""
-
-    friction: float
-    floor: Floor  #: rough: as much friction on floor and walls as between disks
-    gravity: str  #: one of ``GRAVITY``
-    disks_per_layer: int  #: disks of a row over number of rows
-    layers: tuple[int, ...]
-
-    @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> Case:
-        """From an entry of the parameters; raises ValueError for what it cannot be."""
-        missing = {"friction", "floor", "gravity", "disks_per_layer", "layers"} - set(entry)
-        if missing:
-            raise ValueError(f"cases: {', '.join(sorted(missing))} is missing in {dict(entry)}")
-        friction, floor, gravity = float(entry["friction"]), entry["floor"], entry["gravity"]
-        layers, shape = tuple(entry["layers"]), entry["disks_per_layer"]
-        if floor not in FLOORS or (floor == "rough" and not friction > 0.0):
-            raise ValueError(f"cases: floor = {floor!r}: must be smooth, or rough with friction above 0")
-        if gravity not in GRAVITY:
-            raise ValueError(f"cases: gravity = {gravity!r}: must be one of {', '.join(GRAVITY)}")
-        if not layers or not all(isinstance(n, int) and n >= 2 for n in layers):
-            raise ValueError(f"cases: layers = {list(layers)}: must be whole numbers from 2 on")
-        if not isinstance(shape, int) or shape < 2:
-            raise ValueError(f"cases: disks_per_layer = {shape!r}: must be a whole number from 2 on")
-        return cls(friction, floor, gravity, shape, layers)
 
 
 @dataclass(frozen=True)
@@ -110,50 +81,27 @@ def compute(task: Task) -> Outcome:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Dataset ``slabs``.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` (of ``protocol``); ``force``, small; ``stiffness_ratio`` k_T/k_N of packings with friction;
-        ``cases``, mappings with ``friction``, ``floor`` (smooth or rough), ``gravity`` (at-once or slow),
-        ``disks_per_layer`` and ``layers``.
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is out of range.
-    """
-    force, ratio = float(parameters["force"]), float(parameters["stiffness_ratio"])
-    for key, value in (("force", force), ("stiffness_ratio", ratio)):
-        if not value > 0.0:
-            raise ValueError(f"{key} = {value}: must be above 0")
-    cases = [Case.of(entry) for entry in parameters["cases"]]
-    if not cases:
-        raise ValueError("cases = []: must name at least one case")
-    slabs = [(case, layers) for case in cases for layers in case.layers]
-    scenes = [_scene(case, layers, ratio, str(parameters["method"])) for case, layers in slabs]
+    """Dataset ``slabs``."""
+    base, force = parameters.base, parameters.force
+    ratio = base.contact.stiffness_ratio
+    slabs = [(case, layers) for case in parameters.cases for layers in case.layers]
+    scenes = [_scene(case, layers, base) for case, layers in slabs]
     outcomes = map_tasks(compute, [Task(scene, force) for scene in scenes], workers=workers, progress=progress)
-    return {"slabs": _dataset(slabs, outcomes, ratio, force)}
+    return labelled({"slabs": _dataset(slabs, outcomes, ratio, force)})
 
 
-def _scene(case: Case, layers: int, ratio: float, method: str) -> Scene:
+def _scene(case: Case, layers: int, base: Scene) -> Scene:
     """A slab with the loaded disk in the middle: rows and disks of a row both odd or both even."""
     disks = case.disks_per_layer * layers
-    return Scene().updated(
+    return base.updated(
         {
             "packing.layers": layers,
             "packing.disks_per_row": disks + (disks + layers) % 2,
             "contact.friction": case.friction,
-            "contact.stiffness_ratio": ratio,
             "wall.friction": case.friction if case.floor == "rough" else 0.0,
             "preparation.gravity": case.gravity,
-            "protocol.method": method,
-            "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
         }
     )
 
@@ -208,5 +156,5 @@ def _dataset(slabs: list[tuple[Case, int]], outcomes: list[Outcome], ratio: floa
             "gravity": column([case.gravity for case, _ in slabs], "how gravity was applied"),
             **certificates.data_vars,
         },
-        attrs={"force": force, "stiffness_ratio": ratio, "units": "reduced: mean disk radius, mean disk mass, g"},
+        attrs={"force": force, "stiffness_ratio": ratio},
     )

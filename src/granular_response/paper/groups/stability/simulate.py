@@ -7,7 +7,7 @@ digits. ``random_scenes``: what became of random scenes, each result checked fro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -15,6 +15,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.stability.parameters import (
+    Collisions,
+    Drift,
+    Parameters,
+    RandomScenes,
+    Rolling,
+    Rounding,
+    TimeSteps,
+)
 from granular_response.paper.trials import closed_forms, random_scenes, time_steps
 from granular_response.paper.trials.rounding import Disturbed, disturb
 from granular_response.scene import Scene
@@ -37,35 +47,26 @@ AXES: dict[str, tuple[str, str]] = {
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets ``time_step_AXIS`` for each of ``time_steps.axes``, ``drift``, ``collisions``, ``rolling``, ``rounding``
     and ``random_scenes``.
-
-    Parameters
-    ----------
-    parameters
-        ``seed`` of everything random, and the sections of ``params.yaml`` with the names of the datasets.
-    workers, progress
-        As of ``map_tasks``.
     """
-    seed = int(parameters["seed"])
+    seed = parameters.seed
     groups: dict[str, tuple[list[Task], Callable[[list[Any]], dict[str, xr.Dataset]]]] = {
-        "time_steps": _time_steps(parameters["time_steps"], seed),
-        "drift": _drift(parameters["drift"], seed),
-        "collisions": _collisions(parameters["collisions"]),
-        "rolling": _rolling(parameters["rolling"]),
-        "rounding": _rounding(parameters["rounding"], seed),
-        "random_scenes": _random_scenes(parameters["random_scenes"], seed),
+        "time_steps": _time_steps(parameters.time_steps, seed),
+        "drift": _drift(parameters.drift, seed),
+        "collisions": _collisions(parameters.collisions),
+        "rolling": _rolling(parameters.rolling),
+        "rounding": _rounding(parameters.rounding, seed),
+        "random_scenes": _random_scenes(parameters.random_scenes, seed),
     }
     tasks = [task for several, _ in groups.values() for task in several]
     results = iter(map_tasks(_run, tasks, workers=workers, progress=progress, what="stability trials"))
     datasets: dict[str, xr.Dataset] = {}
     for several, collect in groups.values():
         datasets |= collect([next(results) for _ in several])
-    for dataset in datasets.values():
-        dataset.attrs["units"] = "reduced: mean disk radius, mean disk mass, g"
-    return datasets
+    return labelled(datasets)
 
 
 Task = Callable[[], Any]
@@ -78,11 +79,9 @@ def _run(task: Task) -> Any:
 Plan = tuple[list[Task], Callable[[list[Any]], dict[str, xr.Dataset]]]
 
 
-def _time_steps(parameters: Mapping[str, Any], seed: int) -> Plan:
-    base, ratios = parameters["scene"], tuple(float(r) for r in parameters["ratios"])
-    integrators = [str(name) for name in parameters["integrators"]]
-    steps = int(parameters["steps"])
-    axes = {name: [float(value) for value in values] for name, values in parameters["axes"].items()}
+def _time_steps(parameters: TimeSteps, seed: int) -> Plan:
+    base, ratios, steps = parameters.scene, parameters.ratios, parameters.steps
+    integrators, axes = parameters.integrators, parameters.axes
     tasks: list[Task] = []
     for name, values in axes.items():
         for integrator in integrators:
@@ -155,15 +154,14 @@ class DriftTask:
         return times, change / (0.5 if self.system == "bouncing disk" else closed_forms.kinetic_energy(state, problem))
 
 
-def _drift(parameters: Mapping[str, Any], seed: int) -> Plan:
+def _drift(parameters: Drift, seed: int) -> Plan:
     systems = {
-        "bouncing disk": (0.0, float(parameters["time"])),
-        "slab": (0.0, float(parameters["time"])),
-        "slab with friction": (float(parameters["friction"]), float(parameters["friction_time"])),
+        "bouncing disk": (0.0, parameters.time),
+        "slab": (0.0, parameters.time),
+        "slab with friction": (parameters.friction, parameters.friction_time),
     }
-    integrators = [str(name) for name in parameters["integrators"]]
-    base = Scene.from_dict(parameters["scene"])
-    part, kick = float(parameters["part_of_limit"]), float(parameters["kick"])
+    base, integrators = parameters.scene, parameters.integrators
+    part, kick = parameters.part_of_limit, parameters.kick
     tasks: list[Task] = [
         DriftTask(base.updated({"contact.friction": mu}), system, name, part, time, kick, seed).run
         for system, (mu, time) in systems.items()
@@ -192,13 +190,10 @@ def _drift(parameters: Mapping[str, Any], seed: int) -> Plan:
     return tasks, collect
 
 
-def _collisions(parameters: Mapping[str, Any]) -> Plan:
+def _collisions(parameters: Collisions) -> Plan:
     bodies, laws = ["floor", "disk"], ["cut", "literal"]
-    damping = [float(z) for z in parameters["damping_ratios"]]
-    frictions = [float(mu) for mu in parameters["frictions"]]
-    angles = [float(angle) for angle in parameters["angles"]]
-    spins = [float(spin) for spin in parameters["spins"]]
-    step = float(parameters["time_step"])
+    damping, frictions, step = parameters.damping_ratios, parameters.frictions, parameters.time_step
+    angles, spins = parameters.angles, parameters.spins
     tasks: list[Task] = []
     for body in bodies:
         for law in laws:
@@ -206,7 +201,7 @@ def _collisions(parameters: Mapping[str, Any]) -> Plan:
                 for mu in frictions:
                     changes = {"contact.friction": mu, "wall.friction": mu, "contact.damping_ratio": ratio}
                     scene = Scene().updated({**changes, "protocol.friction_law": law, "loads": []})
-                    tasks.append(CollisionTask(scene, tuple(angles), tuple(spins), step, body == "disk").run)
+                    tasks.append(CollisionTask(scene, angles, spins, step, body == "disk").run)
 
     def collect(found: list[list[list[float]]]) -> dict[str, xr.Dataset]:
         shape = (len(bodies), len(laws), len(damping), len(frictions), len(angles), len(spins))
@@ -248,9 +243,8 @@ class CollisionTask:
         ]
 
 
-def _rolling(parameters: Mapping[str, Any]) -> Plan:
-    friction, step = float(parameters["friction"]), float(parameters["time_step"])
-    starts = [(float(speed), float(spin)) for speed, spin in parameters["starts"]]
+def _rolling(parameters: Rolling) -> Plan:
+    friction, step, starts = parameters.friction, parameters.time_step, parameters.starts
     scene = Scene().updated({"wall.friction": friction, "loads": []})
     times = [1.5 * abs(speed + spin) / (3.0 * friction) for speed, spin in starts]
     tasks: list[Task] = [
@@ -284,13 +278,9 @@ def _rolling(parameters: Mapping[str, Any]) -> Plan:
     return tasks, collect
 
 
-def _rounding(parameters: Mapping[str, Any], seed: int) -> Plan:
-    cases: dict[str, Any] = parameters["cases"]
-    size, kicks = float(parameters["displacement"]), int(parameters["kicks"])
-    base = Scene.from_dict(parameters["scene"])
-    tasks: list[Task] = [
-        partial(disturb, base.updated(changes), size, range(seed, seed + kicks)) for changes in cases.values()
-    ]
+def _rounding(parameters: Rounding, seed: int) -> Plan:
+    cases, size, kicks = parameters.cases, parameters.displacement, parameters.kicks
+    tasks: list[Task] = [partial(disturb, scene, size, range(seed, seed + kicks)) for scene in parameters.scenes]
     texts = {
         "rest_change": "largest displacement left after the disturbed rest state is back in equilibrium, in mean radii",
         "response_change": "largest change of the floor response by the disturbance, per its largest value",
@@ -317,8 +307,8 @@ def _rounding(parameters: Mapping[str, Any], seed: int) -> Plan:
     return tasks, collect
 
 
-def _random_scenes(parameters: Mapping[str, Any], seed: int) -> Plan:
-    number, chunk, steps = int(parameters["number"]), int(parameters["chunk"]), int(parameters["maximum_steps"])
+def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
+    number, chunk, steps = parameters.number, parameters.chunk, parameters.maximum_steps
     starts = range(0, number, chunk)
     tasks: list[Task] = [partial(_random_chunk, steps, seed, begin, min(begin + chunk, number)) for begin in starts]
 

@@ -13,7 +13,7 @@ of the energy whatever ``method`` says.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
@@ -23,6 +23,8 @@ from numpy.typing import NDArray
 
 from granular_response.observe.events import bisect_event
 from granular_response.observe.peaks import central_dip, is_double_peaked
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.stiffness_ratio_crossover.parameters import Parameters
 from granular_response.paper.slab_response import (
     Event,
     LoadPath,
@@ -102,32 +104,11 @@ def narrow(search: Search) -> Event:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``response``, ``elastic`` and ``events``.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` (of ``protocol``); ``scene``, changes to the default scene by paths of keys; ``force``;
-        ``ratios`` k_T/k_N, increasing, from 0; ``tolerance``, the width of the brackets of the events.
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If ``ratios`` are not increasing numbers from 0 on, or ``force`` or ``tolerance`` is not positive.
-    """
-    ratios = np.asarray(parameters["ratios"], dtype=float)
-    if ratios.ndim != 1 or len(ratios) < 2 or ratios[0] < 0.0 or not np.all(np.diff(ratios) > 0.0):
-        raise ValueError(f"ratios = {parameters['ratios']}: must be two or more increasing numbers from 0 on")
-    for key in ("force", "tolerance"):
-        if not float(parameters[key]) > 0.0:
-            raise ValueError(f"{key} = {parameters[key]}: must be above 0")
-    force, tolerance = float(parameters["force"]), float(parameters["tolerance"])
-    base = Scene().updated({"loads": [{"disk": "top-centre", "force": [0.0, -1.0]}]})
-    base = base.updated({"protocol.method": parameters["method"], **parameters.get("scene", {})})
+    """Datasets ``response``, ``elastic`` and ``events``."""
+    base, force, tolerance = parameters.base, parameters.force, parameters.tolerance
+    ratios = np.array(parameters.ratios)
 
     tasks = [Ratio(base, ratio, force) for ratio in ratios.tolist()]
     results = map_tasks(measure, tasks, workers=workers, progress=progress, what="stiffness ratios")
@@ -160,9 +141,7 @@ def simulate(
         "events": events_dataset(found).drop_vars("friction"),
     }
     datasets["events"]["low"].attrs["long_name"] = "stiffness ratio before the event"
-    for dataset in datasets.values():
-        dataset.attrs.update(scene=base.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
+    return labelled(datasets, base)
 
 
 def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float) -> xr.Dataset:

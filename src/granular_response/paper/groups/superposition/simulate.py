@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,6 +21,8 @@ from numpy.typing import NDArray
 
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.floor import floor_force, smoothed_response
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.superposition.parameters import Parameters
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states
 from granular_response.solve.stages import climb
@@ -173,57 +174,29 @@ def superposition_error(left: FloatArray, right: FloatArray, both: FloatArray) -
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets ``responses``, ``errors`` and ``linear_range``.
 
-    Parameters
-    ----------
-    parameters
-        ``method`` (of ``protocol``; with auto, loading in stages); ``scene``, changes to the default scene by paths of
-        keys; ``realizations`` of the radii, ``pair_realizations`` of them with two loads; ``offsets`` of the loaded
-        disks from the middle of the top row, in places; ``forces``, growing, of each of two loads; ``single_forces``,
-        growing, of the load on the middle disk; ``width`` of the Gaussian and ``tolerance`` that tell the end of
-        the linear range.
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is out of range.
     SweepError
         If a realization does not come to rest, at rest or under a load: none is left out in silence.
     """
-    forces, single_forces = _growing(parameters, "forces"), _growing(parameters, "single_forces")
-    realizations, with_pairs = int(parameters["realizations"]), int(parameters["pair_realizations"])
-    if realizations < 1:
-        raise ValueError(f"realizations = {realizations}: must be at least 1")
-    if not 1 <= with_pairs <= realizations:
-        raise ValueError(f"pair_realizations = {with_pairs}: must be from 1 to {realizations}")
-    base = Scene().updated({"protocol.method": parameters["method"], **parameters.get("scene", {}), "loads": []})
+    base, offsets, with_pairs = parameters.base, parameters.offsets, parameters.pair_realizations
     packing = base.packing.build()
-    offsets = [int(offset) for offset in parameters["offsets"]]
-    farthest = (int(np.count_nonzero(packing.row == packing.row.max())) - 1) // 2
-    if not offsets or min(offsets) < 1 or max(offsets) > farthest:
-        raise ValueError(f"offsets = {offsets}: must be places from 1 to {farthest}")
-    for key in ("width", "tolerance"):
-        if not float(parameters[key]) > 0.0:
-            raise ValueError(f"{key} = {parameters[key]}: must be above 0")
 
-    scenes = [base.updated({"packing.realization": r}) for r in range(realizations)]
+    scenes = [base.updated({"packing.realization": r}) for r in range(parameters.realizations)]
     rests = map_tasks(settle, scenes, workers=workers, progress=progress, what="rest")
     settled = list(zip(scenes, rests, strict=True))
     singles = map_tasks(
         load_single,
-        [Task(scene, rest, 0, single_forces) for scene, rest in settled],
+        [Task(scene, rest, 0, parameters.single_forces) for scene, rest in settled],
         workers=workers,
         progress=progress,
         what="single loads",
     )
     pairs = map_tasks(
         load_pair,
-        [Task(scene, rest, offset, forces) for scene, rest in settled[:with_pairs] for offset in offsets],
+        [Task(scene, rest, offset, parameters.forces) for scene, rest in settled[:with_pairs] for offset in offsets],
         workers=workers,
         progress=progress,
         what="pairs of loads",
@@ -237,26 +210,15 @@ def simulate(
             2.0 * np.array(offsets),
             "places between the two loaded disks, their distance in mean disk diameters",
         ),
-        "force": variable(("force",), np.array(forces), f"each of the two applied forces {FORCE}"),
+        "force": variable(("force",), np.array(parameters.forces), f"each of the two applied forces {FORCE}"),
     }
     by_pair = [pairs[r * len(offsets) : (r + 1) * len(offsets)] for r in range(with_pairs)]
     datasets = {
         "responses": _responses(by_pair, singles[:with_pairs], x[:with_pairs], disks, coordinates),
         "errors": _errors(by_pair, int(packing.row.max()), coordinates),
-        "linear_range": _linear_range(
-            singles, x, single_forces, float(parameters["width"]), float(parameters["tolerance"])
-        ),
+        "linear_range": _linear_range(singles, x, parameters.single_forces, parameters.width, parameters.tolerance),
     }
-    for dataset in datasets.values():
-        dataset.attrs.update(scene=base.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
-
-
-def _growing(parameters: Mapping[str, Any], key: str) -> tuple[float, ...]:
-    forces = tuple(float(force) for force in parameters[key])
-    if len(forces) < 2 or not forces[0] > 0.0 or not np.all(np.diff(forces) > 0.0):
-        raise ValueError(f"{key} = {list(forces)}: must be two or more increasing numbers above 0")
-    return forces
+    return labelled(datasets, base)
 
 
 def _responses(

@@ -11,7 +11,7 @@ Forces are in mean disk weights, lengths in mean radii, times in sqrt(R/g).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,6 +20,8 @@ import xarray as xr
 
 from granular_response.observe import network
 from granular_response.observe.events import EventNotBracketed, bisect_event
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.symmetry_breaking.parameters import Copies, Parameters, Protocol
 from granular_response.paper.slab_response import (
     Event,
     FloatArray,
@@ -41,26 +43,6 @@ from granular_response.sweeps.tasks import Progress, map_tasks
 #: When a displaced equilibrium counts as settled, and how many steps it gets: growth from a small displacement
 #: shows long before.
 HELD_STOP = Stop(kinetic_energy=1e-15, rule="envelope", maximum_steps=200_000)
-
-
-@dataclass(frozen=True)
-class Protocol:
-    """How a force is applied, and the forces between which the response loses its symmetry."""
-
-    ramp_time: float
-    time_step: float
-    low: float
-    high: float
-
-    def scene(self, base: Scene) -> Scene:
-        """``base`` under this protocol."""
-        return base.updated(
-            {
-                "protocol.method": "dynamics",
-                "protocol.ramp_time": self.ramp_time,
-                "protocol.time_step": self.time_step,
-            }
-        )
 
 
 @dataclass(frozen=True)
@@ -90,7 +72,7 @@ class BracketTask:
         def asymmetric(force: float) -> bool:
             return measures.asymmetry(path.at(force)) > self.above
 
-        low, high = self.protocol.low, self.protocol.high
+        low, high = self.protocol.between
         try:
             bracket = bisect_event(asymmetric, low, high, self.tolerance)
             low, high = bracket.low, bracket.high
@@ -177,46 +159,23 @@ def _run(task: Task) -> Any:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets of the loss of symmetry; which method finds the symmetric branch is ``method``.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` (of the path of ``held``; all else is dynamics); ``scene``, changes to the default scene by
-        paths of keys; ``asymmetry``, above which symmetry counts as lost; ``tolerance`` of the brackets;
-        ``protocols``, each with ``ramp_time``, ``time_step`` and the forces ``between`` which to search, the
-        first one also for the copies; ``copies`` (``force``, ``displacement``, ``seeds``); ``held``
-        (``forces``, ``displacement``).
-    workers, progress
-        As of ``map_tasks``.
 
     Returns
     -------
     ``brackets`` (event), ``runs`` (run), ``copies`` (copy), ``held`` (force), and ``states``: at rest, and the
     last symmetric and the first asymmetric state of the first protocol.
     """
-    base = Scene().updated({"loads": [{"disk": "top-centre", "force": [0.0, -1.0]}], **parameters.get("scene", {})})
-    protocols = [
-        Protocol(float(p["ramp_time"]), float(p["time_step"]), *map(float, p["between"]))
-        for p in parameters["protocols"]
-    ]
+    base, protocols = parameters.scene, parameters.protocols
     first = protocols[0].scene(base)
     alone: list[Task] = [RestTask(first)]
     (rest,) = map_tasks(_run, alone, workers=1, progress=progress, what="rest state")
 
-    brackets = [
-        BracketTask(base, rest, protocol, float(parameters["tolerance"]), float(parameters["asymmetry"]))
-        for protocol in protocols
-    ]
-    copies = _copy_tasks(parameters["copies"], first)
-    held = HeldTask(
-        base.updated({"protocol.method": parameters["method"]}),
-        rest,
-        tuple(sorted(map(float, parameters["held"]["forces"]))),
-        float(parameters["held"]["displacement"]),
-    )
+    brackets = [BracketTask(base, rest, protocol, parameters.tolerance, parameters.asymmetry) for protocol in protocols]
+    copies = _copy_tasks(parameters.copies, first)
+    held = HeldTask(parameters.base, rest, parameters.held.forces, parameters.held.displacement)
     # long ones first, so that no core waits for them in the end
     longest = sorted(brackets, key=lambda t: -(100.0 + t.protocol.ramp_time) / t.protocol.time_step)
     tasks: list[Task] = [*longest, held, *copies]
@@ -233,21 +192,20 @@ def simulate(
     datasets["states"] = states_picture([rest, *found[0].states], problem)
     for dataset in datasets.values():
         dataset["friction_coefficient"] = variable((), base.contact.friction, "coefficient of friction between disks")
-        dataset.attrs.update(scene=base.to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
+    return labelled(datasets, base)
 
 
-def _copy_tasks(given: Mapping[str, Any], scene: Scene) -> list[CopyTask]:
+def _copy_tasks(given: Copies, scene: Scene) -> list[CopyTask]:
     packing = scene.packing.build()
     copies = {"as it is": packing, "numbered from right to left": mirrored(packing)}
-    for seed in given["seeds"]:
-        copies[f"numbered at random, seed {seed}"] = shuffled(packing, int(seed))
-    for seed in given["seeds"]:
-        shift = _random_shift(packing.position.shape, float(given["displacement"]), int(seed))
+    for seed in given.seeds:
+        copies[f"numbered at random, seed {seed}"] = shuffled(packing, seed)
+    for seed in given.seeds:
+        shift = _random_shift(packing.position.shape, given.displacement, seed)
         for image in (False, True):
             name = f"displaced at random, seed {seed}" + (", mirror image" if image else "")
             copies[name] = displaced(packing, shift, mirror_image=image)
-    return [CopyTask(scene, name, copy, float(given["force"])) for name, copy in copies.items()]
+    return [CopyTask(scene, name, copy, given.force) for name, copy in copies.items()]
 
 
 def mirrored(packing: Packing) -> Packing:

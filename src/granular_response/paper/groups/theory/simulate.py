@@ -7,12 +7,12 @@ lattice that was strained.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
 
+from granular_response.paper.groups.theory.parameters import Parameters
 from granular_response.theory import crossover, half_plane, lattice, rays
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
@@ -33,70 +33,21 @@ BODIES = get_args(crossover.Body)
 _BETA = np.linspace(0.0, 1.0, 101)
 
 
-def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Any = None
-) -> dict[str, xr.Dataset]:
-    """Datasets ``predictions``, ``peak_criterion`` and ``moduli``; fractions of a second.
-
-    Parameters
-    ----------
-    parameters
-        ``stiffness_ratio`` k_T/k_N >= 0 of the isotropic lattice (it fixes the Poisson ratio), ``ray_angle``
-        in degrees to the vertical (0 to 90), ``diffusion_length`` of the rays in radii (> 0), ``depths`` of
-        the slabs for the rays in radii (> 0), ``half_width`` of the profiles in slab heights (> 0) and their
-        ``points`` (an odd number, at least 3, so that x = 0 is one). Other keys are not read.
-    workers, progress
-        As for every study; not needed here.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is missing or out of range.
-    """
+def simulate(parameters: Parameters, *, workers: int | None = None, progress: Any = None) -> dict[str, xr.Dataset]:
+    """Datasets ``predictions``, ``peak_criterion`` and ``moduli``; fractions of a second."""
     del workers, progress
-    values = _Parameters(parameters)
     return {
-        "predictions": _predictions(values),
+        "predictions": _predictions(parameters),
         "peak_criterion": _peak_criterion(),
         "moduli": _moduli(),
     }
-
-
-class _Parameters:
-    """The keys this study reads, checked."""
-
-    def __init__(self, parameters: Mapping[str, Any]) -> None:
-        def number(key: str, allowed: str, accept: Callable[[float], bool]) -> float:
-            value = _present(parameters, key)
-            if isinstance(value, bool) or not isinstance(value, int | float) or not accept(float(value)):
-                raise ValueError(f"{key} = {value!r}: must be {allowed}")
-            return float(value)
-
-        self.stiffness_ratio = number("stiffness_ratio", "a number from 0", lambda v: 0.0 <= v < np.inf)
-        self.ray_angle = number("ray_angle", "degrees from 0 to below 90", lambda v: 0.0 <= v < 90.0)
-        self.diffusion_length = number("diffusion_length", "a positive number", lambda v: 0.0 < v < np.inf)
-        self.half_width = number("half_width", "a positive number", lambda v: 0.0 < v < np.inf)
-        self.points = int(number("points", "an odd whole number from 3", lambda v: v >= 3 and v % 2 == 1))
-        depths = _present(parameters, "depths")
-        try:
-            self.depths = np.asarray(depths, dtype=float)
-        except (TypeError, ValueError):
-            self.depths = np.empty(0)
-        if self.depths.ndim != 1 or not self.depths.size or not np.all((self.depths > 0) & (self.depths < np.inf)):
-            raise ValueError(f"depths = {depths!r}: must be a list of positive numbers")
-
-
-def _present(parameters: Mapping[str, Any], key: str) -> Any:
-    if key not in parameters:
-        raise ValueError(f"{key} is missing from the parameters of the study 'theory'")
-    return parameters[key]
 
 
 def _variable(dims: Any, values: Any, long_name: str) -> xr.Variable:
     return xr.Variable(dims, values, {"long_name": long_name, "units": "1"})
 
 
-def _predictions(values: _Parameters) -> xr.Dataset:
+def _predictions(values: Parameters) -> xr.Dataset:
     x = np.linspace(-values.half_width, values.half_width, values.points)
     poisson_ratio = lattice.poisson_ratio(1.0, values.stiffness_ratio)
     solid = Moduli.isotropic(poisson_ratio)
@@ -129,7 +80,7 @@ def _predictions(values: _Parameters) -> xr.Dataset:
         },
         coords={
             "x": _variable("x", x, "distance from the force in slab heights"),
-            "depth": _variable("depth", values.depths, "slab height in mean disk radii"),
+            "depth": _variable("depth", np.array(values.depths), "slab height in mean disk radii"),
         },
     )
 

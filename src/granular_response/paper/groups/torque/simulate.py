@@ -9,7 +9,7 @@ paper's "25 x 13" is read as 13 rows of 25 and 24 disks.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from granular_response.observe import stress as coarse
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.network import contact_centre
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.torque.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, loaded_states
 from granular_response.state import State
@@ -52,37 +54,12 @@ def load(task: Turned) -> tuple[State, int]:
 
 
 def simulate(
-    parameters: Mapping[str, Any], *, workers: int | None = None, progress: Progress | None = None
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``torques``, ``stress`` and ``reach``.
-
-    Parameters
-    ----------
-    parameters
-        ``method`` (of ``protocol``); ``scene``, changes to the default scene by paths of keys; ``force`` and its
-        ``angle`` below the horizontal in degrees, to the right; ``torques``, clockwise, the first one 0;
-        ``stress_width`` w of the Gaussian and ``stress_spacing`` of the grid; ``distances``, edges of the rings
-        around the load in which changes are summed.
-    workers, progress
-        As of ``map_tasks``.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is out of range.
-    """
-    torques = np.asarray(parameters["torques"], dtype=float)
-    if torques.ndim != 1 or not torques.size or torques[0] != 0.0:
-        raise ValueError(f"torques = {parameters['torques']}: must be a list of numbers that begins with 0")
-    edges = np.asarray(parameters["distances"], dtype=float)
-    if edges.ndim != 1 or edges.size < 2 or edges[0] < 0.0 or not np.all(np.diff(edges) > 0.0):
-        raise ValueError(f"distances = {parameters['distances']}: must be increasing numbers from 0 on")
-    for key in ("force", "stress_width", "stress_spacing"):
-        if not float(parameters[key]) > 0.0:
-            raise ValueError(f"{key} = {parameters[key]}: must be above 0")
-    force, angle = float(parameters["force"]), np.radians(float(parameters["angle"]))
+    """Datasets ``torques``, ``stress`` and ``reach``."""
+    base, force, angle = parameters.base, parameters.force, np.radians(parameters.angle)
+    torques, edges = np.array(parameters.torques), np.array(parameters.distances)
     direction = np.array([np.cos(angle), -np.sin(angle)])
-    base = Scene().updated({"protocol.method": parameters["method"], **parameters.get("scene", {})})
     scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in torques.tolist()]
 
     (rest,) = map_tasks(settle, [scenes[0]], workers=1, progress=progress, what="rest")
@@ -93,18 +70,14 @@ def simulate(
     rest, *loaded = common_candidates([rest, *(state for state, _ in results)], packing.radius)
     disk = results[0][1]
     coordinate = variable(("torque",), torques, "applied torque, clockwise, in mean disk weights times mean radius")
-    stress = _stress_dataset(
-        packing, rest, loaded, float(parameters["stress_width"]), float(parameters["stress_spacing"])
-    )
+    stress = _stress_dataset(packing, rest, loaded, parameters.stress_width, parameters.stress_spacing)
     datasets = {
         "torques": _states_dataset(packing, rest, loaded, disk, force * direction),
         "stress": stress,
         "reach": _reach_dataset(rest, loaded, disk, stress, edges),
     }
-    for name, dataset in datasets.items():
-        datasets[name] = dataset.assign_coords(torque=coordinate)
-        datasets[name].attrs.update(scene=scenes[0].to_yaml(), units="reduced: mean disk radius, mean disk mass, g")
-    return datasets
+    datasets = {name: dataset.assign_coords(torque=coordinate) for name, dataset in datasets.items()}
+    return labelled(datasets, scenes[0])
 
 
 def _load(force: FloatArray, torque: float) -> dict[str, Any]:
@@ -127,9 +100,7 @@ def _stress_dataset(packing: Packing, rest: State, loaded: Sequence[State], w: f
     x = np.arange(0.0, packing.width + 0.5 * spacing, spacing)
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
     points = coarse.grid_points(x, z)
-    fields = np.stack(
-        [coarse.coarse_grained_stress(coarse.load_forces(rest, s), points, w) for s in loaded]
-    )
+    fields = np.stack([coarse.coarse_grained_stress(coarse.load_forces(rest, s), points, w) for s in loaded])
     data = {}
     for a, first in enumerate("xz"):
         for b, second in enumerate("xz"):

@@ -1,0 +1,43 @@
+"""Parameters of what the paper says about its numerics; all by dynamics."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from granular_response.paper.parameters import Coefficients, Integrators, Positives, over, some
+from granular_response.scene import Scene
+from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio, allowed
+
+
+class Restart(Description):
+    """Statically finished states put back into the dynamics."""
+
+    forces: Annotated[tuple[NonNegative, ...], AfterValidator(some)] = Field(description="0 for gravity alone.")
+    steps: Count
+
+
+class Damping(Description):
+    """Relaxation under gravity, by velocity Verlet."""
+
+    ratios: Positives
+    time_step: Positive
+    stop_kinetic_energy: Positive
+
+
+class Parameters(Description):
+    """Section ``numerics``."""
+
+    scene: Annotated[Scene, over(Scene(), "contact.friction", "loads")] = Scene()
+    force: Positive = Field(description="In mean disk weights.")
+    frictions: Coefficients = Field(description="Of stop_energies.")
+    stop_energies: Positives = Field(description="Kinetic energies per disk at which the dynamics stops.")
+    restart: Restart
+    friction: Ratio = Field(description="Of what follows.")
+    time_steps: Annotated[
+        tuple[Positive, ...], Field(min_length=2), allowed("must be at least two numbers above 0, to compare")
+    ] = Field(description="The first one is the paper's.")
+    integrators: Integrators
+    integrator_time_step: Positive
+    damping: Damping

@@ -1,0 +1,121 @@
+"""The parameters of figure groups: one validated description for each section of ``params.yaml``.
+
+A group's ``parameters.py`` has a class ``Parameters``. Its base scene is written as a partial scene: what it does not
+name is that of the group's own base, so one key of it can be tried alone
+(``dvc exp run -S pile_dip.scene.contact.friction=0.5``). A mistake is a SceneError of one line, as in a scene file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from granular_response.scene import Scene, SceneError
+from granular_response.scene.base import Count, Description, Positive, Ratio, allowed
+from granular_response.scene.errors import Problem
+from granular_response.scene.protocol import Integrator, Method
+
+
+def _different(values: tuple) -> tuple:
+    if len(set(values)) < len(values):
+        raise Problem("")
+    return values
+
+
+def growing(values: tuple[float, ...]) -> tuple[float, ...]:
+    """For ``AfterValidator``: each one greater than the one before."""
+    if any(after <= before for before, after in pairwise(values)):
+        raise Problem("")
+    return values
+
+
+def some(values: tuple) -> tuple:
+    """For ``AfterValidator``: not empty. What is wrong with an entry keeps the entry's own message."""
+    if not values:
+        raise Problem("must have at least one entry")
+    return values
+
+
+_SOME = Field(min_length=1)
+Growing = Annotated[
+    tuple[Positive, ...], _SOME, AfterValidator(growing), allowed("must be a list of growing numbers above 0")
+]
+Numbers = Annotated[tuple[float, ...], _SOME, allowed("must be a list of numbers")]
+Positives = Annotated[
+    tuple[Positive, ...], _SOME, AfterValidator(_different), allowed("must be a list of different numbers above 0")
+]
+#: Coefficients of friction, ratios: no one twice.
+Coefficients = Annotated[
+    tuple[Ratio, ...], _SOME, AfterValidator(_different), allowed("must be a list of different numbers from 0 to 1e6")
+]
+Counts = Annotated[
+    tuple[Count, ...], _SOME, AfterValidator(_different), allowed("must be a list of different whole numbers from 1 on")
+]
+Integrators = Annotated[
+    tuple[Integrator, ...], Field(min_length=2), allowed("must be at least two of beeman, verlet, gear, to compare")
+]
+
+
+Path = Annotated[str, Field(strict=True, min_length=1), allowed("must be the path of a file")]
+Part = Annotated[float, Field(strict=True, gt=0, le=1), allowed("must be a number above 0, at most 1")]
+
+
+class Common(Description):
+    """What ``common`` holds for every group that solves scenes; a group's own section may have it too."""
+
+    method: Method = Field(description="protocol.method of the scenes.")
+
+
+class SceneGroup(Common):
+    """A group whose scenes are changes to one base scene."""
+
+    scene: Scene
+
+    @property
+    def base(self) -> Scene:
+        """The base scene, solved by ``method``."""
+        return self.scene.updated({"protocol.method": self.method})
+
+
+#: The paper's scene with a load of one disk weight, so that load factors are forces.
+UNIT_LOAD = Scene().updated({"loads.0.force": [0.0, -1.0]})
+
+
+def over(base: Scene, *decided: str) -> BeforeValidator:
+    """Validates a partial scene: changes to ``base``, by keys of any depth.
+
+    ``decided`` are keys that the group sets itself, for which a value in the partial scene would mean nothing; the
+    method is one of them.
+    """
+    refused = ("protocol.method", *decided)
+
+    def complete(given: Any) -> Any:
+        if isinstance(given, Scene):
+            return given
+        if not isinstance(given, Mapping):
+            raise Problem("must be a mapping with keys of a scene")
+        for path, value in _leaves(given):
+            name = ".".join(path)
+            if name.startswith(tuple(f"{key}." for key in refused)) or name in refused:
+                raise Problem("is decided by the group, by keys of its own; must not be given", key=path, value=value)
+            if name == "packing.kind" and value != base.packing.kind:
+                raise Problem(f"must be {base.packing.kind} in this group", key=path, value=value)
+        try:
+            return base.merged(given)
+        except SceneError as error:
+            raise Problem(str(error)) from None
+
+    return BeforeValidator(complete)
+
+
+def _leaves(given: Mapping, above: Sequence[str] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Values with their paths, whether these are written dotted or nested."""
+    for key, value in given.items():
+        path = (*above, *str(key).split("."))
+        if isinstance(value, Mapping):
+            yield from _leaves(value, path)
+        else:
+            yield path, value
