@@ -132,16 +132,18 @@ def draw_contact_changes(
 def draw_state_changes(
     axes: Axes, rest: xr.Dataset, loaded: xr.Dataset, sliding: ArrayLike
 ) -> dict[str, LineCollection]:
-    """Figs. 8, 9 and 16: the central third of a slab, what a load changes in its contacts, and the load.
+    """Figs. 4, 8, 9 and 16: the central third of a slab, what a load changes in its contacts, the load and the floor.
 
     ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts. Returns what
     :func:`draw_contact_changes` does.
     """
-    position = rest["position"].values
+    position, disk = loaded["position"].values, int(rest["loaded_disk"])
+    radius, width = float(rest["radius"].values[disk]), float(rest["width"])
     first, second = rest["contact_disk"].values, rest["contact_partner"].values
-    x, z = position[int(rest["loaded_disk"])]
-    reach = float(rest["width"]) / 6.0
-    shown = np.abs(0.5 * (position[first, 0] + position[second, 0]) - x) < reach + 2.0
+    x, z = position[disk]
+    left, right = x - width / 6.0, x + width / 6.0
+    inside = np.abs(position[:, 0] - x) <= width / 6.0 + 0.5
+    shown = inside[first] & inside[second]
     drawn = draw_contact_changes(
         axes,
         position,
@@ -151,8 +153,10 @@ def draw_state_changes(
         touching=loaded["contact_status"].values[shown] != OPEN,
         sliding=np.asarray(sliding)[shown],
     )
-    draw_load(axes, (float(x), float(z) + 0.4), length=3.0)
-    axes.set(xlim=(x - reach, x + reach), ylim=(0.0, float(position[:, 1].max()) + 4.0))
+    draw_loaded_disk(axes, (float(x), float(z)), radius)
+    draw_load(axes, (float(x), float(z) + radius), length=3.5)
+    draw_box(axes, Box(width), float(position[:, 1].max()), between=(left, right))
+    axes.set(xlim=(left - 1.0, right + 1.0), ylim=(-0.6, float(z) + radius + 4.0))
     style.no_axes(axes)
     return drawn
 
@@ -288,6 +292,11 @@ def draw_load(
         zorder=10,
     )
     _include(axes, np.stack([tail, np.asarray(at, dtype=float)]))
+
+
+def draw_loaded_disk(axes: Axes, at: tuple[float, float], radius: float) -> None:
+    """Outline a disk that carries a load."""
+    draw_disks(axes, [at], radius, edgecolor=style.VERMILION, linewidth=0.9, zorder=6)
 
 
 def draw_torque(axes: Axes, at: tuple[float, float], torque: float, *, radius: float = 1.7) -> None:

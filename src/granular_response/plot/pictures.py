@@ -460,7 +460,7 @@ def _loads(axes: Axes, shown: Shown, *, shift: float = 0.0) -> None:
     largest = max((float(np.hypot(*force)) for _, force, _ in shown.loads), default=0.0)
     for disk, force, torque in shown.loads:
         centre, radius = shown.position[disk] + (shift, 0.0), float(shown.radius[disk])
-        network.draw_disks(axes, [centre], radius, edgecolor=style.VERMILION, linewidth=0.9, zorder=6)
+        network.draw_loaded_disk(axes, (float(centre[0]), float(centre[1])), radius)
         size = float(np.hypot(*force))
         if size > 0.0:
             tip = centre - radius * force / size

@@ -16,6 +16,7 @@ from granular_response.plot.network import (
     draw_force_chains,
     draw_force_key,
     draw_load,
+    draw_loaded_disk,
     force_scale,
     pair_points,
     wall_points,
@@ -60,6 +61,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
             shown = np.abs(point[:, 0] - 0.5 * width) <= width / 6.0
             draw_force_chains(axes, point[shown], force[shown], smallest=smallest, **scale)
         top = (float(position[disk, 0]), float(position[disk, 1]) + 1.0)
+        draw_loaded_disk(axes, (top[0], top[1] - 1.0), float(radius[disk]))
         draw_load(axes, top)
         draw_box(axes, Box(width), top[1], between=(width / 3.0, 2.0 * width / 3.0))
         style.no_axes(axes)

@@ -12,12 +12,13 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, MultipleLocator, NullFormatter
 
-from granular_response.plot import network as network_drawing
 from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+from granular_response.state import SLIDING
 
 #: Forces of the profiles and of the contact networks; the nearest stored ones are drawn.
 PROFILE_FORCES = (0.25, 2.0, 3.0, 3.5, 5.0, 15.0, 50.0)
@@ -110,43 +111,16 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
     columns = min(3, len(chosen))
     rows = -(-len(chosen) // columns)
     figure, panels = style.figure(rows, columns, width="double", height=0.2 + 1.85 * rows)
-    before = rest["contact_status"].values[0] > 0
-    radius, width = rest["radius"].values, float(rest["width"])
-    loaded = int(rest["loaded_disk"])
-    drawn: dict[str, object] = {}
+    handles: dict[str, LineCollection] = {}
     for at, axes in enumerate(panels.ravel()):
-        style.no_axes(axes)
         if at >= len(chosen):
+            axes.set_axis_off()
             continue
         one = states.isel(force=chosen[at])
-        position = one["position"].values
-        first, second = one["contact_disk"].values, one["contact_partner"].values
-        middle = 0.5 * (position[first, 0] + position[second, 0])
-        seen = np.abs(middle - 0.5 * width) <= width / 6.0
-        drawn |= network_drawing.draw_contact_changes(
-            axes,
-            position,
-            first[seen],
-            second[seen],
-            touching_before=before[seen],
-            touching=one["contact_status"].values[seen] > 0,
-        )
-        network_drawing.draw_disks(
-            axes, position[[loaded]], radius[[loaded]], edgecolor=style.VERMILION, linewidth=0.9, zorder=6
-        )
-        top = position[loaded] + (0.0, radius[loaded])
-        network_drawing.draw_load(axes, (float(top[0]), float(top[1])), length=3.5)
-        axes.plot([width / 3.0, 2.0 * width / 3.0], [0.0, 0.0], color=style.MUTED, linewidth=0.8, solid_capstyle="butt")
-        axes.set(xlim=(width / 3.0 - 1.5, 2.0 * width / 3.0 + 1.5), ylim=(-0.6, top[1] + 4.0))
+        handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
         force = float(one["force"])
         style.letter(axes, chr(ord("a") + at), place="above", text=f"$F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$")
-    names = {"opened": "opened by the load", "closed": "closed by the load", "unchanged": "not changed"}
-    handles = [
-        Line2D([], [], color=look["color"], linewidth=look["linewidth"], label=names[kind])
-        for kind, look in network_drawing.CONTACT_LINES.items()
-        if kind in drawn
-    ]
-    figure.legend(handles=handles[::-1], loc="outside lower center", ncols=len(handles))
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     return figure
 
 

@@ -19,6 +19,7 @@ from granular_response.plot.network import (
     draw_force_chains,
     draw_force_key,
     draw_load,
+    draw_loaded_disk,
     draw_rotations,
     force_scale,
     pair_points,
@@ -72,6 +73,7 @@ def _forces(data: xr.Dataset) -> Figure:
         style.no_axes(axes)
         axes.set(xlim=(-1.5, width + 1.5), ylim=(-1.5, top + 4.0))
     x, z = data["position"].values[1, disk] + [0.0, radius[disk]]
+    draw_loaded_disk(panels[1, 0], (float(x), float(z - radius[disk])), float(radius[disk]))
     draw_load(panels[1, 0], (float(x), float(z)), length=3.6)
     return figure
 

@@ -15,6 +15,7 @@ from granular_response.plot.network import (
     draw_force_chains,
     draw_force_key,
     draw_load,
+    draw_loaded_disk,
     draw_torque,
     force_scale,
     pair_points,
@@ -49,6 +50,7 @@ def _chains(data: xr.Dataset) -> Figure:
         point = pair_points(position, radius, *pairs)
         shown = (point[:, 0] >= left) & (point[:, 0] <= right) & (point[:, 1] >= low)
         draw_force_chains(axes, point[shown], added[index][shown], **scale)
+        draw_loaded_disk(axes, (float(position[disk, 0]), float(position[disk, 1])), float(radius[disk]))
         _loads(axes, position[disk], data["applied_force"].values, float(torques[index]))
         axes.set(xlim=(left - 0.5, right + 0.5), ylim=(low - 0.5, float(position[disk, 1]) + 4.6))
         style.letter(axes, chr(ord("a") + index), text=_torque(float(torques[index])))
