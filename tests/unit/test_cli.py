@@ -186,7 +186,8 @@ def test_a_result_is_continued_and_nothing_else(tmp_path):
     finished = call("continue", "result.nc", "--to", "1.5", "--to", 3, "-o", "more.nc", folder=tmp_path)
     assert finished.returncode == 0 and "load factors 1, 1.5, 3" in finished.stdout
     with xr.open_dataset(tmp_path / "result.nc") as one, xr.open_dataset(tmp_path / "more.nc") as more:
-        assert more["load_factor"].values.tolist() == [0.0, 1.0, 1.5, 3.0]
+        assert more["state_load_factor"].values.tolist() == [0.0, 1.0, 1.5, 3.0]
+        assert more["load_factor"].values.tolist() == [1.0, 1.5, 3.0]
         np.testing.assert_array_equal(more["position"][:2], one["position"])
         np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"])
     finished = call("continue", "result.nc", "--to", "0.5", "-o", "less.nc", folder=tmp_path)

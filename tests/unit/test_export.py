@@ -14,7 +14,7 @@ from granular_response.scene import Scene
 from granular_response.solve import solve_scene
 from granular_response.store import files as store
 from granular_response.store.export import ExportError, contact_force_sums, export
-from granular_response.store.result import to_dataset
+from granular_response.store.result import ResultError, to_dataset
 
 FORCE = (0.5, -1.0)
 SCENE = {
@@ -154,7 +154,7 @@ def test_vtu(result, data, tmp_path, index):
     np.add.at(total, second, -force)
     expected = np.zeros((n, 3))
     expected[:, 1] = state["mass"]
-    expected[int(data["loaded_disk"][0]), :2] -= np.array(FORCE) * float(state["load_factor"])
+    expected[int(data["loaded_disk"][0]), :2] -= np.array(FORCE) * float(state["state_load_factor"])
     np.testing.assert_allclose(total[:n], expected, atol=1e-9)
     sums, _ = contact_force_sums(state)
     np.testing.assert_allclose(mesh["contact_force"][:n, :2], sums, atol=1e-12)
@@ -172,7 +172,7 @@ def test_errors_are_one_line(result, tmp_path):
         export(result, tmp_path / "file" / "result.gsd")
     study = tmp_path / "study.nc"
     store.write(study, {"a": store.read(result)[""][["radius"]]})
-    with pytest.raises(ExportError, match="holds no states"):
+    with pytest.raises(ResultError, match="holds no states"):
         export(study, tmp_path / "result.gsd")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "study.nc"]
 

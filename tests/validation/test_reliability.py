@@ -137,7 +137,8 @@ def test_truncated_and_foreign_files_are_one_line(tmp_path, solution):
     assert "truncated.nc: is truncated or damaged" in one_line(["show", "truncated.nc"], tmp_path)
     assert "truncated.nc: is truncated or damaged" in one_line(["export", "truncated.nc", "-o", "a.vtu"], tmp_path)
     to_dataset(solution).to_netcdf(tmp_path / "foreign.nc")
-    assert "foreign.nc: was not written by granular_response" in one_line(["show", "foreign.nc"], tmp_path)
+    arguments = ["continue", "foreign.nc", "--to", "2", "-o", "more.nc"]
+    assert "foreign.nc: was not written by granular_response" in one_line(arguments, tmp_path)
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -252,7 +253,10 @@ def test_a_continued_result_is_the_uninterrupted_one(tmp_path, changes):
         assert_same_contacts(one, other)
     # states of one file share one list of candidates, so what does not touch may be listed in another order
     lists = {"contact", "wall_contact"}
-    xr.testing.assert_identical(to_dataset(parts).drop_dims(lists), to_dataset(straight).drop_dims(lists))
+    one, other = (to_dataset(solution).drop_dims(lists) for solution in (parts, straight))
+    work = [name for name in one.variables if str(name).startswith("reached_")]  # counted anew by each command
+    assert work
+    xr.testing.assert_identical(one.drop_vars(work), other.drop_vars(work, errors="ignore"))
 
 
 def test_only_growing_loads_and_the_same_packing_can_be_continued(tmp_path, solution):

@@ -18,7 +18,8 @@ from ..scene import Scene
 from ..solve.solution import Progress, Solution, continue_solution, solve_scene
 from ..state import Certificate, State
 from ..store import files
-from ..store.result import ResultError, scene_of, solution_from, state_from, to_dataset
+from ..store.checked import read_result
+from ..store.result import scene_of, solution_from, state_from, to_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -251,10 +252,6 @@ def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] 
     granular_response.store.files.StoreError
         If the file cannot be read.
     granular_response.store.result.ResultError
-        If it holds something else than a result.
+        If it holds something else than a whole result.
     """
-    dataset = files.read(path).get("")
-    if dataset is None or "contact_spring" not in dataset:
-        what = "must be a result of granular-response run or Result.save"
-        raise ResultError(f"{os.fspath(path)}: holds no states, {what}")
-    return Result(dataset=dataset, folder=folder)
+    return Result(dataset=read_result(path), folder=folder)

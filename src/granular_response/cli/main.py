@@ -158,18 +158,17 @@ def continue_(
     from .terminal import TerminalProgress
 
     started = time.perf_counter()
-    stored = store.read(result).get("")
     store.check_writable(output, [result])
 
     from ..scene import SceneError
     from ..solve import continue_solution
+    from ..store.checked import read_result
     from ..store.result import ResultError, solution_from, to_labelled
 
     _loaded()
 
+    stored = read_result(result)
     try:
-        if stored is None:
-            raise ResultError("holds no states, must be a result of granular-response run")
         solution = solution_from(stored, folder=folder)
         store.check_writable(output, solution.scene.files)
         with TerminalProgress() as progress:
@@ -263,7 +262,7 @@ def show(
 
     from ..store.summary import summarise
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False, emoji=False)
     for part in summarise(file):
         console.print(part, soft_wrap=isinstance(part, Text))
 

@@ -130,9 +130,8 @@ class FilePacking(Description):
         for column in COLUMNS:
             if (times := header.count(column)) != 1:
                 problem = "is missing" if times == 0 else f"is given {times} times"
-                found = ", ".join(show(name) for name in header[:10])
-                rule = f"column {column} {problem}, header must name x, z and radius (found {found})"
-                raise self._error(None, rule)
+                # what stands there is not quoted: the file may be another one, and not meant for the eye
+                raise self._error(None, f"column {column} {problem}, header must name x, z and radius")
         return {column: header.index(column) for column in COLUMNS}
 
     def _number(self, line: int, column: str, text: str) -> float:

@@ -23,7 +23,7 @@ import xarray as xr
 
 from ..state import Box, wall_normals
 from . import atomic
-from . import files as store
+from .checked import read_result
 
 #: What a file name may end with.
 SUFFIXES = (".gsd", ".vtu", ".xyz")
@@ -45,16 +45,14 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
     Raises
     ------
     ExportError
-        For another suffix, a file without states, a state that does not exist, or a missing library.
-    granular_response.store.StoreError
-        If the result cannot be read.
+        For another suffix, a state that does not exist, or a missing library.
+    granular_response.store.files.StoreError, granular_response.store.result.ResultError
+        If the result cannot be read, or is none.
     """
     output = Path(output)
     if output.suffix not in SUFFIXES:
         raise ExportError(f"{output}: format {output.suffix!r} is unknown, must be {' or '.join(SUFFIXES)}")
-    dataset = store.read(result).get("")
-    if dataset is None or "contact_spring" not in dataset:
-        raise ExportError(f"{result}: holds no states, must be a result of granular-response run")
+    dataset = read_result(result, sealed=False)
     count = dataset.sizes["state"]
     if not -count <= state < count:
         raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, {result} holds {count} states")
@@ -118,7 +116,7 @@ def _frames(dataset: xr.Dataset):
     for index in range(dataset.sizes["state"]):
         state = dataset.isel(state=index)
         force, count = contact_force_sums(state)
-        yield float(state["load_factor"]), state["position"].values, state["angle"].values, force - rest, count
+        yield float(state["state_load_factor"]), state["position"].values, state["angle"].values, force - rest, count
 
 
 def _box(dataset: xr.Dataset) -> tuple[float, float]:

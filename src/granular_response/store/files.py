@@ -30,7 +30,9 @@ if TYPE_CHECKING:  # whoever writes without reading does not wait for it
 #: What the name of every file of datasets ends with.
 SUFFIX = ".nc"
 #: Root attribute by which a file of ours is known; its number grows when the layout changes.
-FORMAT = "granular_response 1"
+FORMAT = "granular_response 2"
+#: Layouts that are read: in the first one results have ``load_factor`` along ``state`` (``store.checked`` turns it).
+_READ = (FORMAT, "granular_response 1")
 
 #: For files in memory, whatever the name of the file on disk.
 _NO_NAME = "memory"
@@ -109,17 +111,18 @@ def _named(path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
-def read(path: str | os.PathLike[str]) -> dict[str, xr.Dataset]:
+def read(path: str | os.PathLike[str], *, sealed: bool = True) -> dict[str, xr.Dataset]:
     """All datasets of a file, in memory, by the name of their group.
 
-    The root is there under ``""`` if it holds variables or if the file has no groups.
+    The root is there under ``""`` if it holds variables or if the file has no groups. ``sealed=False`` takes
+    datasets of ours that xarray has written too, which have no digest.
 
     Raises
     ------
     StoreError
         If the file is missing, truncated, damaged or not one of ours.
     """
-    with _open(path) as file:
+    with _open(path, sealed) as file:
         try:
             groups = {name: _load(group) for name, group in _walk(file)}
         except Exception as error:  # a damaged file can make its decoders raise anything
@@ -127,9 +130,9 @@ def read(path: str | os.PathLike[str]) -> dict[str, xr.Dataset]:
     return {name: dataset for name, dataset in groups.items() if dataset.variables or len(groups) == 1}
 
 
-def read_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
+def read_attributes(path: str | os.PathLike[str], *, sealed: bool = True) -> dict[str, Any]:
     """Attributes of the file as a whole. Raises StoreError as ``read`` does."""
-    with _open(path) as file:
+    with _open(path, sealed) as file:
         attributes = {name: file.getncattr(name) for name in file.ncattrs()}
     return {name: v.item() if isinstance(v, np.generic) else v for name, v in attributes.items()}
 
@@ -153,7 +156,7 @@ def _image(path: Path, groups: Mapping[str, Labelled]) -> bytes:
         for name, parts in groups.items():
             try:
                 _dump(parts, file.createGroup(name) if name else file)
-            except (RuntimeError, TypeError, ValueError, NotImplementedError) as error:
+            except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
                 raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
     finally:
         image = file.close()
@@ -202,7 +205,7 @@ def _verify(path: Path, data: bytes, groups: Mapping[str, Labelled]) -> None:
         raise _error(path, f"does not read back: {error}") from error
 
 
-def _open(path: str | os.PathLike[str]) -> netCDF4.Dataset:
+def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
     try:
         data = Path(path).read_bytes()
     except FileNotFoundError:
@@ -213,29 +216,37 @@ def _open(path: str | os.PathLike[str]) -> netCDF4.Dataset:
         raise _error(path, "is empty")
     if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
         raise _error(path, "is not a netCDF-4 file")
-    _check_seal(path, data)
+    if not _check_seal(path, data) and sealed:
+        if any(layout.encode() in data for layout in _READ):
+            raise _error(path, "is truncated or damaged, or another program has written it anew")
+        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
     try:
         dataset = netCDF4.Dataset(_NO_NAME, mode="r", memory=data)
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
     except Exception as error:  # damage can surface as nearly any kind of error
         raise _error(path, "is truncated or damaged") from error
-    if attributes.get("format") != FORMAT:
+    by_xarray = not sealed and attributes.get("package") == "granular_response" and "format" not in attributes
+    if attributes.get("format") not in _READ and not by_xarray:
         dataset.close()
         raise _error(path, f"has another layout, must have the attribute format = {FORMAT!r}")
     return dataset
 
 
-def _check_seal(path: str | os.PathLike[str], data: bytes) -> None:
-    """Raise StoreError unless ``data`` is as ``write`` left it."""
+def is_sealed(path: str | os.PathLike[str]) -> bool:
+    """Whether a file that can be read ends with the digest of what it holds."""
+    return _check_seal(path, Path(path).read_bytes())
+
+
+def _check_seal(path: str | os.PathLike[str], data: bytes) -> bool:
+    """Whether there is a digest. Raises StoreError if it is wrong, or the file not as long as it says."""
     start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
     if data[start : start + len(_SEAL)] != _SEAL or start < 0:
         if not hdf5_image.is_complete(data):
             raise _error(path, "is truncated or damaged")
-        if FORMAT.encode() in data:
-            raise _error(path, "is truncated or damaged, or another program has written it anew")
-        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
+        return False
     if hashlib.sha256(memoryview(data)[:start]).digest() != data[start + len(_SEAL) :]:
         raise _error(path, "is damaged: its digest differs from the one made when it was written")
+    return True
 
 
 def _walk(file: netCDF4.Dataset, prefix: str = "") -> list[tuple[str, netCDF4.Dataset]]:

@@ -21,7 +21,7 @@ from ..scene import Packing, Scene
 from ..solve.choice import load_method, rest_method
 from ..solve.problem import Problem
 from ..solve.solution import Solution
-from ..state import Box, Certificate, Contacts, Crossing, Reached, State
+from ..state import Box, Certificate, Contacts, Crossing, Reached, State, box, status
 from .labelled import Labelled, Values
 
 if TYPE_CHECKING:
@@ -45,7 +45,14 @@ _CONTACT_VARIABLES = {
 #: The system of units of everything stored.
 UNITS = "reduced: mean disk radius, mean disk mass, g"
 
-_FLAGS = {"flag_values": np.array([0, 1, 2], np.int8), "flag_meanings": "open sticking sliding"}
+
+def _flags(meanings: Sequence[str], kind: type[np.integer]) -> dict[str, Any]:
+    """Attributes of a variable that holds codes, by the CF conventions."""
+    return {"flag_values": np.arange(len(meanings), dtype=kind), "flag_meanings": " ".join(meanings)}
+
+
+_FLAGS = _flags(status.MEANINGS, np.int8)
+_WALL_FLAGS = _flags(box.WALL_MEANINGS, np.int32)
 _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 
 
@@ -100,8 +107,10 @@ def _states(states: Sequence[State], dimension: str) -> dict[str, Values]:
         second = "partner" if kind == "pairs" else "wall"
         first_name = f"{prefix}_disk"
         data[first_name] = described((dim,), contacts[0].first, "disk that the contact force acts on")
-        text = "other disk" if kind == "pairs" else "wall: 0 floor, 1 left, 2 right"
-        data[f"{prefix}_{second}" if kind == "pairs" else "wall_index"] = described((dim,), contacts[0].second, text)
+        if kind == "pairs":
+            data[f"{prefix}_{second}"] = described((dim,), contacts[0].second, "other disk")
+        else:
+            data["wall_index"] = described((dim,), contacts[0].second, "wall", **_WALL_FLAGS)
         for name, long_name in _CONTACT_VARIABLES.items():
             values = np.stack([getattr(c, name) for c in contacts])
             flags = _FLAGS if name == "status" else {}
@@ -155,6 +164,80 @@ def _crossings(loaded: Sequence[State]) -> dict[str, Values]:
     }
 
 
+#: What is stored of the record of each state, where it is known for one of them.
+_REACHED = {
+    "method": "method that found the state",
+    "settled": "whether dynamics came to rest",
+    "steps": "time steps of the dynamics since it began",
+    "time": "time since the last ramp began in sqrt(radius/g)",
+    "rebuilds": "times that candidate contacts were listed again",
+    "kinetic_energy": "kinetic energy per disk before the static finish in mean weight times mean radius",
+    "relaxation_steps": "time steps of the last relaxation",
+    "network_fixed_steps": "time steps in which no contact opened or closed",
+    "sliding_contacts": "sliding contacts when the kinetic energy had fallen below its limit",
+    "mean_acceleration": "mean acceleration of disks with two contacts or more in g, at that moment",
+    "loose_disks": "disks with fewer than two contacts, at that moment",
+    "more_relaxations": "stretches of dynamics between tries of the static finish",
+    "newton_iterations": "iterations of Newton's method",
+    "escapes": "saddles of the energy that were left",
+    "increments": "increments of the path so far, in the command that made the state",
+    "factorisations": "factorisations of the path so far, in the command that made the state",
+}
+
+
+def _reached(states: Sequence[State]) -> dict[str, Values]:
+    """How the states were reached, along ``state``."""
+    data = {}
+    for name, text in _REACHED.items():
+        known = [getattr(state.reached, name) for state in states]
+        if name == "method":
+            data["reached_method"] = described(("state",), np.array([one or "" for one in known], str), text)
+        elif any(one is not None for one in known):
+            whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
+            missing = NOT_DETERMINED if whole else np.nan
+            values = np.array([missing if one is None else one for one in known], np.int64 if whole else float)
+            data[f"reached_{name}"] = described(("state",), values, text + (" (-1: not known)" if whole else ""))
+    return data
+
+
+def _reached_from(one: xr.Dataset) -> dict[str, Any]:
+    """The numbers of a stored record; what is not known is left out."""
+    found: dict[str, Any] = {}
+    for name in _REACHED:
+        if f"reached_{name}" in one:
+            value = one[f"reached_{name}"].values.item()
+            if value not in ("", NOT_DETERMINED) and value == value:
+                found[name] = bool(value) if name == "settled" else value
+    return found
+
+
+def load_coordinates(factors: Sequence[float]) -> dict[str, Values]:
+    """Coordinates along ``load``: its index, ``load_factor`` and ``step``; a lone ``load_factor`` for one load.
+
+    Factors may repeat: ``sel(load=0.5)`` then gives every step at half the loads.
+    """
+    text = "multiplier of the scene's loads"
+    values = np.asarray(factors, float)
+    if len(values) < 2:
+        return {"load_factor": described((), values[0], text)} if len(values) else {}
+    return {
+        "load": described("load", values, f"index: {text}"),
+        "load_factor": described("load", values, text),
+        "step": described("load", np.arange(1, len(values) + 1), "step of the load programme"),
+    }
+
+
+COORDINATES = frozenset({"axis", "component", "floor_disk", "load", "load_factor", "step", "x"})
+
+
+def indexed(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with ``sel(load_factor=...)``, or ``sel(step=...)`` where load factors repeat."""
+    if "load" not in dataset.dims or "load_factor" not in dataset.coords:
+        return dataset
+    unique = len(set(dataset["load_factor"].values.tolist())) == dataset.sizes["load"]
+    return dataset.set_xindex("load_factor" if unique else "step")
+
+
 def added_forces_dataset(
     rest: Sequence[State], loaded: Sequence[State], packing: Packing, dimension: str
 ) -> xr.Dataset:
@@ -188,7 +271,7 @@ def added_forces_dataset(
             "contact_status_rest": status("at rest", rest),
             "contact_status": status("under load", loaded),
             "wall_disk": variable(("wall_contact",), walls.first, "disk that the wall's force acts on"),
-            "wall_index": variable(("wall_contact",), walls.second, "wall: 0 floor, 1 left, 2 right"),
+            "wall_index": variable(("wall_contact",), walls.second, "wall", **_WALL_FLAGS),
             "wall_added_force": variable(
                 (dimension, "wall_contact", "axis"), np.stack([wall_force_difference(a, b) for a, b in both]), text
             ),
@@ -200,14 +283,15 @@ def added_forces_dataset(
 
 def to_dataset(solution: Solution) -> xr.Dataset:
     """The labelled dataset of a solved scene, as :func:`to_labelled` describes it."""
-    return to_labelled(solution).dataset()
+    return indexed(to_labelled(solution).dataset())
 
 
 def to_labelled(solution: Solution) -> Labelled:
     """The labelled data of a solved scene.
 
-    Dimension ``state``: at rest first, then one entry for each load factor. ``floor_force`` and
-    ``floor_response`` have a dimension ``load`` only when there is more than one load factor.
+    Dimension ``state``: at rest first, then one entry for each load factor, which ``state_load_factor`` gives.
+    ``floor_force``, ``floor_response`` and ``total_force`` have a dimension ``load`` only when there is more than one
+    load factor; its coordinates are those of :func:`load_coordinates`.
     """
     problem = solution.problem
     packing = problem.packing
@@ -221,8 +305,12 @@ def to_labelled(solution: Solution) -> Labelled:
     response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
     several = len(loaded) > 1
     dims = ("load", "floor_disk") if several else ("floor_disk",)
+    of_states = _states(states, "state")
     data = {
-        **_states(states, "state"),
+        "state_load_factor": of_states.pop("load_factor"),
+        **of_states,
+        **described_forces(states),
+        **load_coordinates(solution.load_factors),
         "floor_force_rest": described(("floor_disk",), at_rest, f"vertical floor force at rest {FORCE}"),
         "floor_force": described(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
         "floor_response": described(
@@ -243,6 +331,7 @@ def to_labelled(solution: Solution) -> Labelled:
             f"total magnitude of the applied forces {FORCE}",
         ),
         **_certificates(states, "state"),
+        **_reached(states),
         **_crossings(loaded),
         "floor_disk": described(("floor_disk",), disks, "index of the floor disk"),
         "x": described(
@@ -262,13 +351,23 @@ def to_labelled(solution: Solution) -> Labelled:
         "scene": solution.scene.to_yaml(),
         "scene_folder_note": "paths in the scene are relative to the folder of the scene file",
         "width": packing.width,
+        "sides": "periodic" if packing.box.periodic else "walls",
         "method": json.dumps(methods),
         "method_reason": json.dumps(reasons),
         "stable": _verdict([s.certificate.stable for s in states]),
         "settled": _verdict([s.reached.settled is not False for s in states]),
         "units": UNITS,
     }
-    return Labelled(data, frozenset({"axis", "floor_disk", "x", "component"}), attributes)
+    return Labelled(data, COORDINATES & set(data), attributes)
+
+
+def described_forces(states: Sequence[State]) -> dict[str, Values]:
+    """Contact forces as vectors, on the disk named first."""
+    text = f"contact force x, z on the first disk {FORCE}"
+    return {
+        "contact_force": described(("state", "contact", "axis"), np.stack([s.pair_force() for s in states]), text),
+        "wall_force": described(("state", "wall_contact", "axis"), np.stack([s.wall_force() for s in states]), text),
+    }
 
 
 def _verdict(all_states: Sequence[bool | None]) -> str:
@@ -308,9 +407,9 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         angular_velocity=one["angular_velocity"].values.astype(float),
         pairs=contacts("contact", "contact_partner"),
         walls=contacts("wall", "wall_index"),
-        box=Box(float(dataset.attrs["width"])),
-        load_factor=float(one["load_factor"]),
-        reached=Reached(certificate=certificate),
+        box=Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic"),
+        load_factor=float(one["state_load_factor" if "state_load_factor" in one else "load_factor"]),
+        reached=Reached(certificate=certificate, **_reached_from(one)),
     )
 
 

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from . import files as store
+from .checked import read_result
 from .result import NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
@@ -27,6 +28,9 @@ _HIDDEN = {
     "settled",
 }
 
+#: What is shown of the work that each state took.
+_WORK = ("steps", "increments", "factorisations", "newton_iterations")
+
 
 def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     """Parts of the summary of a file, in order.
@@ -35,19 +39,24 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     ------
     granular_response.store.StoreError
         If the file cannot be read.
+    granular_response.store.result.ResultError
+        If it is a result that is not whole.
     """
-    datasets, attributes = store.read(path), store.read_attributes(path)
-    yield Text(str(path), style="bold")
-    yield _table((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
+    datasets, attributes = store.read(path, sealed=False), store.read_attributes(path, sealed=False)
     root = datasets.get("")
-    if root is not None and "floor_response" in root:
-        yield from _result(root)
+    result = read_result(path, sealed=False) if root is not None and "floor_response" in root else None
+    yield _text(path, style="bold")
+    if not store.is_sealed(path):
+        yield Text("written by another program: without the digest that shows damage")
+    yield _table((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
+    if result is not None:
+        yield from _result(result)
     else:
         yield from _study(datasets)
     for name in ("scene", "parameters"):
         if name in attributes:
             yield Text(f"\n{name}", style="bold")
-            yield Text(str(attributes[name]).rstrip())
+            yield _text(str(attributes[name]).rstrip())
 
 
 def _result(result: xr.Dataset) -> Iterator[RenderableType]:
@@ -58,6 +67,9 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
         if name in result.attrs:
             rows.append((name, str(result.attrs[name])))
     yield _table(rows)
+    if work := [name for name in _WORK if f"reached_{name}" in result]:
+        yield Text("\nwork", style="bold")
+        yield _work(result, work)
     if "crossing_start" in result:
         yield Text("\nstretches of load that dynamics crossed", style="bold")
         yield _crossings(result)
@@ -67,21 +79,34 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
     yield _response(result)
 
 
+def _work(result: xr.Dataset, names: list[str]) -> Table:
+    table = Table(box=None, pad_edge=False)
+    _factors(table, result)
+    for name in names:
+        values = result[f"reached_{name}"].values
+        table.add_row(name.replace("_", " "), *("-" if value == NOT_DETERMINED else str(value) for value in values))
+    return table
+
+
+def _factors(table: Table, result: xr.Dataset) -> None:
+    table.add_column("at load factor", style="dim")
+    for factor in result["state_load_factor"].values:
+        table.add_column(f"{factor:g}", justify="right")
+
+
 def _crossings(result: xr.Dataset) -> Table:
     table = Table(box=None, pad_edge=False)
     for title in ("from load factor", "to", "largest displacement", "why"):
         table.add_column(title, justify="left" if title == "why" else "right")
     for k in range(result.sizes["crossing"]):
         start, end, moved = (float(result[f"crossing_{name}"][k]) for name in ("start", "end", "displacement"))
-        table.add_row(f"{start:.6g}", f"{end:.6g}", f"{moved:.3g}", str(result["crossing_reason"].values[k]))
+        table.add_row(f"{start:.6g}", f"{end:.6g}", f"{moved:.3g}", _text(result["crossing_reason"].values[k]))
     return table
 
 
 def _certificate(result: xr.Dataset) -> Table:
     table = Table(box=None, pad_edge=False)
-    table.add_column("at load factor", style="dim")
-    for factor in result["load_factor"].values:
-        table.add_column(f"{factor:g}", justify="right")
+    _factors(table, result)
     for name in map(str, result):
         if name.startswith("certificate_"):
             title = name.removeprefix("certificate_").replace("_", " ")
@@ -116,7 +141,7 @@ def _study(datasets: dict[str, xr.Dataset]) -> Iterator[RenderableType]:
         table.add_column(title, overflow="fold")
     for name, dataset in datasets.items():
         sizes = ", ".join(f"{dimension} {size}" for dimension, size in dataset.sizes.items())
-        table.add_row(name or "/", sizes, ", ".join(map(str, dataset.data_vars)))
+        table.add_row(_text(name or "/"), _text(sizes), _text(", ".join(map(str, dataset.data_vars))))
     yield Text("\ndatasets", style="bold")
     yield table
 
@@ -126,8 +151,13 @@ def _table(rows: Iterator[tuple[str, str]] | list[tuple[str, str]]) -> Table:
     table.add_column(style="dim")
     table.add_column(overflow="fold")
     for name, value in rows:
-        table.add_row(name.replace("_", " "), value)
+        table.add_row(_text(name.replace("_", " ")), _text(value))
     return table
+
+
+def _text(value: object, style: str = "") -> Text:
+    """What a file holds as it is: no markup, and no characters that a terminal obeys."""
+    return Text("".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in str(value)), style)
 
 
 def _plain(value: object) -> str:

@@ -1,0 +1,188 @@
+"""Results as others read them, as the version before wrote them, and sealed files that are no results."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from small_scenes import scene
+
+import granular_response as gr
+from granular_response.solve import continue_solution, solve_scene
+from granular_response.store import files as store
+from granular_response.store.checked import checked, read_result
+from granular_response.store.result import ResultError, indexed, load_coordinates, solution_from, state_from, to_dataset
+
+OLDER = Path(__file__).parents[1] / "data" / "result_layout_1.nc"
+
+
+@pytest.fixture(scope="module")
+def solution():
+    load = {"disk": "top-centre", "force": [0.5, -3.0]}
+    return solve_scene(scene(contact__friction=0.3, loads=[load]), load_factors=(0.5, 1.0, 2.0))
+
+
+@pytest.fixture(scope="module")
+def path(solution, tmp_path_factory):
+    path = tmp_path_factory.mktemp("checked") / "result.nc"
+    store.write(path, to_dataset(solution))
+    return path
+
+
+def call(*arguments, folder, **options):
+    command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, **options)
+
+
+def test_a_load_is_found_by_its_factor(path):
+    with xr.open_dataset(path) as plain:
+        assert plain["floor_response"].dims == ("load", "floor_disk")
+        assert plain["load_factor"].dims == ("load",) and {"load", "load_factor", "step"} <= set(plain.coords)
+        for factor, place in ((0.5, 0), (1.0, 1), (2.0, 2)):
+            expected = plain["floor_response"].values[place]
+            np.testing.assert_array_equal(plain["floor_response"].sel(load=factor), expected)
+            ours = read_result(path)["floor_response"]
+            np.testing.assert_array_equal(ours.sel(load_factor=factor), expected)
+        with pytest.raises(KeyError):
+            plain["floor_response"].sel(load=3)
+        assert plain["state_load_factor"].values.tolist() == [0.0, 0.5, 1.0, 2.0]
+
+
+def test_one_load_has_no_dimension(solution):
+    one = to_dataset(solve_scene(solution.scene))
+    assert "load" not in one.dims and float(one["load_factor"]) == 1.0 and "load_factor" in one.coords
+
+
+def test_factors_may_repeat():
+    values = load_coordinates([0.5, 1.0, 0.5])
+    made = indexed(xr.Dataset({"a": ("load", [1, 2, 3])}, {name: tuple(value) for name, value in values.items()}))
+    assert made["a"].sel(load=0.5).values.tolist() == [1, 3]
+    assert made["a"].sel(step=3) == 3 and made["load_factor"].values.tolist() == [0.5, 1.0, 0.5]
+
+
+def test_codes_say_what_they_mean(path):
+    with xr.open_dataset(path) as plain:
+        for name, meanings in (
+            ("contact_status", "open sticking sliding"),
+            ("wall_status", "open sticking sliding"),
+            ("wall_index", "floor left_wall right_wall"),
+        ):
+            attributes = plain[name].attrs
+            assert attributes["flag_meanings"] == meanings and attributes["flag_values"].tolist() == [0, 1, 2]
+            assert attributes["flag_values"].dtype == plain[name].dtype
+
+
+def test_force_vectors_carry_weight_and_load(path):
+    with xr.open_dataset(path) as data:
+        for k, factor in enumerate(data["state_load_factor"].values):
+            total = np.zeros((data.sizes["disk"], 2))
+            np.add.at(total, data["contact_disk"].values, data["contact_force"].values[k])
+            np.add.at(total, data["contact_partner"].values, -data["contact_force"].values[k])
+            np.add.at(total, data["wall_disk"].values, data["wall_force"].values[k])
+            total[:, 1] -= data["mass"].values
+            total[data["loaded_disk"].values] += factor * data["applied_load"].values[:, :2]
+            np.testing.assert_allclose(total, 0.0, atol=1e-9)
+
+
+def test_the_record_of_a_state_comes_back(solution, path):
+    data = read_result(path)
+    assert data["reached_factorisations"].values[-1] == solution.loaded[-1].reached.factorisations > 0
+    for k, state in enumerate((solution.rest, *solution.loaded)):
+        back = state_from(data, k).reached
+        for name in ("method", "settled", "steps", "factorisations", "kinetic_energy", "time", "increments"):
+            assert getattr(back, name) == getattr(state.reached, name), name
+            assert type(getattr(back, name)) is type(getattr(state.reached, name)), name
+    shown = call("show", path, folder=path.parent).stdout
+    assert "work" in shown and "factorisations" in shown
+
+
+def test_results_of_the_layout_before_are_read(tmp_path):
+    with xr.open_dataset(OLDER) as raw:
+        assert raw["load_factor"].dims == ("state",) and raw.attrs["format"] == "granular_response 1"
+        data = read_result(OLDER)
+        assert data["floor_response"].sel(load_factor=2.0).values.tolist() == raw["floor_response"].values[2].tolist()
+        assert data["state_load_factor"].values.tolist() == raw["load_factor"].values.tolist()
+    assert gr.open_result(OLDER).load_factors == (0.5, 1.0, 2.0)
+    again = to_dataset(solution_from(data))
+    for name in ("position", "contact_force", "wall_force", "load_factor", "floor_response"):
+        np.testing.assert_array_equal(again[name], data[name])
+    assert call("show", OLDER, folder=tmp_path).returncode == 0
+    assert call("continue", OLDER, "--to", 2.5, "-o", "more.nc", folder=tmp_path).returncode == 0
+    with xr.open_dataset(tmp_path / "more.nc") as more:
+        assert more["load_factor"].values.tolist() == [0.5, 1.0, 2.0, 2.5]
+
+
+def test_what_xarray_writes_is_shown_and_exported(solution, tmp_path):
+    to_dataset(solution).to_netcdf(tmp_path / "by_xarray.nc")
+    shown = call("show", "by_xarray.nc", folder=tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    assert "written by another program" in shown.stdout and "force residual" in shown.stdout
+    assert call("export", "by_xarray.nc", "-o", "a.xyz", folder=tmp_path).returncode == 0
+    xr.Dataset({"a": ("n", [1.0])}).to_netcdf(tmp_path / "foreign.nc")
+    finished = call("show", "foreign.nc", folder=tmp_path)
+    assert (finished.returncode, finished.stderr.count("\n")) == (2, 1)
+
+
+def spoil(data: xr.Dataset, name: str, value: float) -> xr.Dataset:
+    spoilt = data.copy(deep=True)
+    spoilt[name].values.flat[-1] = value
+    return spoilt
+
+
+DAMAGE = {
+    "a missing variable": (lambda d: d.drop_vars("wall_index"), "variable wall_index is missing"),
+    "no radius": (lambda d: d.drop_vars("radius"), "variable radius is missing"),
+    "a partner that is not there": (lambda d: spoil(d, "contact_partner", 99), "contact_partner: holds 99, must be from"),
+    "a negative disk": (lambda d: spoil(d, "loaded_disk", -1), "loaded_disk: holds -1"),
+    "no such wall": (lambda d: spoil(d, "wall_index", 3), "wall_index: holds 3, must be from 0 to 2"),
+    "no such status": (lambda d: spoil(d, "contact_status", 7), "contact_status: holds 7"),
+    "no position": (lambda d: spoil(d, "position", np.nan), "variable position: must be finite"),
+    "an endless spring": (lambda d: spoil(d, "contact_spring", np.inf), "variable contact_spring: must be finite"),
+    "no mass": (lambda d: spoil(d, "mass", 0.0), "variable mass: must be greater than 0"),
+    "other dimensions": (lambda d: d.assign(angle=d["angle"].T), "variable angle: has dimensions disk, state"),
+    "words": (lambda d: d.assign(mass=d["mass"].astype(str)), "variable mass: has values of type"),
+    "no states": (lambda d: d.isel(state=slice(0)), "must have a state"),
+    "a load too many": (lambda d: d.isel(state=slice(3)), "dimension load: must have 2 entries"),
+    "no scene": (lambda d: d.drop_attrs(deep=False), "attribute scene is missing"),
+    "no width": (lambda d: d.assign_attrs(width="wide"), "attribute width"),
+    "other sides": (lambda d: d.assign_attrs(sides="open"), "attribute sides: must be walls or periodic"),
+    "no JSON": (lambda d: d.assign_attrs(method="{"), "attribute method: must be a mapping as JSON"),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
+    change, said = DAMAGE[damage]
+    store.write(tmp_path / "bad.nc", change(to_dataset(solution)))
+    with pytest.raises(ResultError, match=r"^[^\n]*bad\.nc: is not a whole result: [^\n]*$") as caught:
+        read_result(tmp_path / "bad.nc")
+    assert said in str(caught.value)
+    with pytest.raises(ResultError):
+        gr.open_result(tmp_path / "bad.nc")
+
+
+def test_commands_say_so_in_one_line(solution, tmp_path):
+    store.write(tmp_path / "bad.nc", spoil(to_dataset(solution), "position", np.nan))
+    for arguments in (["show", "bad.nc"], ["continue", "bad.nc", "--to", "3"], ["export", "bad.nc"]):
+        more = [] if arguments[0] == "show" else ["-o", {"continue": "a.nc", "export": "a.xyz"}[arguments[0]]]
+        finished = call(*arguments, *more, folder=tmp_path)
+        assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
+        assert "bad.nc: is not a whole result: variable position: must be finite" in finished.stderr
+
+
+def test_every_result_that_is_written_is_whole(solution):
+    checked(to_dataset(solution))
+    checked(to_dataset(continue_solution(solution, [3.0])))
+    checked(to_dataset(solve_scene(scene(loads=[]))))
+
+
+def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):
+    data = to_dataset(solution).assign_attrs(title="[red]not[/red] red [/] \x1b[31m:smile:", history="[bold")
+    store.write(tmp_path / "result.nc", data, {"[i]note": "[/nothing]"})
+    shown = call("show", "result.nc", folder=tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    for text in ("[red]not[/red] red [/]", ":smile:", "[bold", "[i]note", "[/nothing]"):
+        assert text in shown.stdout
+    assert "\x1b" not in shown.stdout
