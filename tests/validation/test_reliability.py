@@ -285,7 +285,8 @@ def test_dynamics_from_a_stored_moving_state(tmp_path):
     running.set_ramps()
     running.advance(2000)
     state = running.state()
-    store.write(tmp_path / "moving.nc", {"moving": states_dataset([state]).drop_vars("axis")})
+    stored = states_dataset([state]).drop_vars("axis").assign_attrs(width=state.box.width)
+    store.write(tmp_path / "moving.nc", {"moving": stored})
     back = state_from(store.read(tmp_path / "moving.nc")["moving"])
     ends = []
     for start in (state, back):
