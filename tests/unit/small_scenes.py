@@ -20,7 +20,7 @@ def free_disks(position, radius=None, *, width=1000.0, velocity=None, spin=None,
     position = np.array(position, float)
     n = len(position)
     radius = np.ones(n) if radius is None else np.array(radius, float)
-    packing = Packing(position, radius, np.full(n, -1, np.int32), width, "file")
+    packing = Packing(position, radius, np.full(n, -1, np.int32), width)
     problem = Problem.from_scene(scene(**changes), packing)
     state = problem.bare_state()
     if velocity is not None:

@@ -38,7 +38,7 @@ def test_listing_again_keeps_the_motion(integrator):
 def test_searched_list_and_lattice_list_give_the_same_motion():
     problem = Problem.from_scene(scene())
     lattice = Dynamics(problem, problem.bare_state(), "beeman", 2e-4)
-    blind = replace(problem, packing=replace(problem.packing, kind="file", lattice_constant=None))
+    blind = replace(problem, packing=replace(problem.packing, left=None, lattice_constant=None))
     searched = Dynamics(blind, blind.bare_state(), "beeman", 2e-4)
     assert len(searched.candidates.first) >= len(problem.lattice_pairs)
     for dynamics in (lattice, searched):

@@ -94,3 +94,12 @@ def test_the_command_line_loads_nothing_heavy():
     )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+
+def test_only_scenes_ask_for_the_kind_of_a_packing():
+    """What others need of a packing is data: its order, its neighbours, a smaller one of its kind."""
+    asks = re.compile(r"(?<!\")\bpacking\.kind\b|isinstance\([^)]*(Slab|Pile|Lattice)Packing")
+    paths = [path for path in (SOURCE / "granular_response").rglob("*.py") if path.parent.name != "scene"]
+    assert len(paths) > 100
+    assert [path.name for path in paths if asks.search(path.read_text())] == []

@@ -21,7 +21,8 @@ def test_reads_and_rescales(build):
     assert np.allclose(packing.position, [[1.0, 1.0], [3.0, 1.0], [2.0, 2.4]])
     assert np.allclose(packing.radius, [0.6, 1.0, 1.4])
     assert packing.width == 4.0
-    assert packing.kind == "file" and packing.n == 3 and list(packing.row) == [-1, -1, -1]
+    assert packing.left is None and packing.neighbour_pairs() is None
+    assert packing.n == 3 and list(packing.row) == [-1, -1, -1]
     assert packing.position.flags.c_contiguous
     assert packing.mass.mean() == pytest.approx(1.0)
     assert len(packing.row_count) == 0

@@ -196,7 +196,7 @@ def test_file_packing_belongs_to_the_folder_of_its_scene(tmp_path):
 def test_examples(path):
     scene = Scene.from_yaml(path)
     packing = scene.packing.build()
-    assert packing.n > 1 and packing.kind == scene.packing.kind
+    assert packing.n > 1 and (packing.left is None) == (scene.packing.kind == "file")
     assert Scene.from_text(scene.to_yaml(), folder=scene.folder) == scene
     for load in scene.loads:
         assert 0 <= resolve_disk(load.disk, packing, packing.position) < packing.n

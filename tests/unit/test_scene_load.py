@@ -17,7 +17,7 @@ from granular_response.scene import (
 
 def scattered(position, radius, width):
     position, radius = np.array(position, float), np.array(radius, float)
-    return Packing(position, radius, np.full(len(radius), -1, np.int32), width, "file")
+    return Packing(position, radius, np.full(len(radius), -1, np.int32), width)
 
 
 def test_top_centre_of_lattices():

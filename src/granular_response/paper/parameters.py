@@ -88,9 +88,10 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
     """Validates a partial scene: changes to ``base``, by keys of any depth.
 
     ``decided`` are keys that the group sets itself, for which a value in the partial scene would mean nothing; the
-    method is one of them.
+    method is one of them. The kind of packing stays that of ``base``.
     """
     refused = ("protocol.method", *decided)
+    kind = base.to_dict()["packing"]["kind"]
 
     def complete(given: Any) -> Any:
         if isinstance(given, Scene):
@@ -99,10 +100,10 @@ def over(base: Scene, *decided: str) -> BeforeValidator:
             raise Problem("must be a mapping with keys of a scene")
         for path, value in _leaves(given):
             name = ".".join(path)
+            if name == "packing.kind" and value != kind:
+                raise Problem(f"must be {kind} in this group", key=path, value=value)
             if name.startswith(tuple(f"{key}." for key in refused)) or name in refused:
                 raise Problem("is decided by the group, by keys of its own; must not be given", key=path, value=value)
-            if name == "packing.kind" and value != base.packing.kind:
-                raise Problem(f"must be {base.packing.kind} in this group", key=path, value=value)
         try:
             return base.merged(given)
         except SceneError as error:

@@ -56,6 +56,10 @@ class LatticePacking(Description):
         """(rows,) left end of each row, in half lattice constants from the left end of the first."""
         raise NotImplementedError
 
+    def half(self) -> LatticePacking | None:
+        """One of the same shape with half as many rows and half as wide; None where there is none."""
+        return None
+
     @property
     def spacing(self) -> float:
         """The lattice constant as a number, in mean radii."""
@@ -82,7 +86,7 @@ class LatticePacking(Description):
             radius=self._radius(len(row)),
             row=row.astype(np.int32),
             width=float(count[0] * a),
-            kind=self.kind,
+            left=left,
             lattice_constant=float(a),
         )
 
@@ -110,6 +114,11 @@ class SlabPacking(LatticePacking):
 
     def _left(self) -> NDArray[np.int64]:
         return np.arange(self.layers) % 2
+
+    def half(self) -> SlabPacking | None:
+        if self.layers < 2:
+            return None
+        return self.model_copy(update={"layers": self.layers // 2, "disks_per_row": (self.disks_per_row + 1) // 2})
 
 
 class PilePacking(LatticePacking):

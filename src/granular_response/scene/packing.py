@@ -25,14 +25,15 @@ class Packing:
     """n disks before the preparation, in reduced units; the arrays are never modified.
 
     The floor is ``z = 0``, the side walls are ``x = 0`` and ``x = width``. Lattices are numbered row by
-    row from the bottom, left to right.
+    row from the bottom, left to right; ``left`` says so, and is what neighbours and rows follow from.
     """
 
     position: FloatArray  #: (n, 2) centres x, z
     radius: FloatArray  #: (n,) with mean 1
     row: IntArray  #: (n,) row in the lattice, 0 at the bottom; -1 for a packing from a file
     width: float  #: distance of the side walls
-    kind: str  #: slab, pile or file
+    #: (rows,) left end of each row of a lattice, in half lattice constants; None for disks that are numbered anyhow
+    left: NDArray[np.int64] | None = None
     lattice_constant: float | None = None  #: distance of neighbours in the lattice; None from a file
 
     @property
@@ -52,7 +53,7 @@ class Packing:
     @property
     def ordered(self) -> bool:
         """Whether this is a lattice of equal disks."""
-        return self.kind != "file" and bool(self.radius.max() == self.radius.min())
+        return self.left is not None and bool(self.radius.max() == self.radius.min())
 
     @cached_property
     def mass(self) -> FloatArray:
@@ -67,23 +68,22 @@ class Packing:
 
     @cached_property
     def row_count(self) -> NDArray[np.int64]:
-        """(rows,) number of disks in each row from the bottom; empty for a packing from a file."""
-        return np.bincount(self.row) if self.kind != "file" else np.zeros(0, dtype=np.int64)
+        """(rows,) number of disks in each row from the bottom; empty without a lattice."""
+        return np.zeros(0, dtype=np.int64) if self.left is None else np.bincount(self.row)
 
     def neighbour_pairs(self) -> IntArray | None:
-        """(m, 2) neighbours i < j in the lattice, ordered by i and then j; None from a file.
+        """(m, 2) neighbours i < j in the lattice, ordered by i and then j; None without a lattice.
 
         For each disk its neighbours to the right, up left and up right. Found from the row and the place in
         it alone, so neither polydispersity nor rounding changes them.
         """
-        if self.kind == "file":
+        if self.left is None:
             return None
         count = self.row_count
         start = np.concatenate([[0], np.cumsum(count)[:-1]])
         column = np.arange(self.n) - start[self.row]
-        # Left end of each row in half lattice constants; the upper neighbours of h are at h - 1 and h + 1.
-        rows = np.arange(len(count))
-        left = rows % 2 if self.kind == "slab" else 3 * rows
+        # In half lattice constants the upper neighbours of h are at h - 1 and h + 1.
+        left = self.left
         has_right = column + 1 < count[self.row]
         pairs = [_pairs(has_right, np.arange(self.n) + 1)]
         above = np.minimum(self.row + 1, len(count) - 1)

@@ -59,6 +59,9 @@ class FilePacking(Description):
         """The table's place."""
         return Path(self._folder or ".", self.path)
 
+    def half(self) -> None:
+        """See ``LatticePacking.half``: a table has no smaller one."""
+
     def build(self) -> Packing:
         """Read the table and rescale it.
 
@@ -91,7 +94,6 @@ class FilePacking(Description):
             radius=radius / mean,
             row=np.full(len(radius), -1, dtype=np.int32),
             width=float(self.width / mean),
-            kind="file",
         )
 
     def _read(self) -> tuple[np.ndarray, list[int]]:

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..scene.lattice import SlabPacking
 from ..scene.packing import Packing
 from ..state import FloatArray, State
 from .energy import minimise
@@ -29,16 +28,17 @@ def rest_start(problem: Problem) -> State:
     packing as built.
     """
     bare = problem.bare_state()
-    packing, lattice = problem.packing, problem.scene.packing
+    packing = problem.packing
     touching = packing.lattice_constant == 2.0 * packing.radius[0]
-    if not (isinstance(lattice, SlabPacking) and packing.ordered and touching and problem.n > LARGE):
+    half = problem.scene.packing.half()
+    if half is None or not (packing.ordered and touching and problem.n > LARGE):
         return bare
-    half = lattice.model_copy(update={"layers": lattice.layers // 2, "disks_per_row": (lattice.disks_per_row + 1) // 2})
-    softer = (half.layers / lattice.layers) ** 2
+    coarse = half.build()
+    softer = (len(coarse.row_count) / len(packing.row_count)) ** 2
     smaller = replace(
         problem,
         scene=problem.scene.model_copy(update={"packing": half}),
-        packing=half.build(),
+        packing=coarse,
         pair_law=(softer * problem.pair_law[0], *problem.pair_law[1:]),
         wall_law=(softer * problem.wall_law[0], *problem.wall_law[1:]),
     )

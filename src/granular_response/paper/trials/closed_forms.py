@@ -26,7 +26,7 @@ def free_disks(scene: Scene, position: FloatArray, velocity: FloatArray, spin: F
     """Equal disks at given places, far from side walls, with a given motion."""
     position = np.asarray(position, float) + np.array([FAR, 0.0])
     n = len(position)
-    packing = Packing(position, np.ones(n), np.full(n, -1, np.int32), 2.0 * FAR, "file")
+    packing = Packing(position, np.ones(n), np.full(n, -1, np.int32), 2.0 * FAR)
     problem = Problem.from_scene(scene, packing)
     state = problem.bare_state()
     return problem, replace(state, velocity=np.array(velocity, float), angular_velocity=np.array(spin, float))

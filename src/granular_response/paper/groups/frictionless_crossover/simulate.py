@@ -34,7 +34,7 @@ from granular_response.paper.slab_response import (
     locate,
     states_picture,
 )
-from granular_response.scene import Scene, SlabPacking
+from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve.equilibrium import Rearranged
 from granular_response.state import State
@@ -193,9 +193,8 @@ def simulate(
 
 def slabs(parameters: Parameters) -> tuple[Slab, list[Slab], list[Slab], list[Slab]]:
     """The slab whose states are kept, those of several depths, of several widths, and of several stiffnesses."""
-    scene = parameters.scene
-    assert isinstance(scene.packing, SlabPacking)
-    main = Slab(scene.packing.layers, scene.packing.disks_per_row, scene.contact.normal_stiffness)
+    rows = parameters.scene.packing.build().row_count
+    main = Slab(len(rows), int(rows[0]), parameters.scene.contact.normal_stiffness)
     sizes, widths = (
         [Slab(layers, across, stiffness) for stiffness in parameters.size_stiffnesses for layers, across in shapes]
         for shapes in (parameters.sizes, parameters.widths)

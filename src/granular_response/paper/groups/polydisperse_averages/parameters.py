@@ -11,7 +11,7 @@ from granular_response.paper.parameters import UNIT_LOAD, Coefficients, Growing,
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
 from granular_response.scene.errors import Problem
-from granular_response.scene.lattice import LatticeConstant, LatticePacking
+from granular_response.scene.lattice import LatticeConstant
 
 Spreads = Annotated[tuple[Fraction, ...], AfterValidator(some)]
 
@@ -110,8 +110,7 @@ class Parameters(SceneGroup):
     @property
     def lattice_constant(self) -> float | str:
         """Of the start, where a case has none of its own."""
-        assert isinstance(self.scene.packing, LatticePacking)
-        return self.scene.packing.lattice_constant
+        return self.scene.packing.model_dump()["lattice_constant"]
 
     @property
     def columns(self) -> list[Case]:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from granular_response.paper.parameters import Counts, SceneGroup, growing, over
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Positive, allowed
 from granular_response.scene.errors import Problem
-from granular_response.scene.lattice import LatticePacking
 
 _UNLOADED = Scene(loads=())
 
@@ -40,9 +38,7 @@ class Parameters(SceneGroup):
         if self.pair_realizations > self.realizations:
             rule = f"must be from 1 to realizations = {self.realizations}"
             raise Problem(rule, key=("pair_realizations",), value=self.pair_realizations)
-        packing = self.scene.packing
-        assert isinstance(packing, LatticePacking)  # see over
-        farthest = (int(np.asarray(packing.row_count())[-1]) - 1) // 2
+        farthest = (int(self.scene.packing.build().row_count[-1]) - 1) // 2
         if max(self.offsets) > farthest:
             raise Problem(f"must be places from 1 to {farthest}", key=("offsets",), value=list(self.offsets))
         return self

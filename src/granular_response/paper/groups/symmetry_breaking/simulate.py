@@ -217,7 +217,7 @@ def mirrored(packing: Packing) -> Packing:
 def shuffled(packing: Packing, seed: int) -> Packing:
     """The same disks numbered at random.
 
-    As a packing from a file, since the neighbours on a lattice are known by the numbers of the disks.
+    Without the order of a lattice, whose neighbours are known by the numbers of the disks.
     """
     order = np.random.default_rng(seed).permutation(packing.n)
     return replace(
@@ -225,7 +225,7 @@ def shuffled(packing: Packing, seed: int) -> Packing:
         position=packing.position[order],
         radius=packing.radius[order],
         row=packing.row[order],
-        kind="file",
+        left=None,
     )
 
 
