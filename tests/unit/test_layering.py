@@ -25,7 +25,7 @@ ALLOWED = {
     "theory": {"numpy", "scipy"},
     "plot": {"cycler", "matplotlib", "numpy", "xarray"},
     "store": {"gsd", "netCDF4", "numpy", "pyevtk", "rich", "xarray"},
-    "sweeps": {"distributed", "numpy"},
+    "sweeps": {"cloudpickle", "distributed", "numpy"},
     "api": {"numpy", "xarray"},
     "paper": {"PIL", "jinja2", "matplotlib", "numpy", "pydantic", "scipy", "xarray"},
     "cli": {"rich", "typer"},

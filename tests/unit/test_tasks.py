@@ -1,11 +1,13 @@
 """One map: same results wherever it runs, nothing finished is lost, every failure names its task."""
 
 import functools
+import json
 import os
 import pickle
 import signal
 import subprocess
 import sys
+import threading
 import time
 import warnings
 from pathlib import Path
@@ -14,10 +16,12 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.sweeps import tasks
+from granular_response.sweeps import cluster as dask_tasks
+from granular_response.sweeps import processes
+from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
-from granular_response.sweeps.tasks import SweepError, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 
 def response(item):
@@ -89,6 +93,97 @@ def test_a_failing_task_is_named(workers):
     assert isinstance(caught.value.__cause__, ValueError)
 
 
+class Unreadable(Exception):
+    """Made from two values, kept as one: it cannot be unpickled."""
+
+    def __init__(self, one, other):
+        super().__init__(f"{one} and {other}")
+
+
+def raise_unreadable(item):
+    raise Unreadable(item, "more")
+
+
+def test_an_exception_that_cannot_be_sent_is_told_as_text():
+    with pytest.raises(SweepError, match=r"task [12] of 2 \([12]\) failed: Unreadable: [12] and more") as caught:
+        map_tasks(raise_unreadable, [1, 2], workers=2)
+    assert "in raise_unreadable" in str(caught.value.__cause__)
+
+
+def test_an_exception_of_a_worker_has_its_traceback():
+    with pytest.raises(SweepError) as caught:
+        map_tasks(fail_at_three, range(6), workers=2)
+    assert any("in fail_at_three" in note for note in caught.value.__cause__.__notes__)
+
+
+def leave(item):
+    sys.exit(f"no {item}")
+
+
+def test_a_task_that_exits_is_named():
+    with pytest.raises(SweepError, match=r"failed: SystemExit: no [12]"):
+        map_tasks(leave, [1, 2], workers=2)
+
+
+class Ajar:
+    """Can be sent, but not read."""
+
+    def __reduce__(self):
+        return (fail_at_three, (3,))
+
+
+def ajar(item):
+    return Ajar()
+
+
+def test_what_cannot_be_sent_is_named():
+    with pytest.raises(SweepError, match=r"task 2 of 2 \(.*\) cannot be sent to a worker: .*lock"):
+        map_tasks(slow_first, [1, threading.Lock()], workers=2)
+    with pytest.raises(SweepError, match=r"task [12] of 2 .* failed: TypeError: .*lock"):
+        map_tasks(lambda item: threading.Lock(), [1, 2], workers=2)
+    with pytest.raises(SweepError, match=r"failed: its result cannot be read: ValueError: no equilibrium"):
+        map_tasks(ajar, [1, 2], workers=2)
+
+
+def test_lambdas_and_functions_of_a_function_run_in_processes():
+    factor = 3
+
+    def scaled(item):
+        return factor * item
+
+    assert map_tasks(scaled, range(4), workers=2) == [0, 3, 6, 9]
+    assert map_tasks(lambda item: item + factor, range(4), workers=2) == [3, 4, 5, 6]
+
+
+NOTEBOOK = """
+import dataclasses
+from granular_response.sweeps.tasks import map_tasks
+@dataclasses.dataclass
+class Found:
+    value: int
+def inner(item):
+    return Found(item + 1)
+def cell(item):
+    return inner(item)
+found = map_tasks(cell, range(4), workers=2)
+assert all(type(one) is Found for one in found)
+print([one.value for one in found])
+"""
+
+
+def test_a_function_of_a_notebook_runs_in_processes():
+    """A program that no worker can import, as a cell of a notebook is none."""
+    run = subprocess.run([sys.executable, "-c", NOTEBOOK], capture_output=True, text=True, check=True)
+    assert run.stdout == "[1, 2, 3, 4]\n"
+
+
+def test_a_script_without_its_guard_is_told_what_is_missing(tmp_path):
+    (tmp_path / "script.py").write_text(NOTEBOOK)
+    run = subprocess.run([sys.executable, tmp_path / "script.py"], capture_output=True, text=True)
+    assert run.returncode == 1
+    assert "SweepError: worker processes end before they begin: a script has its calls under" in run.stderr
+
+
 @pytest.mark.parametrize("workers", [0, -1])
 def test_the_number_of_workers_is_checked(workers):
     with pytest.raises(SweepError, match=f"workers = {workers}: must be 1 or more"):
@@ -107,7 +202,7 @@ def test_a_task_that_kills_every_worker_is_named(tmp_path):
     task = functools.partial(note, folder=tmp_path, die_at=3, always=True)
     with pytest.raises(SweepError, match=r"task 4 of 6 \(3\) killed its worker process 3 times"):
         map_tasks(task, range(6), workers=2)
-    assert len(starts(tmp_path, 3)) == tasks.ATTEMPTS
+    assert len(starts(tmp_path, 3)) == processes.ATTEMPTS
 
 
 def test_an_interrupted_sweep_continues(tmp_path):
@@ -334,3 +429,70 @@ class TestDask:
         monkeypatch.setitem(sys.modules, "distributed", None)
         with pytest.raises(SweepError, match=r"granular-response\[dask\]"):
             map_tasks(response, ITEMS, scheduler="tcp://127.0.0.1:8786")
+
+    def test_a_function_of_a_function_runs_on_the_cluster(self, cluster):
+        factor = 3
+        assert map_tasks(lambda item: factor * item, range(3), scheduler=cluster.scheduler_address) == [0, 3, 6]
+
+    def test_an_exception_that_cannot_be_sent_is_told_as_text(self, cluster):
+        with pytest.raises(SweepError, match=r"failed: Unreadable: [12] and more"):
+            map_tasks(raise_unreadable, [1, 2], scheduler=cluster.scheduler_address)
+
+
+def one_process(*command):
+    """A process of a cluster that is stopped here; it can import this file."""
+    paths = os.pathsep.join([os.environ.get("PYTHONPATH", ""), str(Path(__file__).parent)])
+    return subprocess.Popen(
+        [sys.executable, "-m", *command],
+        env={**os.environ, "PYTHONPATH": paths},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """A scheduler without workers in a process of its own, and its address."""
+    pytest.importorskip("distributed")
+    told = tmp_path / "scheduler.json"
+    process = one_process(
+        "distributed.cli.dask_scheduler", "--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file",
+        str(told),
+    )  # fmt: skip
+    deadline = time.monotonic() + 60
+    while not told.exists() or not told.read_text().endswith("}"):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    yield process, json.loads(told.read_text())["address"]
+    process.kill()
+    process.wait()
+
+
+def test_a_scheduler_without_workers_is_reported_and_then_waited_for(scheduler, monkeypatch):
+    monkeypatch.setattr(dask_tasks, "PATIENCE", 0.2)
+    _, address = scheduler
+    worker = []
+
+    def start_worker(message, category, *_):
+        if category is UserWarning and not worker:
+            worker.append(one_process("distributed.cli.dask_worker", address, "--nworkers", "1", "--no-dashboard"))
+            said.append(str(message))
+
+    said: list[str] = []
+    monkeypatch.setattr(warnings, "showwarning", start_worker)
+    try:
+        assert map_tasks(slow_first, range(2), scheduler=address) == [0, 1]
+    finally:
+        for process in worker:
+            process.terminate()  # it ends what it has started
+            process.wait()
+    assert said == [f"the Dask scheduler at {address} has no workers: waiting for one"]
+
+
+def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd):
+    process, address = scheduler
+    threading.Timer(1.0, process.kill).start()
+    with pytest.raises(SweepError) as caught:
+        map_tasks(slow_first, range(3), scheduler=address)
+    assert str(caught.value) == f"the Dask scheduler at {address} was lost, with 3 of 3 tasks to do"
+    assert capfd.readouterr().err == ""

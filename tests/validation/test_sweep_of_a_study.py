@@ -83,7 +83,7 @@ def only_dask(monkeypatch):
         raise AssertionError("not on the cluster")
 
     monkeypatch.setattr(tasks, "_here", refuse)
-    monkeypatch.setattr(tasks, "_over_processes", refuse)
+    monkeypatch.setattr(tasks, "over_processes", refuse)
 
 
 def command(monkeypatch, *arguments: str) -> bytes:

@@ -413,7 +413,7 @@ def _expected_errors() -> tuple[type[BaseException], ...]:
         "store.files": ["StoreError"],
         "store.generated": ["GeneratedError"],
         "store.result": ["ResultError"],
-        "sweeps.tasks": ["SweepError"],
+        "sweeps.errors": ["SweepError"],
     }
     found: list[type[BaseException]] = []
     for module, attributes in names.items():

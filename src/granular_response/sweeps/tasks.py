@@ -4,8 +4,8 @@
 with what is finished kept: an interrupted run continues where it was, and a worker that dies costs only the
 task it was at. The result does not depend on where the tasks ran.
 
-A task is a module-level function (or a ``functools.partial`` of one) of one argument that can be pickled. It
-draws random numbers only from seeds in its item. A script that calls ``map_tasks`` has its own calls under
+A task is a function of one argument, of a module, a notebook or a lambda, that draws random numbers only from seeds in
+its item. A script that calls ``map_tasks`` has its own calls under
 ``if __name__ == "__main__":``, since workers import it.
 """
 
@@ -13,22 +13,17 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import multiprocessing
 import os
-import reprlib
-import signal
-import threading
-import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from ..machine import floating_point
+from .cluster import over_dask
 from .digest import Indistinct, digest, sources
+from .errors import SweepError, raised
 from .memory import MISSING, Memory, warn
+from .processes import over_processes
 from .resources import current, using
 
 Item = TypeVar("Item")
@@ -36,18 +31,6 @@ Result = TypeVar("Result")
 
 #: Environment variable with the address of a running Dask scheduler, the one that Dask itself reads.
 SCHEDULER_VARIABLE = "DASK_SCHEDULER_ADDRESS"
-
-#: How many workers may die at one task before the sweep gives up.
-ATTEMPTS = 3
-
-Finished = Generator[tuple[int, Any], None, None]
-
-
-class SweepError(RuntimeError):
-    """A sweep that cannot go on. One line; ``__cause__`` is the exception of the task, if any."""
-
-    def __init__(self, message: str) -> None:
-        super().__init__(" ".join(message.split()))
 
 
 class Progress(Protocol):
@@ -89,8 +72,8 @@ def map_tasks(
     Raises
     ------
     SweepError
-        If a task raises (the message names its item), if workers keep dying at one task, or if the cluster
-        cannot be reached.
+        If a task raises (the message names its item), if workers keep dying at one task, if something cannot be sent
+        to a worker or back, or if the cluster cannot be reached or is lost.
     """
     if workers is not None and workers < 1:
         raise SweepError(f"workers = {workers}: must be 1 or more")
@@ -108,13 +91,13 @@ def map_tasks(
         return results
     count = min(workers or _cores(), len(todo))
     # the nodes of a cluster may not share the folder
-    function = _Task(function, None if scheduler else current().rest_states)
+    task = _Task(function, None if scheduler else current().rest_states)
     if scheduler:
-        finished = _over_dask(function, items, todo, scheduler)
+        finished = over_dask(task, items, todo, scheduler)
     elif count == 1 and workers in (1, None):
-        finished = _here(function, items, todo)
+        finished = _here(task, items, todo)
     else:
-        finished = _over_processes(function, items, todo, count)
+        finished = over_processes(task, items, todo, count, _module(function))
     with contextlib.closing(finished):  # whatever goes wrong below ends the workers at once
         for index, result in finished:
             results[index] = result
@@ -145,147 +128,20 @@ def _cores() -> int:
     return os.cpu_count() or 1
 
 
-def _failed(index: int, items: Sequence[Any], problem: str) -> SweepError:
-    return SweepError(f"task {index + 1} of {len(items)} ({reprlib.repr(items[index])}) {problem}")
-
-
-def _raised(index: int, items: Sequence[Any], error: BaseException) -> SweepError:
-    failure = _failed(index, items, f"failed: {type(error).__name__}: {error}")
-    failure.__cause__ = error
-    return failure
-
-
-def _here(function: Callable, items: Sequence[Any], todo: Sequence[int]) -> Finished:
+def _here(function: Callable, items: Sequence[Any], todo: Sequence[int]) -> Generator[tuple[int, Any], None, None]:
     for index in todo:
         try:
             result = function(items[index])
         except Exception as error:
-            raise _raised(index, items, error) from error
+            raise raised(index, items, error) from error
         yield index, result
-
-
-def _over_processes(function: Callable, items: Sequence[Any], todo: Sequence[int], count: int) -> Finished:
-    """Results as they come. No more tasks are handed out than there are workers, so a death is felt by few.
-
-    A task that was running when a worker died runs again on its own, so the next death has one suspect.
-    """
-    waiting = list(reversed(todo))
-    suspects: list[int] = []
-    deaths = dict.fromkeys(todo, 0)
-    while waiting or suspects:
-        alone = bool(suspects)
-        queue, size = (suspects, 1) if alone else (waiting, count)
-        running: dict[Future, int] = {}
-        with _pool(size, function) as pool:
-            try:
-                while running or queue:
-                    while queue and len(running) < size:
-                        running[pool.submit(function, items[queue[-1]])] = queue[-1]
-                        queue.pop()
-                    for future in wait(running, return_when=FIRST_COMPLETED).done:
-                        index = running[future]
-                        error = future.exception()
-                        if isinstance(error, BrokenProcessPool):
-                            raise error
-                        del running[future]
-                        if error is not None:
-                            raise _raised(index, items, error) from error
-                        yield index, future.result()
-            except BrokenProcessPool:
-                for index in running.values():
-                    deaths[index] += 1
-                    if alone and deaths[index] >= ATTEMPTS:
-                        times = f"{deaths[index]} times"
-                        raise _failed(index, items, f"killed its worker process {times}") from None
-                    suspects.append(index)
-                suspects.sort(reverse=True)
-
-
-@contextlib.contextmanager
-def _pool(count: int, function: Callable) -> Iterator[ProcessPoolExecutor]:
-    """Worker processes; an error or an interruption ends them at once."""
-    method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
-    context = multiprocessing.get_context(method)
-    if method == "forkserver":  # heavy imports happen once, not once a worker
-        context.set_forkserver_preload([_bare(function).__module__])
-    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker)
-    try:
-        yield pool
-    except BaseException:
-        for process in list((getattr(pool, "_processes", None) or {}).values()):
-            process.kill()
-        pool.shutdown(wait=True, cancel_futures=True)
-        raise
-    pool.shutdown(wait=True)
-
-
-def _start_worker() -> None:
-    """Leave interruptions to the parent process, and end with it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-
-        def end_with_parent() -> None:
-            parent.join()
-            os._exit(1)
-
-        threading.Thread(target=end_with_parent, daemon=True).start()
-
-
-def _over_dask(function: Callable, items: Sequence[Any], todo: Sequence[int], address: str) -> Finished:
-    """Results as they come. The scheduler itself runs again what a dead worker was at."""
-    try:
-        from distributed import Client, KilledWorker, as_completed
-    except ImportError:
-        raise SweepError(
-            f"a Dask scheduler is asked for ({address}), but the package distributed is not installed: "
-            "pip install 'granular-response[dask]'"
-        ) from None
-    try:
-        client = Client(address, timeout=10, set_as_default=False)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise SweepError(f"no Dask scheduler answers at {address}: {' '.join(str(error).split())}") from None
-    with client:
-        _compare_settings(client)
-        futures = {client.submit(function, items[index], pure=False): index for index in todo}
-        try:
-            for future in as_completed(list(futures), loop=client.loop):
-                index = futures.pop(future)
-                try:
-                    result = future.result()  # waits once more if it was lost with its worker
-                except KilledWorker:
-                    raise _failed(index, items, "killed its worker process several times") from None
-                except Exception as error:
-                    raise _raised(index, items, error) from error
-                future.release()  # what the cluster still had to hold it would compute again after a death
-                yield index, result
-        finally:
-            client.cancel(list(futures))
-
-
-def _compare_settings(client: Any) -> None:
-    """Warn where workers round otherwise than this process."""
-    here = _settings()
-    there = client.run(_settings, on_error="ignore")
-    different = sorted(address for address, settings in there.items() if settings != here)
-    if different:
-        warnings.warn(
-            f"{len(different)} of {len(there)} Dask workers, the first of them {different[0]}, are not set to round as "
-            f"this process does, so last digits may differ: see {floating_point.__name__}",
-            stacklevel=2,
-        )
-
-
-def _settings() -> dict[str, str | None]:
-    return {name: os.environ.get(name) for name in floating_point.variables()}
 
 
 class _Checkpoint:
     """Finished results of one function in a folder; nothing is kept of what has no name of its own."""
 
     def __init__(self, folder: str | os.PathLike[str], function: Callable, items: Sequence[Any]) -> None:
-        module = getattr(_bare(function), "__module__", None)
-        self.memory = Memory(folder, sources(), (module,) if module else ())
+        self.memory = Memory(folder, sources(), (_module(function),))
         self.function = self._name(function)
         self.names = [self._name(self.function, item) if self.function else None for item in items]
 
@@ -308,7 +164,8 @@ class _Checkpoint:
             self.memory.save(name, result)
 
 
-def _bare(function: Callable) -> Callable:
-    while isinstance(function, (functools.partial, _Task)):
-        function = function.func if isinstance(function, functools.partial) else function.function
-    return function
+def _module(function: Callable) -> str:
+    """Where a function stands."""
+    while isinstance(function, functools.partial):
+        function = function.func
+    return getattr(function, "__module__", None) or "builtins"

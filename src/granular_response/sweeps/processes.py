@@ -1,0 +1,95 @@
+"""Tasks over processes of this machine."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.synchronize import Event
+from typing import Any
+
+from .errors import SweepError, failed
+from .worker import packed, run, unpacked
+
+#: How many workers may die at one task before the sweep gives up.
+ATTEMPTS = 3
+
+
+def over_processes(
+    function: Callable, items: Sequence[Any], todo: Sequence[int], count: int, module: str
+) -> Generator[tuple[int, Any], None, None]:
+    """Results as they come. No more tasks are handed out than there are workers, so a death is felt by few.
+
+    A task that was running when a worker died runs again on its own, so the next death has one suspect. ``module`` is
+    where the function stands: it is loaded once, not once a worker.
+    """
+    sent = packed(todo[0], items, function)
+    waiting = list(reversed(todo))
+    suspects: list[int] = []
+    deaths = dict.fromkeys(todo, 0)
+    while waiting or suspects:
+        alone = bool(suspects)
+        queue, size = (suspects, 1) if alone else (waiting, count)
+        running: dict[Future, int] = {}
+        with _pool(size, module) as (pool, started):
+            try:
+                while running or queue:
+                    while queue and len(running) < size:
+                        running[pool.submit(run, sent, packed(queue[-1], items, items[queue[-1]]))] = queue[-1]
+                        queue.pop()
+                    for future in wait(running, return_when=FIRST_COMPLETED).done:
+                        index = running[future]
+                        outcome = future.result()
+                        del running[future]
+                        yield index, unpacked(index, items, outcome)
+            except BrokenProcessPool:
+                if not started.is_set():
+                    raise SweepError(
+                        "worker processes end before they begin: a script has its calls under "
+                        "if __name__ == '__main__':, since they import it; or workers=1"
+                    ) from None
+                for index in running.values():
+                    deaths[index] += 1
+                    if alone and deaths[index] >= ATTEMPTS:
+                        times = f"{deaths[index]} times"
+                        raise failed(index, items, f"killed its worker process {times}") from None
+                    suspects.append(index)
+                suspects.sort(reverse=True)
+
+
+@contextlib.contextmanager
+def _pool(count: int, module: str) -> Iterator[tuple[ProcessPoolExecutor, Event]]:
+    """Worker processes, and whether any has begun; an error or an interruption ends them at once."""
+    method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+    context = multiprocessing.get_context(method)
+    if method == "forkserver":
+        context.set_forkserver_preload([module])
+    started = context.Event()
+    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker, initargs=(started,))
+    try:
+        yield pool, started
+    except BaseException:
+        for process in list((getattr(pool, "_processes", None) or {}).values()):
+            process.kill()
+        pool.shutdown(wait=True, cancel_futures=True)
+        raise
+    pool.shutdown(wait=True)
+
+
+def _start_worker(started: Event) -> None:
+    """Leave interruptions to the parent process, and end with it."""
+    started.set()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+
+        def end_with_parent() -> None:
+            parent.join()
+            os._exit(1)
+
+        threading.Thread(target=end_with_parent, daemon=True).start()
