@@ -83,3 +83,11 @@ def test_what_skipping_forces_on_changes_no_result(script):
         forced.advance(1000 - forced.steps)
         plain.advance(1000 - plain.steps)
         assert np.array_equal(plain.position, forced.position)
+
+
+def test_factorisations_of_one_slab_agree(script):
+    linear = script("linear")
+    for friction in (0.2, 0.0):
+        rows = linear.measure(4, 17, friction, 1)
+        assert {"band, ours", "band, LAPACK", "fronts, ours", "SuperLU"} <= {row["method"] for row in rows}
+        assert all(row["relative_residual"] < 1e-10 for row in rows)

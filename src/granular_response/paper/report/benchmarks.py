@@ -18,6 +18,7 @@ CAPTIONS = {
     "depth": "Depth and width of the region of contacts that a load opens without friction, in slabs up to 240 layers "
     "deep; open symbols: it has reached the floor.",
     "kernel": "Disks times time steps per second on one core.",
+    "linear": "Factorisations of the tangent stiffness of slabs at rest, ours beside those of libraries.",
     "precision": "Run time against the error of the floor response. Open symbols of integrators: without the static "
     "finish.",
     "scale": "Time and memory of whole runs against the number of disks.",
