@@ -1,1 +1,8 @@
-"""Contact laws: the force of one contact from its overlap and motion (Sec. III.A)."""
+"""Contact laws: one file each for the part along the normal, one for what all have along the tangent (Sec. III.A)."""
+
+from .coulomb import CUT, LITERAL
+from .hertz import Hertz
+from .law import Law
+from .linear import Linear
+
+__all__ = ["CUT", "LITERAL", "Hertz", "Law", "Linear"]
