@@ -5,4 +5,7 @@ from .hertz import Hertz
 from .law import Law
 from .linear import Linear
 
-__all__ = ["CUT", "LITERAL", "Hertz", "Law", "Linear"]
+#: By the name that a scene file has for them.
+LAWS = {"linear": Linear, "hertz": Hertz}
+
+__all__ = ["CUT", "LAWS", "LITERAL", "Hertz", "Law", "Linear"]

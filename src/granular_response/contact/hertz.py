@@ -30,9 +30,15 @@ class Hertz(NamedTuple):
     reduced_radius: float
 
     @classmethod
-    def of(cls, normal_stiffness: float, *others: float, reduced_radius: float) -> Hertz:
-        """The law with ``factor`` from the stiffness; ``others`` as the fields after it."""
-        return cls(normal_stiffness, *others, (normal_stiffness / 1.5) ** 1.5, reduced_radius)
+    def of(
+        cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
+        friction: float, least_force: float, reduced_radius: float,
+    ) -> Hertz:  # fmt: skip
+        """The law from its constants (see :class:`.law.Law`)."""
+        return cls(
+            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
+            (normal_stiffness / 1.5) ** 1.5, reduced_radius,
+        )  # fmt: skip
 
     # Open contacts, with a negative overlap, are asked too; what they answer is not used.
     def elastic_force(self, overlap, shape):
@@ -58,4 +64,4 @@ class Hertz(NamedTuple):
         return self._replace(normal_stiffness=1.5 * factor ** (2.0 / 3.0), factor=factor)
 
     def without_friction(self) -> Hertz:
-        return self._replace(friction=0.0)
+        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)

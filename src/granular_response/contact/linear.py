@@ -15,6 +15,16 @@ class Linear(NamedTuple):
     friction: float
     least_force: float
 
+    @classmethod
+    def of(
+        cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
+        friction: float, least_force: float, reduced_radius: float,
+    ) -> Linear:  # fmt: skip
+        """The law from its constants (see :class:`.law.Law`); ``reduced_radius`` does not matter."""
+        return cls(
+            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force
+        )
+
     def elastic_force(self, overlap, shape):
         return self.normal_stiffness * overlap
 
@@ -35,4 +45,4 @@ class Linear(NamedTuple):
         return self._replace(normal_stiffness=part**2 * self.normal_stiffness)
 
     def without_friction(self) -> Linear:
-        return self._replace(friction=0.0)
+        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)

@@ -101,7 +101,7 @@ def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt):
 
 @kernel
 def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rule, dt):
-    """Add the forces of the runs of count one, from run ``start`` on, several at once; their slots follow one another."""
+    """Add the forces of the runs of count one, from ``start`` on, several at once; their slots follow one another."""
     runs = pairs.runs
     scratch = pairs.scratch
     end = runs.shape[0]

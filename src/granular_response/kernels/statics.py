@@ -198,7 +198,8 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out,
             mean = 0.5 * (before + d)
             roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
             fn, ft = _rub(
-                c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean / d, 0.5 * turn, shape, law, overlap0, spring0, limits, out
+                c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean / d, 0.5 * turn,
+                shape, law, overlap0, spring0, limits, out,
             )  # fmt: skip
             fx = fn * nx - ft * nz
             fz = fn * nz + ft * nx

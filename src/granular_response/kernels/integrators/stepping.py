@@ -2,7 +2,7 @@
 
 An integrator is a named tuple with two methods on scalars or lanes. ``predict(x, v, a, b, c, dt)`` gives
 ``(x, v, a, b, seen)``: displacement, velocity and memory half-way through a step, and the velocity that the forces
-see. ``correct(x, v, a, b, c, a_new, dt)`` gives ``(x, v, a, b, c)`` at the end of the step from the accelerations there.
+see. ``correct(x, v, a, b, c, a_new, dt)`` gives ``(x, v, a, b, c)`` at the end from the accelerations there.
 ``a`` is the acceleration at the present time, ``b`` and ``c`` are memory of its own: it has ``rows`` rows with ``a``.
 ``order`` is the global order of its positions on a smooth problem once its memory is right (Gear's start without
 higher derivatives costs it two orders). ``begin(history)`` fills (rows, dof) memory from its row 0.
@@ -76,7 +76,8 @@ def _write(row, k, value):
 
 
 @kernel
-def _predict(integrator, q, v, a, b, c, seen, dt):
+def _begin(integrator, q, v, a, b, c, seen, dt):
+    """Begin a step."""
     for k in range(q.size):
         x, v[k], a[k], y, seen[k] = predict(integrator, q[k], v[k], a[k], _read(b, k, 0.0), _read(c, k, 0.0), dt)
         q[k] = x
@@ -84,15 +85,30 @@ def _predict(integrator, q, v, a, b, c, seen, dt):
 
 
 @kernel(forceinline=True)
-def _correct_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, seen, dt, predicts):
+def _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt):
     a_new = take(force, k, like) * take(inverse_mass, k, like)
-    x, u, w, y, z = correct(
-        integrator, take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like), a_new, dt
+    return correct(
+        integrator, take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like),
+        a_new, dt,
     )  # fmt: skip
+
+
+@kernel(forceinline=True)
+def _end_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt):
+    x, u, w, y, z = _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt)
+    put(q, k, x)
+    put(v, k, u)
+    put(a, k, w)
+    _write(b, k, y)
     _write(c, k, z)
-    if predicts:
-        x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
-        put(seen, k, s)
+
+
+@kernel(forceinline=True)
+def _end_and_begin_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
+    x, u, w, y, z = _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt)
+    _write(c, k, z)
+    x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
+    put(seen, k, s)
     put(q, k, x)
     put(v, k, u)
     put(a, k, w)
@@ -100,13 +116,23 @@ def _correct_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, seen, d
 
 
 @kernel
-def _correct(integrator, q, v, a, b, c, force, inverse_mass, seen, dt, predicts):
-    """End a step and, where ``predicts``, begin the next while its numbers are at hand."""
+def _end(integrator, q, v, a, b, c, force, inverse_mass, dt):
+    """End a step."""
     whole = q.size - q.size % WIDTH
     for k in range(0, whole, WIDTH):
-        _correct_at(k, spread(0.0), integrator, q, v, a, b, c, force, inverse_mass, seen, dt, predicts)
+        _end_at(k, spread(0.0), integrator, q, v, a, b, c, force, inverse_mass, dt)
     for k in range(whole, q.size):
-        _correct_at(k, 0.0, integrator, q, v, a, b, c, force, inverse_mass, seen, dt, predicts)
+        _end_at(k, 0.0, integrator, q, v, a, b, c, force, inverse_mass, dt)
+
+
+@kernel
+def _end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
+    """End a step and begin the next while its numbers are at hand."""
+    whole = q.size - q.size % WIDTH
+    for k in range(0, whole, WIDTH):
+        _end_and_begin_at(k, spread(0.0), integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+    for k in range(whole, q.size):
+        _end_and_begin_at(k, 0.0, integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
 
 
 @kernel(nogil=True)
@@ -125,13 +151,16 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model):
         if not begun:
             if limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
                 return step
-            _predict(integrator, q, v, a, b, c, seen, dt)
+            _begin(integrator, q, v, a, b, c, seen, dt)
         now = schedule.time + (step + 1) * dt
         gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
         load = ramp(now, schedule.load_from, schedule.load_to, schedule.load_time)
         forces(q, seen, force, gravity, load, dt, model)
         begun = goes_on(step + 1, steps, limit)
-        _correct(integrator, q, v, a, b, c, force, inverse_mass, seen, dt, begun)
+        if begun:
+            _end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+        else:
+            _end(integrator, q, v, a, b, c, force, inverse_mass, dt)
     return steps
 
 
