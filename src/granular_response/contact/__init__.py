@@ -6,6 +6,6 @@ from .law import Law
 from .linear import Linear
 
 #: By the name that a scene file has for them.
-LAWS = {"linear": Linear, "hertz": Hertz}
+LAWS: dict[str, type[Law]] = {"linear": Linear, "hertz": Hertz}
 
 __all__ = ["CUT", "LAWS", "LITERAL", "Hertz", "Law", "Linear"]

@@ -11,7 +11,6 @@ as its method ``shapes`` makes it, and None for a law that needs none; ``self`` 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Protocol, Self
 
 from numpy.typing import NDArray
@@ -37,21 +36,33 @@ class Law(Protocol):
     @property
     def least_force(self) -> float: ...
 
-    elastic_force: Callable
-    stiffness: Callable
-    energy: Callable
+    @classmethod
+    def of(
+        cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
+        friction: float, least_force: float, reduced_radius: float,
+    ) -> Self:  # fmt: skip
+        """The law from its constants; ``reduced_radius`` is that of the contacts that have the stiffness."""
+        ...
+
+    def elastic_force(self, overlap, shape): ...
+    def stiffness(self, overlap, shape): ...
+    def energy(self, overlap, shape): ...
 
     def shapes(self, first, second) -> NDArray | None:
         """(m,) shapes of contacts of disks with the radii ``first`` and ``second`` (None: a wall)."""
+        ...
 
     def stiffest(self, force: float) -> float:
         """Largest normal stiffness at normal forces up to ``force``."""
+        ...
 
     def softened(self, part: float) -> Self:
         """The law with which a packing of ``part`` of the length sinks by the same lengths under gravity."""
+        ...
 
     def without_friction(self) -> Self:
         """The same law without its part along the tangent."""
+        ...
 
 
 @by_type

@@ -71,7 +71,8 @@ class Response(NamedTuple):
     @classmethod
     def empty(cls, size: int) -> Response:
         """Room for ``size`` contacts."""
-        return cls(*np.zeros((4, size)), np.zeros(size, np.int8), np.empty((size, 3, 3)))
+        overlap, normal, tangential, spring = np.zeros((4, size))
+        return cls(overlap, normal, tangential, spring, np.zeros(size, np.int8), np.empty((size, 3, 3)))
 
 
 @kernel

@@ -84,10 +84,10 @@ class Dynamics:
         self.angle0 = state.angle.copy()
         self.v = aligned(np.concatenate([state.velocity.T.ravel(), state.angular_velocity])[: n * freedoms])
         self.q = aligned_zeros(n * freedoms)
-        rows = aligned_zeros(self.integrator.rows + 1, n * freedoms + -n * freedoms % WIDTH)
+        rows = aligned_zeros(self.integrator.scheme.rows + 1, n * freedoms + -n * freedoms % WIDTH)
         self.history = rows[:-1]
-        own = [self.history[k] if k < self.integrator.rows else None for k in range(3)]
-        self._memory = Memory(*own, force=rows[-1], seen=aligned_zeros(n * freedoms))
+        b, c = ([*self.history[1:], None, None])[:2]
+        self._memory = Memory(self.history[0], b, c, force=rows[-1], seen=aligned_zeros(n * freedoms))
         self.rim = aligned_zeros(n) if problem.rotations else None
         self._inverse_mass = aligned(problem.inverse_mass)
         self._list(state)
@@ -119,7 +119,7 @@ class Dynamics:
     def _fill_history(self) -> None:
         self.history[:] = 0.0
         self._accelerations(self.history[0, : self.q.size])
-        self.integrator.begin(self.history)
+        self.integrator.scheme.begin(self.history)
 
     def _accelerations(self, out: FloatArray) -> None:
         """Accelerations now; springs do not advance."""
@@ -141,7 +141,7 @@ class Dynamics:
         while left:
             schedule = Schedule(self.time, *map(float, self.gravity), *map(float, self.load))
             done = advance(
-                self.integrator, left, self.time_step, schedule, self.candidates.limit,
+                self.integrator.scheme, left, self.time_step, schedule, self.candidates.limit,
                 self.q, self.v, self._memory, self.model,
             )  # fmt: skip
             self.steps += done

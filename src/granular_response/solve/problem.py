@@ -80,8 +80,10 @@ class Problem:
         least = -np.inf if protocol.tensile_dashpot else 0.0
 
         def law(m: Contact, reduced_radius: float) -> Law:
-            constants = (m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping)
-            whole = LAWS[scene.contact.law].of(*map(float, constants), float(m.friction), least, reduced_radius)
+            whole = LAWS[scene.contact.law].of(
+                m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping, m.friction,
+                least, reduced_radius,
+            )  # fmt: skip
             return whole if m.friction > 0 and m.tangential_stiffness > 0 else whole.without_friction()
 
         return cls(

@@ -1,10 +1,8 @@
 """Time integrators, a file each: a named tuple that predicts and corrects (see :mod:`.stepping`)."""
 
-from .beeman import Beeman
-from .gear import Gear
+from . import beeman, gear, verlet
 from .stepping import LOOK_EVERY, Integrator, Memory, advance, amplification
-from .verlet import Verlet
 
-INTEGRATORS: dict[str, Integrator] = {kind.name: kind() for kind in (Beeman, Verlet, Gear)}
+INTEGRATORS: dict[str, Integrator] = {module.RECORD.name: module.RECORD for module in (beeman, verlet, gear)}
 
 __all__ = ["INTEGRATORS", "LOOK_EVERY", "Integrator", "Memory", "advance", "amplification"]

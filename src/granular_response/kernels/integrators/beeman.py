@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from .stepping import Integrator
+
 
 class Beeman(NamedTuple):
     """Remembers the acceleration ``b`` of the step before."""
 
     rows: int = 2
-
-    name = "beeman"
-    title = "Beeman"
-    order = 2
-    reference = "D. Beeman, J. Comput. Phys. 20, 130 (1976); the paper, Sec. III"
 
     def predict(self, x, v, a, b, c, dt):
         seen = v + (3.0 * a - b) * (0.5 * dt)
@@ -25,3 +22,12 @@ class Beeman(NamedTuple):
     def begin(self, history) -> None:
         """No earlier step is known: take the acceleration to have been the same."""
         history[1] = history[0]
+
+
+RECORD = Integrator(
+    name="beeman",
+    title="Beeman",
+    order=2,
+    reference="D. Beeman, J. Comput. Phys. 20, 130 (1976); the paper, Sec. III",
+    scheme=Beeman(),
+)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from .stepping import Integrator
+
 # Corrector coefficients for second-order equations whose forces depend on velocity
 # (Allen & Tildesley, Computer Simulation of Liquids, App. E).
 _C0, _C1, _C3, _C4 = 19.0 / 90.0, 3.0 / 4.0, 1.0 / 2.0, 1.0 / 12.0
@@ -13,11 +15,6 @@ class Gear(NamedTuple):
     """Remembers the third and fourth derivatives ``b`` and ``c`` of the displacement."""
 
     rows: int = 3
-
-    name = "gear"
-    title = "Gear 5-value predictor-corrector"
-    order = 4
-    reference = "C. W. Gear, Argonne report ANL-7126 (1966); the paper, Sec. III"
 
     def predict(self, x, v, a, b, c, dt):
         h2 = dt * dt / 2.0
@@ -36,3 +33,12 @@ class Gear(NamedTuple):
     def begin(self, history) -> None:
         """Third and fourth derivatives are unknown at the start and settle within a few steps."""
         history[1:3] = 0.0
+
+
+RECORD = Integrator(
+    name="gear",
+    title="Gear 5-value predictor-corrector",
+    order=4,
+    reference="C. W. Gear, Argonne report ANL-7126 (1966); the paper, Sec. III",
+    scheme=Gear(),
+)

@@ -1,6 +1,6 @@
 """The loop over time steps that all integrators share, and what a step does to an oscillator.
 
-An integrator is a named tuple with two methods on scalars or lanes. ``predict(x, v, a, b, c, dt)`` gives
+The scheme of an integrator is a named tuple with two methods on scalars or lanes. ``predict(x, v, a, b, c, dt)`` gives
 ``(x, v, a, b, seen)``: displacement, velocity and memory half-way through a step, and the velocity that the forces
 see. ``correct(x, v, a, b, c, a_new, dt)`` gives ``(x, v, a, b, c)`` at the end from the accelerations there.
 ``a`` is the acceleration at the present time, ``b`` and ``c`` are memory of its own: it has ``rows`` rows with ``a``.
@@ -11,7 +11,7 @@ higher derivatives costs it two orders). ``begin(history)`` fills (rows, dof) me
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -26,20 +26,26 @@ from ..forces import forces
 LOOK_EVERY = 8
 
 
-class Integrator(Protocol):
-    """One time integrator; see the module."""
+class Scheme(Protocol):
+    """What an integrator does; see the module."""
+
+    def predict(self, x, v, a, b, c, dt): ...
+    def correct(self, x, v, a, b, c, a_new, dt): ...
+    def begin(self, history: NDArray) -> None: ...
+
+    @property
+    def rows(self) -> int: ...
+
+
+@dataclass(frozen=True)
+class Integrator:
+    """One time integrator, and what it says of itself; ``order`` as in the module."""
 
     name: str
     title: str
     order: int
     reference: str
-    predict: Callable
-    correct: Callable
-
-    @property
-    def rows(self) -> int: ...
-
-    def begin(self, history: NDArray) -> None: ...
+    scheme: Scheme
 
 
 class Memory(NamedTuple):
@@ -164,7 +170,7 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model):
     return steps
 
 
-def amplification(integrator: Integrator, w2: float, c: float, spring_w2: float = 0.0) -> NDArray[np.float64]:
+def amplification(integrator: Scheme, w2: float, c: float, spring_w2: float = 0.0) -> NDArray[np.float64]:
     """(6, 6) matrix of one step of length 1 for ``x'' = -w2 x - spring_w2 s - c x'``.
 
     The first spring follows the position, as overlaps do, and ``s`` is advanced by the predicted velocity, as the
@@ -172,10 +178,10 @@ def amplification(integrator: Integrator, w2: float, c: float, spring_w2: float 
     gives zero eigenvalues.
     """
 
-    def step(x, s, v, *memory):
-        x, v, a, b, seen = integrator.predict(x, v, *memory, 1.0)
+    def step(x, s, v, a, b, d):
+        x, v, a, b, seen = integrator.predict(x, v, a, b, d, 1.0)
         s = s + seen
-        x, v, a, b, d = integrator.correct(x, v, a, b, memory[2], -w2 * x - spring_w2 * s - c * seen, 1.0)
+        x, v, a, b, d = integrator.correct(x, v, a, b, d, -w2 * x - spring_w2 * s - c * seen, 1.0)
         return x, s, v, a, b, d
 
     memory = np.eye(6)

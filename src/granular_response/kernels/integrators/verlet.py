@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from .stepping import Integrator
+
 
 class Verlet(NamedTuple):
     """Remembers nothing beyond the present acceleration."""
 
     rows: int = 1
-
-    name = "verlet"
-    title = "velocity Verlet"
-    order = 2
-    reference = "W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)"
 
     def predict(self, x, v, a, b, c, dt):
         return x + (v * dt + a * (0.5 * dt * dt)), v, a, b, v + a * dt
@@ -23,3 +20,12 @@ class Verlet(NamedTuple):
 
     def begin(self, history) -> None:
         """Nothing to begin with."""
+
+
+RECORD = Integrator(
+    name="verlet",
+    title="velocity Verlet",
+    order=2,
+    reference="W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
+    scheme=Verlet(),
+)
