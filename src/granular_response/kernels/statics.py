@@ -130,10 +130,10 @@ def _press(c, xi, nx, nz, inverse, shape, law, out):
 
 
 @kernel(forceinline=True)
-def _rub(c, xi, nx, nz, inverse, slip, slip_t, slip_n, shape, law, overlap0, spring0, limits, out):
+def _rub(c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overlap0, spring0, limits, out):
     """Closed contact with friction; returns normal and tangential force.
 
-    ``slip`` : of the increment; ``slip_t``, ``slip_n`` : its derivatives along tangent and normal.
+    ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal.
     """
     form = _shape_at(shape, c)
     fn = elastic_force(law, xi, form)
@@ -148,7 +148,7 @@ def _rub(c, xi, nx, nz, inverse, slip, slip_t, slip_n, shape, law, overlap0, spr
     else:
         out.status[c] = STICKING
         stiff = law.tangential_stiffness * share
-        _fill_tangent(out.tangent[c], nx, nz, fn, ft, inverse, k, stiff * slip_t, stiff * slip_n, stiff, 0.0)
+        _fill_tangent(out.tangent[c], nx, nz, fn, ft, inverse, k, stiff * mean / distance, stiff * slip_n, stiff, 0.0)
     out.normal[c] = fn
     out.tangential[c] = ft
     out.spring[c] = s
@@ -199,7 +199,7 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out,
             mean = 0.5 * (before + d)
             roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
             fn, ft = _rub(
-                c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean / d, 0.5 * turn,
+                c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean, d, 0.5 * turn,
                 shape, law, overlap0, spring0, limits, out,
             )  # fmt: skip
             fx = fn * nx - ft * nz
@@ -231,7 +231,7 @@ def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, out,
         else:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-            fn, ft = _rub(c, xi, nx, nz, 0.0, slip, 1.0, 0.0, shape, law, overlap0, spring0, limits, out)
+            fn, ft = _rub(c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, shape, law, overlap0, spring0, limits, out)
             force[2 * n + i] -= radius[i] * ft
         force[i] += fn * nx - ft * nz
         force[n + i] += fn * nz + ft * nx
