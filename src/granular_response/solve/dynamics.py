@@ -87,7 +87,7 @@ class Dynamics:
         rows = aligned_zeros(self.integrator.scheme.rows + 1, n * freedoms + -n * freedoms % WIDTH)
         self.history = rows[:-1]
         b, c = ([*self.history[1:], None, None])[:2]
-        self._memory = Memory(self.history[0], b, c, force=rows[-1], seen=aligned_zeros(n * freedoms))
+        self.rows = Memory(self.history[0], b, c, force=rows[-1], seen=aligned_zeros(n * freedoms))
         self.rim = aligned_zeros(n) if problem.rotations else None
         self._inverse_mass = aligned(problem.inverse_mass)
         self._list(state)
@@ -142,7 +142,7 @@ class Dynamics:
             schedule = Schedule(self.time, *map(float, self.gravity), *map(float, self.load))
             done = advance(
                 self.integrator.scheme, left, self.time_step, schedule, self.candidates.limit,
-                self.q, self.v, self._memory, self.model,
+                self.q, self.v, self.rows, self.model,
             )  # fmt: skip
             self.steps += done
             self.time += done * self.time_step

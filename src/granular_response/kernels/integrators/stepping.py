@@ -132,7 +132,7 @@ def _end(integrator, q, v, a, b, c, force, inverse_mass, dt):
 
 
 @kernel
-def _end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
+def end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
     """End a step and begin the next while its numbers are at hand."""
     whole = q.size - q.size % WIDTH
     for k in range(0, whole, WIDTH):
@@ -164,7 +164,7 @@ def advance(integrator, steps, dt, schedule, limit, q, v, memory, model):
         forces(q, seen, force, gravity, load, dt, model)
         begun = goes_on(step + 1, steps, limit)
         if begun:
-            _end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+            end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
         else:
             _end(integrator, q, v, a, b, c, force, inverse_mass, dt)
     return steps
