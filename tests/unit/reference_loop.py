@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from granular_response.contact import Linear
-
 
 @dataclass
 class Material:
@@ -20,7 +18,7 @@ class Material:
 
     @property
     def law(self):
-        return Linear(self.kn, self.nun, self.kt, self.nut, self.mu, self.least)
+        return (self.kn, self.nun, self.kt, self.nut, self.mu, self.least)
 
 
 def contact_force(m: Material, overlap, velocity_normal, velocity_tangential, spring, dt, literal=False):

@@ -2,6 +2,7 @@
 
 import gc
 import io
+import json
 import os
 import pty
 import re
@@ -124,7 +125,10 @@ def test_stored_claims_are_listed_and_not_judged_anew():
     finished = call("claims", "--list", folder=ROOT)
     lines = finished.stdout.splitlines()
     assert finished.returncode == 0 and table.read_bytes() == before
-    assert len(lines) == 46 and re.match(r"F1   [a-z ]+ +\S", lines[0]) and "Of 45 claims of the paper" in lines[-1]
+    rows = json.loads(table.read_text())["table"]
+    assert len(lines) == 2 * len(rows) + 2 and re.match(r"A1   [a-z ]+ +\S", lines[0])
+    assert all(row["reason"] in line for row, line in zip(rows, lines[1::2], strict=False))
+    assert re.search(r"Of \d+ claims of the paper that were measured", lines[-2]) and "halved or doubled" in lines[-1]
 
 
 def test_claims_without_datasets_leave_the_table_alone(tmp_path):

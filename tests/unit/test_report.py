@@ -14,7 +14,8 @@ import pytest
 from PIL import Image
 from xarray import Dataset
 
-from granular_response.paper import claims, report
+from granular_response.paper import report
+from granular_response.paper.claims import table as claims
 from granular_response.paper.claims.claim import Data
 from granular_response.paper.groups.sensitivity import simulate as sensitivity
 from granular_response.paper.report import benchmarks, explorer, pictures, readings
@@ -113,8 +114,8 @@ def root(tmp_path_factory):
     goal = {"what": "Speed of a step", "goal": "at least 4", "measured": "5", "met": True}
     (folder / "benchmarks" / "summary.json").write_text(json.dumps({"goals": [goal]}))
     (folder / "requirements.lock").write_text("# pinned\nnumpy==2.9.1\nsome-other==1.0\n")
-    entries = claims.evaluate(Data({"friction_linear_range": friction_study()}))
-    (folder / "figures" / "claims.json").write_text(json.dumps(claims.document(entries)))
+    data = Data({"friction_linear_range": friction_study()})
+    (folder / "figures" / "claims.json").write_text(json.dumps(claims.document(data, claims.evaluate(data))))
     return folder
 
 
@@ -162,12 +163,12 @@ def test_the_page_needs_no_network_and_no_other_file(page):
 
 def test_every_figure_of_the_paper_has_a_place_in_order(page):
     order = [int(number) for number in re.findall(r'<figure id="figure-(\d+)"', page)]
-    assert order == list(range(1, 25)) == sorted(key for key in pictures.captions() if isinstance(key, int))
+    assert order == list(range(1, 25)) == list(pictures.CAPTIONS)
     assert page.count("Not drawn yet.") == 24 - 3
     assert page.count("<img ") == 5
     text = page.replace("<wbr>", "")  # where a path may break
-    assert "src/granular_response/paper/groups/theory/draw.py" in text
-    assert text.index('id="figure-17"') < text.index("Further figures") < text.index("groups/numerics/draw.py")
+    assert "src/granular_response/figures/theory.py" in text
+    assert text.index('id="figure-17"') < text.index("Further figures") < text.index("figures/numerics.py")
     assert "Numerics.</b> What the paper says about its numerics" in text
     targets = set(re.findall(r'href="#([\w-]+)"', page))
     assert targets <= {e["id"] for _, e in Elements(page).found if "id" in e}

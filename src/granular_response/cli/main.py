@@ -285,12 +285,10 @@ def plot(
 ) -> None:
     """Draw a result: response, force chains, contacts and stress on one page."""
     from ..plot import pictures
-    from ..store.checked import read_result
 
     _loaded()
 
-    stored = read_result(result)
-    typer.echo(str(pictures.save(stored, output, what.split(","), state=state, scale=scale, inputs=[result])))
+    typer.echo(str(pictures.draw_file(result, output, what.split(","), state=state, scale=scale)))
 
 
 @app.command(
@@ -352,7 +350,7 @@ def claims(
     every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
 ) -> None:
     """Compare the paper's claims with the stored datasets."""
-    from ..paper import claims as judging
+    from ..paper.claims import table as judging
 
     _loaded()
 
@@ -360,8 +358,11 @@ def claims(
     if readme is not None:
         judging.renew(readme, found)
     for row in found["table"] if every else ():
-        typer.echo(f"{row['id']:4} {row['verdict']:15} {row['ours'] or row['reason']}")
+        kind = f" [{row['interval_kind']}]" if row["interval_kind"] else ""
+        typer.echo(f"{row['id']:4} {row['verdict']:22} {row['ours'] or '-'}{kind}")
+        typer.echo(f"{'':27} {row['reason']}")
     typer.echo(f"{output}: {judging.sentence(found)}")
+    typer.echo(judging.firmness(found))
 
 
 @app.command(
@@ -405,7 +406,7 @@ def print_version() -> None:
 def _expected_errors() -> tuple[type[BaseException], ...]:
     """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
     names = {
-        "paper.claims": ["ClaimsError"],
+        "paper.claims.table": ["ClaimsError"],
         "paper.pipeline": ["GroupError"],
         "paper.report": ["ReportError"],
         "plot.pictures": ["PictureError"],

@@ -55,7 +55,7 @@ def solve_increment(
     if report.converged:
         work.increments += 1
         return trial
-    pair_mu, wall_mu = system.problem.pair_law.friction, system.problem.wall_law.friction
+    pair_mu, wall_mu = system.problem.pair_law[4], system.problem.wall_law[4]
     if not system.problem.rotations:
         return None
     here = system.trial(known, known.q)
@@ -93,7 +93,7 @@ def _minimise_with_limits(
     """Minimise the energy of an increment with fixed Coulomb limits; returns the last trial."""
     q = start
     trial = system.trial(known, q, limits)
-    shift = SHIFT * system.problem.stiffness
+    shift = SHIFT * system.problem.pair_law[0]
     for _ in range(maximum_iterations):
         r = trial.contact_force + external
         if float(np.abs(r).max()) < ROUGH:

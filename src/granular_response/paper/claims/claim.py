@@ -1,28 +1,203 @@
-"""What a claim of the paper is, and how its verdict follows from conditions on stored data.
+"""What a claim of the paper is: stored numbers with their uncertainty, compared with bounds in one or more readings.
 
-A claim is measured by a function that reads datasets and returns a :class:`Finding`: numbers, and conditions that
-they satisfy or not. The verdict follows from the conditions alone. Each condition states its tolerance, so
-the rule stands beside the claim in the code and beside the verdict in the table.
+A claim is measured by a function that reads datasets and returns a :class:`Finding`: *readings* of what the paper
+leaves open, each with *conditions*, each a :class:`Quantity` against a bound. :mod:`verdict` alone turns them into a
+verdict.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 import xarray as xr
 
-Verdict = Literal["reproduced", "differs", "not reproduced", "not measured"]
-VERDICTS: tuple[Verdict, ...] = ("reproduced", "differs", "not reproduced", "not measured")
+from .words import Bounds
+
+#: What an interval means: none (a number of one deterministic run); the event lies inside; 95 % of the bootstrap draws;
+#: the smallest to the largest value.
+Kind = Literal["none", "bracket", "confidence", "range"]
+
+Outcome = Literal["holds", "fails", "open"]
 
 #: Labels are the same if they differ by less than this part of them.
 _SAME = 1e-9
 
 
 class NotMeasured(Exception):
-    """A dataset or variable that a claim needs is not stored. The message names it."""
+    """What a claim needs is not stored. The message names it."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number, the interval it lies in, and what kind of interval that is; ``high`` is inf for a lower bound."""
+
+    value: float
+    low: float
+    high: float
+    kind: Kind = "none"
+
+    @classmethod
+    def exact(cls, value: float) -> Quantity:
+        return cls(float(value), float(value), float(value))
+
+    @classmethod
+    def bracket(cls, low: float, high: float) -> Quantity:
+        """An event above ``low`` and not above ``high``; ``high`` nan means that it does not happen up to ``low``."""
+        if math.isnan(high):
+            return cls(float("nan"), float(low), float("inf"), "bracket")
+        return cls(0.5 * float(low + high), float(low), float(high), "bracket")
+
+    @classmethod
+    def range(cls, values: Iterable[float], value: float | None = None) -> Quantity:
+        found = [float(v) for v in values]
+        return cls(found[0] if value is None else value, min(found), max(found), "range")
+
+    def per(self, other: Quantity) -> Quantity:
+        """The ratio, with the interval that both intervals leave; both positive."""
+        kind: Kind = other.kind if self.kind == "none" else self.kind
+        low, high = self.low / other.high, self.high / other.low if other.low > 0.0 else float("inf")
+        return Quantity(self.value / other.value if other.value else float("nan"), low, high, kind)
+
+    @property
+    def happens(self) -> bool:
+        return math.isfinite(self.high)
+
+    def text(self, unit: str = "") -> str:
+        """For readers; ``unit`` "%" shows parts as per cent."""
+        if self.kind == "bracket":
+            if not self.happens:
+                return f"above {_number(self.low, unit)}"
+            return f"{_number(self.low, unit)} to {_number(self.high, unit)}"
+        if self.kind == "none" or self.low == self.high:
+            return _number(self.value, unit)
+        ends = f"{_number(self.low, unit)} to {_number(self.high, unit)}"
+        if not self.happens:
+            ends = f"above {_number(self.low, unit)}"
+        return f"{_number(self.value, unit)} ({ends})" if math.isfinite(self.value) else ends
+
+
+def _number(value: float, unit: str) -> str:
+    return f"{100.0 * value:.3g} %" if unit == "%" else f"{value:.4g}{' ' + unit if unit else ''}"
+
+
+@dataclass(frozen=True)
+class Condition:
+    """``found`` must lie from ``least`` to ``most``, or with ``strict`` between them.
+
+    ``words`` are those of the table that set these bounds.
+    """
+
+    what: str
+    found: Quantity
+    least: float = -math.inf
+    most: float = math.inf
+    words: tuple[str, ...] = ()
+    unit: str = ""
+    strict: bool = False
+
+    def __post_init__(self) -> None:
+        if not (self.least > -math.inf or self.most < math.inf):
+            raise ValueError(f"{self.what}: a condition needs a bound")
+
+    @property
+    def outcome(self) -> Outcome:
+        """Holds with the whole interval inside the bounds, fails with all of it outside, open otherwise."""
+        if math.isnan(self.found.low) or math.isnan(self.found.high):
+            raise NotMeasured(f"{self.what}: no number is stored")
+        low, high = self.found.low, self.found.high
+        if self.strict:
+            if self.least < low and (high < self.most or self.most == math.inf):
+                return "holds"
+            return "fails" if high <= self.least or low >= self.most else "open"
+        if self.least <= low and high <= self.most:
+            return "holds"
+        return "fails" if high < self.least or low > self.most else "open"
+
+    @property
+    def asked(self) -> str:
+        if not math.isfinite(self.most):
+            return f"{'more than' if self.strict else 'at least'} {_number(self.least, self.unit)}"
+        if not math.isfinite(self.least):
+            return f"{'less than' if self.strict else 'at most'} {_number(self.most, self.unit)}"
+        if self.least == self.most:
+            return _number(self.least, self.unit)
+        return f"{_number(self.least, self.unit)} to {_number(self.most, self.unit)}"
+
+    @property
+    def measured(self) -> str:
+        return f"{self.what}: {self.found.text(self.unit)}"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One way to read the paper's set-up or words, and what the claim asks for in it."""
+
+    name: str
+    conditions: tuple[Condition, ...]
+
+    def __init__(self, name: str, *conditions: Condition) -> None:
+        if not conditions:
+            raise ValueError(f"{name}: a reading needs conditions")
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "conditions", conditions)
+
+    @property
+    def outcome(self) -> Outcome:
+        outcomes = {condition.outcome for condition in self.conditions}
+        return "fails" if "fails" in outcomes else "open" if "open" in outcomes else "holds"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was measured for a claim; the first reading is the one this project uses.
+
+    ``summary`` is for readers; ``quantity`` the number that stands for the claim, by default that of the first
+    condition over all readings; ``remark`` is shown beside the verdict.
+    """
+
+    summary: str
+    readings: Sequence[Reading]
+    remark: str = ""
+
+    @property
+    def quantity(self) -> Quantity:
+        """The first condition's number: its own interval, or the range over the readings that measure the same."""
+        first = self.readings[0].conditions[0]
+        same = [r.conditions[0].found for r in self.readings if r.conditions[0].what == first.what]
+        if len(same) < 2:
+            return first.found
+        return Quantity(first.found.value, min(q.low for q in same), max(q.high for q in same), "range")
+
+
+Measure = Callable[["Data", Bounds], Finding]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of the paper and how it is measured. A ``derivation`` is algebra that no simulation can fail."""
+
+    id: str
+    place: str
+    measured: str
+    paper: str
+    measure: Measure = field(repr=False)
+    figures: tuple[int, ...] = ()
+    group: str = ""
+    derivation: bool = False
+
+
+def missing(needs: str) -> Measure:
+    """The measure of a claim that no stored dataset decides; ``needs`` says what would."""
+
+    def measure(data: Data, words: Bounds) -> Finding:
+        raise NotMeasured(f"needs {needs}")
+
+    return measure
 
 
 class Data:
@@ -46,17 +221,17 @@ class Data:
             raise NotMeasured(f"data/{group}.nc: {name} holds no {', '.join(missing)}")
         return dataset
 
-    def event(self, group: str, name: str, friction: float | None = None, *, dataset: str = "events") -> Bracket:
+    def event(self, group: str, name: str, friction: float | None = None) -> Quantity:
         """The bracket of an event; ``friction`` None takes the first event of that name."""
-        events = self.get(group, dataset, "name", "low", "high")
+        events = self.get(group, "events", "name", "low", "high")
         at = events["name"].values == name
         if friction is not None and "friction" in events.variables:
             at = at & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
         if not at.any():
             with_friction = "" if friction is None else f" at friction {friction:g}"
-            raise NotMeasured(f"data/{group}.nc: {dataset} holds no {name}{with_friction}")
+            raise NotMeasured(f"data/{group}.nc: events holds no {name}{with_friction}")
         k = int(np.flatnonzero(at)[0])
-        return Bracket(float(events["low"].values[k]), float(events["high"].values[k]))
+        return Quantity.bracket(float(events["low"].values[k]), float(events["high"].values[k]))
 
 
 def at(dataset: xr.Dataset, **labels: float) -> xr.Dataset:
@@ -70,124 +245,20 @@ def at(dataset: xr.Dataset, **labels: float) -> xr.Dataset:
     return dataset
 
 
-@dataclass(frozen=True)
-class Bracket:
-    """An event happens above ``low`` and not above ``high``; ``high`` is nan if it does not happen up to ``low``."""
-
-    low: float
-    high: float
-
-    @property
-    def happens(self) -> bool:
-        return bool(np.isfinite(self.high))
-
-    @property
-    def middle(self) -> float:
-        return 0.5 * (self.low + self.high)
-
-    def within(self, low: float, high: float) -> bool:
-        """Whether the whole bracket lies in the closed interval."""
-        return self.happens and low <= self.low and self.high <= high
-
-    def text(self, unit: str = "") -> str:
-        if not self.happens:
-            return f"not up to {self.low:.4g}{unit}"
-        return f"{self.low:.4g} to {self.high:.4g}{unit}"
+def sampled(what: str, event: Quantity, paper: float, words: Bounds) -> Condition:
+    """The paper's number is the first of its sampled forces at or above the event (mean disk weights)."""
+    return Condition(what, event, (1.0 - words["about"]) * paper, paper, ("about",), "mg")
 
 
-@dataclass(frozen=True)
-class Condition:
-    """One thing a claim asks for: ``text`` says what, with its tolerance; ``measured`` what was found."""
-
-    text: str
-    holds: bool
-    measured: str
-    essential: bool = False  #: without it the claim is not reproduced, whatever else holds
+def about(what: str, found: Quantity, paper: float, words: Bounds, unit: str = "") -> Condition:
+    """The paper gives the number with "about"."""
+    return Condition(what, found, (1.0 - words["about"]) * paper, (1.0 + words["about"]) * paper, ("about",), unit)
 
 
-@dataclass(frozen=True)
-class Finding:
-    """What was measured for a claim.
-
-    ``summary`` is for readers; ``value`` the one number that stands for it; ``interval`` the bracket or interval
-    it lies in; ``remark`` a reason known for a difference, shown if there is one.
-    """
-
-    summary: str
-    value: float
-    conditions: Sequence[Condition]
-    interval: tuple[float, float] | None = None
-    remark: str = ""
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A claim of the paper and how it is measured."""
-
-    id: str
-    place: str
-    measured: str
-    paper: str
-    measure: Callable[[Data], Finding] = field(repr=False)
-    figures: tuple[int, ...] = ()
-    group: str = ""
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A claim with its verdict."""
-
-    claim: Claim
-    verdict: Verdict
-    finding: Finding | None
-    reason: str
-
-
-def verdict_of(conditions: Sequence[Condition]) -> Verdict:
-    """Reproduced if all hold; not reproduced if an essential one fails or none holds; differs otherwise."""
-    held = [condition.holds for condition in conditions]
-    if not conditions:
-        raise ValueError("a finding needs conditions")
-    if all(held):
-        return "reproduced"
-    if not any(held) or any(c.essential and not c.holds for c in conditions):
-        return "not reproduced"
-    return "differs"
-
-
-def judge(claim: Claim, data: Data) -> Entry:
-    """Measure a claim on stored data."""
-    try:
-        finding = claim.measure(data)
-    except NotMeasured as missing:
-        return Entry(claim, "not measured", None, str(missing))
-    verdict = verdict_of(finding.conditions)
-    failed = [f"{c.measured} (asked: {c.text})" for c in finding.conditions if not c.holds]
-    reason = ". ".join(failed + ([finding.remark] if failed and finding.remark else []))
-    return Entry(claim, verdict, finding, reason)
-
-
-#: Tolerance on forces that the paper reads off its own simulations at some sampled forces.
-SAMPLED = 0.2
-
-
-def sampled_event(what: str, bracket: Bracket, paper: float, unit: str = " mg") -> list[Condition]:
-    """Conditions on an event of which the paper gives the first sampled value at which it has happened."""
-    low = (1.0 - SAMPLED) * paper
-    text = f"from {low:.4g} to {paper:g}{unit} (the paper's first sampled value, or up to {SAMPLED:.0%} before it)"
-    return [
-        Condition(f"{what} happens", bracket.happens, f"{what}: {bracket.text(unit)}", essential=True),
-        Condition(text, bracket.within(low, paper), f"{what}: {bracket.text(unit)}"),
-    ]
-
-
-def about_event(
-    what: str, bracket: Bracket, paper: float, tolerance: float = SAMPLED, unit: str = " mg"
-) -> list[Condition]:
-    """Conditions on an event that the paper places at about a value."""
-    low, high = (1.0 - tolerance) * paper, (1.0 + tolerance) * paper
-    text = f"{what} within {tolerance:.0%} of {paper:g}{unit}"
-    return [
-        Condition(f"{what} happens", bracket.happens, f"{what}: {bracket.text(unit)}", essential=True),
-        Condition(text, bracket.within(low, high), f"{what}: {bracket.text(unit)}"),
-    ]
+def rises(what: str, values: Sequence[Quantity]) -> Condition:
+    """Each of positive ``values`` is larger than the one before: their smallest ratio is above 1."""
+    steps = [after.per(before) for before, after in pairwise(values)]
+    smallest = Quantity(
+        min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), steps[0].kind
+    )
+    return Condition(f"{what}, smallest ratio of neighbours", smallest, least=1.0, strict=True)

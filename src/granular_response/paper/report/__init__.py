@@ -94,7 +94,7 @@ def page(root: Path) -> str:
         template.render(
             version=__version__,
             claims=claims,
-            verdicts=[(v, v.replace(" ", "_"), claims["counts"][v.replace(" ", "_")]) for v in _VERDICTS],
+            verdicts=[(k["verdict"], k["verdict"].replace(" ", "_")) for k in claims["verdict_kinds"]],
             numbered=shown.numbered,
             further=shown.further,
             states=_json_in_html(states) if states else None,
@@ -115,13 +115,14 @@ def page(root: Path) -> str:
 #: What the digits and the pictures come from.
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")
 
-_VERDICTS = ("reproduced", "differs", "not reproduced", "not measured")
+#: What the page needs of the table of claims.
+_CLAIMS = {"counts", "verdict_kinds", "words", "sensitivity", "table"}
 
 
 def _claims(path: Path) -> dict[str, Any]:
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
-        known = isinstance(found, dict) and {"counts", "table"} <= set(found)
+        known = isinstance(found, dict) and set(found) >= _CLAIMS
     except FileNotFoundError:
         raise ReportError(f"{path}: no such file, make it with granular-response claims") from None
     except (OSError, ValueError) as error:

@@ -21,7 +21,7 @@ from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.numerics.parameters import Parameters
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
-from granular_response.solve.timestep import resolve_time_step
+from granular_response.solve.timestep import resolve_time_step, stability_limit
 from granular_response.state import State
 from granular_response.store.result import FORCE, variable
 from granular_response.sweeps.rest import rest_state
@@ -108,14 +108,14 @@ class DampingTask:
     scene: Scene
     time_step: float
 
-    def run(self) -> tuple[float, float]:
-        """Time to rest, and whether it came to rest."""
+    def run(self) -> tuple[float, float, float]:
+        """Time to rest, whether it came to rest, and the largest step that Beeman's method would allow."""
         problem = Problem.from_scene(self.scene)
         protocol = self.scene.protocol
         dynamics = Dynamics(problem, problem.bare_state(), protocol.integrator, self.time_step)
         stop = Stop(protocol.stop_kinetic_energy, "envelope", protocol.maximum_steps)
         state = relax(dynamics, stop)
-        return dynamics.time, float(bool(state.reached.settled))
+        return dynamics.time, float(bool(state.reached.settled)), stability_limit(problem, "beeman")
 
 
 Task = StopTask | RestartTask | ResponseTask | DampingTask
@@ -266,7 +266,7 @@ def _responses(
     )
 
 
-def _damping(ratios: Sequence[float], found: list[tuple[float, float]]) -> xr.Dataset:
+def _damping(ratios: Sequence[float], found: list[tuple[float, float, float]]) -> xr.Dataset:
     values = np.array(found)
     return xr.Dataset(
         {
@@ -276,6 +276,9 @@ def _damping(ratios: Sequence[float], found: list[tuple[float, float]]) -> xr.Da
                 "time until the kinetic energy's envelope is at rest, in sqrt(radius/g)",
             ),
             "settled": variable(("damping_ratio",), values[:, 1].astype(np.int8), "1 if it came to rest"),
+            "beeman_limit": variable(
+                ("damping_ratio",), values[:, 2], "largest stable time step of Beeman's method in sqrt(radius/g)"
+            ),
         },
         coords={
             "damping_ratio": variable(

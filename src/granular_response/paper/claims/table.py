@@ -1,0 +1,292 @@
+"""The paper's claims against the stored datasets: the table with a verdict for each, and how firm the counts are.
+
+``collect`` reads what is stored, ``evaluate`` judges, ``document`` makes the JSON that ``dvc metrics show``, the
+report and the README quote.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from granular_response.store import atomic, generated
+from granular_response.store import files as store
+
+from ..groups.friction_fields import claims as friction_fields
+from ..groups.friction_linear_range import claims as friction_linear_range
+from ..groups.frictionless_crossover import claims as frictionless_crossover
+from ..groups.numerics import claims as numerics
+from ..groups.phase_diagram import claims as phase_diagram
+from ..groups.pile_dip import claims as pile_dip
+from ..groups.polydisperse_averages import claims as polydisperse_averages
+from ..groups.slab_comparison import claims as slab_comparison
+from ..groups.stiffness_ratio_crossover import claims as stiffness_ratio_crossover
+from ..groups.superposition import claims as superposition
+from ..groups.theory import claims as theory
+from ..groups.torque import claims as torque
+from . import preparations
+from .claim import Claim, Condition, Data, Quantity
+from .verdict import MEANINGS, Entry, Verdict, judge
+from .words import TABLE, bounds
+
+#: Kinds of claims by the first letter, in the order of the table.
+_ORDER = "AFRKSPTDUN"
+
+
+def _place(claim: Claim) -> tuple[int, int, str]:
+    letter, number, part = re.fullmatch(r"([A-Z])(\d+)([a-z]?)", claim.id).groups()  # type: ignore[union-attr]
+    return _ORDER.index(letter), int(number), part
+
+
+#: All claims in the order of the table.
+CLAIMS: tuple[Claim, ...] = tuple(
+    sorted(
+        (
+            *friction_fields.CLAIMS,
+            *friction_linear_range.CLAIMS,
+            *frictionless_crossover.CLAIMS,
+            *numerics.CLAIMS,
+            *phase_diagram.CLAIMS,
+            *pile_dip.CLAIMS,
+            *polydisperse_averages.CLAIMS,
+            *slab_comparison.CLAIMS,
+            *stiffness_ratio_crossover.CLAIMS,
+            *superposition.CLAIMS,
+            *theory.CLAIMS,
+            *torque.CLAIMS,
+        ),
+        key=_place,
+    )
+)
+
+#: Figure groups whose datasets the claims read.
+GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP}))
+
+#: Where the table of claims is kept.
+OUTPUT = Path("figures") / "claims.json"
+
+#: Name of the generated lines in the README.
+BLOCK = "claims"
+
+#: How the bounds of words are changed to see how the counts move.
+FACTORS = (0.5, 2.0)
+
+#: Intervals as they are named for readers.
+KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "range": "range over readings"}
+
+
+#: What a stored table holds.
+KEYS = {"counts", "verdicts", "verdict_kinds", "words", "sensitivity", "table"}
+
+
+class ClaimsError(Exception):
+    """Nothing to judge, or no stored table. The message is one line."""
+
+
+def collect(folder: str | os.PathLike[str] = "data") -> Data:
+    """The stored datasets that claims read; a group without a file is left out.
+
+    Raises StoreError if a file that is there cannot be read.
+    """
+    return Data({path.stem: store.read(path) for path in _paths(folder) if path.exists()})
+
+
+def _paths(folder: str | os.PathLike[str]) -> list[Path]:
+    return [Path(folder) / f"{group}.nc" for group in GROUPS]
+
+
+def evaluate(data: Data, claims: Sequence[Claim] = CLAIMS) -> list[Entry]:
+    """The verdict on each claim."""
+    return [judge(claim, data) for claim in claims]
+
+
+def counts(verdicts: Sequence[Verdict]) -> dict[str, int]:
+    """How many claims have each verdict."""
+    return {_key(verdict): sum(one == verdict for one in verdicts) for verdict in MEANINGS}
+
+
+def _key(verdict: str) -> str:
+    return verdict.replace(" ", "_")
+
+
+def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
+    """For each word with its bound halved and doubled: the counts, and the claims whose verdict changes.
+
+    Only claims with a condition that names the word are judged again.
+    """
+    rows = []
+    for word in TABLE:
+        for factor in FACTORS:
+            changed = bounds(word.name, factor)
+            verdicts = {entry.claim.id: entry.verdict for entry in entries}
+            moved = {}
+            for entry in entries:
+                if entry.finding is None or not any(word.name in c.words for c in _conditions(entry)):
+                    continue
+                now = judge(entry.claim, data, changed).verdict
+                if now != entry.verdict:
+                    moved[entry.claim.id] = now
+            verdicts.update(moved)
+            rows.append(
+                {
+                    "word": word.name,
+                    "bound": changed[word.name],
+                    "factor": factor,
+                    "counts": counts(list(verdicts.values())),
+                    "changed": moved,
+                }
+            )
+    return rows
+
+
+def _conditions(entry: Entry) -> list[Condition]:
+    return [c for reading in entry.finding.readings for c in reading.conditions] if entry.finding else []
+
+
+def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
+    """Everything about the verdicts, as it is stored.
+
+    ``counts`` and ``verdicts`` are scalars for ``dvc metrics show``, which passes over lists.
+    """
+    verdicts = {
+        entry.claim.id: {
+            "verdict": entry.verdict,
+            **({"value": _number(entry.finding.quantity.value)} if entry.finding else {}),
+        }
+        for entry in entries
+    }
+    return {
+        "counts": {**counts([entry.verdict for entry in entries]), "total": len(entries)},
+        "verdicts": verdicts,
+        "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
+        "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
+        "sensitivity": sensitivity(data, entries),
+        "table": [_row(entry) for entry in entries],
+    }
+
+
+def _row(entry: Entry) -> dict[str, Any]:
+    claim, finding = entry.claim, entry.finding
+    row: dict[str, Any] = {
+        "id": claim.id,
+        "place": claim.place,
+        "measured": claim.measured,
+        "paper": claim.paper,
+        "verdict": entry.verdict,
+        "reason": entry.reason,
+        "figures": list(claim.figures),
+        "group": claim.group,
+        "ours": finding.summary if finding else "",
+        "value": None,
+        "interval": None,
+        "interval_kind": "",
+        "readings": [],
+    }
+    if finding:
+        row.update(_interval(finding.quantity))
+        row["readings"] = [
+            {
+                "name": reading.name,
+                "outcome": reading.outcome,
+                "conditions": [
+                    {
+                        "measured": c.measured,
+                        "asked": c.asked,
+                        "outcome": c.outcome,
+                        "words": list(c.words),
+                        **_interval(c.found),
+                    }
+                    for c in reading.conditions
+                ],
+            }
+            for reading in finding.readings
+        ]
+    return row
+
+
+def _interval(quantity: Quantity) -> dict[str, Any]:
+    """A value with its interval and the kind of it; an end that is open is null."""
+    bare = quantity.kind == "none"
+    return {
+        "value": _number(quantity.value),
+        "interval": None if bare else [_number(quantity.low), _number(quantity.high)],
+        "interval_kind": KINDS[quantity.kind],
+    }
+
+
+def _number(value: float) -> float | None:
+    """To six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON lacks."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None
+
+
+def write(
+    output: str | os.PathLike[str] = OUTPUT,
+    folder: str | os.PathLike[str] = "data",
+    keep: Sequence[str | os.PathLike[str]] = (),
+) -> dict[str, Any]:
+    """Judge all claims on the datasets in ``folder`` and store the result; returns it.
+
+    Raises ClaimsError if there are none, StoreError if one cannot be read, OSError if the output cannot be written
+    or is one of the datasets or of the files to ``keep``.
+    """
+    target = Path(output)
+    atomic.check_output(target, [*_paths(folder), *keep])
+    data = collect(folder)
+    if not data.groups:
+        raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
+    found = document(data, evaluate(data))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
+    return found
+
+
+def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
+    """The stored table. Raises ClaimsError if it is missing or damaged."""
+    try:
+        found = json.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ClaimsError(
+            f"{path}: {getattr(error, 'strerror', None) or error}; make it with granular-response claims"
+        ) from None
+    if not isinstance(found, dict) or not set(found) >= KEYS:
+        raise ClaimsError(f"{path}: is not a table of claims")
+    return found
+
+
+def sentence(found: dict[str, Any]) -> str:
+    """The counts in words; derivations are counted apart."""
+    number = found["counts"]
+    named = [(number[_key(v)], v) for v in MEANINGS if v not in ("derivation", "not measured")]
+    judged = sum(n for n, _ in named)
+    parts = [
+        f"{n} {'depend' if n != 1 else 'depends'} on the reading" if v.startswith("depends") else f"{n} {v}"
+        for n, v in named
+        if n
+    ]
+    text = f"Of {judged} claims of the paper that were measured: {', '.join(parts)}."
+    algebra, missing = number["derivation"], number["not_measured"]
+    if algebra:
+        text += f" {algebra} more {'are' if algebra != 1 else 'is'} algebra that no simulation can fail."
+    if missing:
+        text += f" {missing} {'are' if missing != 1 else 'is'} not measured."
+    return text
+
+
+def firmness(found: dict[str, Any]) -> str:
+    """How far the counts move with the words, in a sentence."""
+    reproduced = [row["counts"]["reproduced"] for row in found["sensitivity"]]
+    moved = {name for row in found["sensitivity"] for name in row["changed"]}
+    return (
+        f"With the bound of any one word halved or doubled, {min(reproduced)} to {max(reproduced)} are reproduced "
+        f"({found['counts']['reproduced']} as it stands); {len(moved)} claims change their verdict in some of these."
+    )
+
+
+def renew(readme: str | os.PathLike[str], found: dict[str, Any]) -> None:
+    """Renew the counts that a file quotes. Raises GeneratedError if it cannot be read or has no place for them."""
+    generated.renew(readme, BLOCK, f"{sentence(found)}\n{firmness(found)}")

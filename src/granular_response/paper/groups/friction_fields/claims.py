@@ -1,0 +1,225 @@
+"""Claims S1 to S4 and A3: forces and stress inside slabs with and without friction (Secs. V.C and V.D)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
+from ...claims.words import Bounds
+
+GROUP = "friction_fields"
+
+#: "Near the load": within this distance (mean radii). Pressure is compared where it exceeds this part of its maximum.
+NEAR, FAINT = 6.0, 0.1
+
+
+def along_lattice(data: Data, words: Bounds) -> Finding:
+    tilt = float(at(data.get(GROUP, "stress", "misalignment", "friction"), friction=0.0)["misalignment"])
+    return Finding(
+        f"added forces {tilt:.2f} degrees off the contact lines",
+        [
+            Reading(
+                "friction 0",
+                Condition(
+                    "sine of the mean angle to the contact lines",
+                    Quantity.exact(np.sin(np.radians(tilt))),
+                    most=words["visible"],
+                    words=("visible",),
+                ),
+            )
+        ],
+    )
+
+
+def vertical_chain(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "stress", "axis_angle", "axis_share", "friction")
+    without, full = at(study, friction=0.0), at(study, friction=1.0)
+    angle, ratio = float(full["axis_angle"]), float(full["axis_share"]) / float(without["axis_share"])
+    return Finding(
+        f"forces below the load {angle:.1f} degrees off the vertical, carrying {ratio:.1f} times the share of "
+        "friction 0",
+        [
+            Reading(
+                "friction 1",
+                # nearer to the vertical than to a lattice line, which is 30 degrees off it
+                Condition(
+                    "angle of the forces below the load to the vertical, degrees", Quantity.exact(angle), most=15.0
+                ),
+                Condition(
+                    "their share of the force per that at friction 0",
+                    Quantity.exact(ratio),
+                    1.0 + words["marked"],
+                    words=("marked",),
+                ),
+            )
+        ],
+    )
+
+
+def stress(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "stress", "distance_to_lattice", "friction")
+    value = {mu: float(at(study, friction=mu)["distance_to_lattice"]) for mu in (0.0, 1.0)}
+    return Finding(
+        f"rms difference from the isotropic harmonic lattice: {value[1.0]:.1%} at friction 1, {value[0.0]:.0%} at 0",
+        [
+            Reading(
+                "farther than 6 radii from the load",
+                Condition(
+                    "rms difference at friction 1",
+                    Quantity.exact(value[1.0]),
+                    most=words["similar"],
+                    words=("similar",),
+                    unit="%",
+                ),
+                Condition(
+                    "that difference per the one at friction 0",
+                    Quantity.exact(value[1.0] / value[0.0]),
+                    most=1.0 - words["marked"],
+                    words=("marked",),
+                ),
+            )
+        ],
+    )
+
+
+def closer_with_friction(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "stress", "distance_to_lattice", "friction").sortby("friction")
+    friction, distance = study["friction"].values, study["distance_to_lattice"].values
+    worst = float((distance[1:] / distance[:-1]).max())
+    return Finding(
+        "rms difference of sigma_zz from the isotropic harmonic lattice: "
+        + ", ".join(f"{d:.1%} (friction {mu:g})" for mu, d in zip(friction, distance, strict=True)),
+        [
+            Reading(
+                "farther than 6 radii from the load",
+                Condition(
+                    "largest ratio of neighbouring frictions",
+                    Quantity.exact(worst),
+                    most=1.0 - words["visible"],
+                    words=("visible",),
+                ),
+            )
+        ],
+    )
+
+
+def antisymmetric(data: Data, words: Bounds) -> Finding:
+    names = ("antisymmetric_near", "antisymmetric_near_mean", "friction", "stress_xx", "stress_zz", "stress_xz")
+    study = data.get(GROUP, "stress", *names, "stress_zx", "load_height", "x", "z")
+    x, z = np.meshgrid(study["x"].values, study["z"].values)
+    near = np.hypot(x, z - float(study["load_height"])) < NEAR
+    values: dict[str, list[float]] = {"per the largest pressure": [], "local": [], "root mean squares": []}
+    frictions = [mu for mu in study["friction"].values.tolist() if mu > 0.0]
+    if not frictions or not near.any():
+        raise NotMeasured(f"data/{GROUP}.nc: stress holds no friction or no point near the load")
+    for mu in frictions:
+        one = at(study, friction=mu)
+        odd = 0.5 * np.abs(one["stress_xz"].values - one["stress_zx"].values)
+        pressure = 0.5 * (one["stress_xx"].values + one["stress_zz"].values)
+        there = near & (pressure > FAINT * pressure.max())
+        values["per the largest pressure"].append(float(one["antisymmetric_near"]))
+        values["local"].append(float((odd[there] / pressure[there]).max()))
+        values["root mean squares"].append(float(one["antisymmetric_near_mean"]))
+    most = words["few per cent"]
+    return Finding(
+        f"antisymmetric part over pressure at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
+        + "; ".join(f"{name} {', '.join(f'{v:.1%}' for v in found)}" for name, found in values.items()),
+        [
+            Reading(
+                name,
+                Condition(
+                    "antisymmetric part over pressure",
+                    Quantity.exact(max(found)),
+                    most=most,
+                    words=("few per cent",),
+                    unit="%",
+                ),
+            )
+            for name, found in values.items()
+        ],
+        "The largest local ratio is where the pressure itself is small, a tenth of its maximum or little more",
+    )
+
+
+def profiles(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "profiles", "axis_magnitude", "friction", "row")
+    off = float(at(study, friction=0.0)["axis_magnitude"].max())
+    on = float(at(study, friction=1.0)["axis_magnitude"].min())
+    return Finding(
+        f"below the load at most {off:.2f} of the largest force at its depth at friction 0, at least {on:.2f} at 1",
+        [
+            Reading(
+                "150 mg",
+                Condition(
+                    "below the load per largest, friction 0",
+                    Quantity.exact(off),
+                    most=1.0 - words["marked"],
+                    words=("marked",),
+                ),
+                Condition(
+                    "below the load per largest, friction 1",
+                    Quantity.exact(on),
+                    1.0 - words["slightly"],
+                    words=("slightly",),
+                ),
+            )
+        ],
+    )
+
+
+CLAIMS = (
+    Claim(
+        "S1a",
+        "V.D, Fig. 13",
+        "F = 15 mg, no friction: mean angle of the added forces to the contact lines",
+        "forces are aligned with the lattice directions",
+        along_lattice,
+        (13,),
+        GROUP,
+    ),
+    Claim(
+        "S1b",
+        "V.D, Fig. 13",
+        "F = 15 mg, friction 1: angle to the vertical of the forces below the load and their share of the force",
+        "a vertical chain is evident",
+        vertical_chain,
+        (13,),
+        GROUP,
+    ),
+    Claim(
+        "S2",
+        "V.D, Fig. 14",
+        "F = 15 mg, friction 1: sigma_zz against that of a harmonic lattice",
+        "quite similar to the isotropic one",
+        stress,
+        (14,),
+        GROUP,
+    ),
+    Claim(
+        "A3",
+        "abstract, V.D",
+        "F = 15 mg: difference of sigma_zz from the isotropic lattice at friction 0, 0.2 and 1",
+        "friction renders the response closer to that of isotropic elasticity",
+        closer_with_friction,
+        (14,),
+        GROUP,
+    ),
+    Claim(
+        "S3",
+        "V.C",
+        "antisymmetric part of the stress over the pressure, within 6 radii of the load",
+        "only a few per cent of the pressure",
+        antisymmetric,
+        (14,),
+        GROUP,
+    ),
+    Claim(
+        "S4",
+        "V.D, Fig. 15",
+        "F = 150 mg: added contact forces below the load over the largest at the same depth",
+        "friction changes force profiles with two maxima into ones with a maximum below the load",
+        profiles,
+        (15,),
+        GROUP,
+    ),
+)

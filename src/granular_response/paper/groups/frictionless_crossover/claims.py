@@ -1,0 +1,356 @@
+"""Claims F4 to F9: the ordered slab without friction (Sec. IV)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "frictionless_crossover"
+
+#: The paper's stiffness of contacts.
+STIFFNESS = 3000.0
+
+#: Distance of two rows of disks, and of two disks in a row (mean radii): the resolution of a region's size.
+ROW, DISK = float(np.sqrt(3.0)), 2.0
+
+
+def crossover(data: Data, words: Bounds) -> Finding:
+    event = data.event(GROUP, "crossover")
+    largest = float(data.get(GROUP, "response", "force")["force"].max())
+    return Finding(
+        f"two peaks from {event.text('mg')}",
+        [Reading("as described", Condition("two peaks from", event, 0.0, largest, unit="mg"))],
+    )
+
+
+def before_the_floor(data: Data, words: Bounds) -> Finding:
+    event, floor = data.event(GROUP, "crossover"), data.event(GROUP, "teardrop_reaches_floor")
+    ratio = event.per(floor)
+    return Finding(
+        f"two peaks from {event.text('mg')}, the open region at the floor from {floor.text('mg')}",
+        [
+            Reading(
+                "as described",
+                Condition("crossover per force at the floor", ratio, 1.0 - words["slightly"], 1.0, ("slightly",)),
+            )
+        ],
+    )
+
+
+def _open_regions(data: Data) -> list[tuple[float, float, np.ndarray]]:
+    """Force, horizontal share of the opened contacts, and contacts by row from below, until the floor is reached."""
+    states = data.get(GROUP, "states", "teardrop", "position", "contact_disk", "contact_partner", "force")
+    first, second = states["contact_disk"].values, states["contact_partner"].values
+    found = []
+    for k in range(states.sizes["force"]):
+        inside = states["teardrop"].values[k].astype(bool)
+        if not inside.any():
+            continue
+        height = states["position"].values[k][:, 1]
+        share = float((np.abs(height[first] - height[second])[inside] < 0.5 * ROW).mean())
+        rows = np.round(0.5 * (height[first] + height[second])[inside] / ROW).astype(int)
+        if rows.min() > 1:
+            found.append((float(states["force"].values[k]), share, np.bincount(rows - rows.min())))
+    if not found:
+        raise NotMeasured(f"data/{GROUP}.nc: no state with a region of opened contacts that has not reached the floor")
+    return found
+
+
+def horizontal(data: Data, words: Bounds) -> Finding:
+    regions = _open_regions(data)
+    least = min(share for _, share, _ in regions)
+    return Finding(
+        f"horizontal part of the opened contacts until their region reaches the floor: at least {least:.1%}",
+        [
+            Reading(
+                "until the region reaches the floor",
+                Condition(
+                    "smallest horizontal part of the opened contacts",
+                    Quantity.exact(least),
+                    1.0 - words["visible"],
+                    words=("visible",),
+                    unit="%",
+                ),
+            )
+        ],
+        "At larger forces oblique contacts open too, close below the load; the paper describes none",
+    )
+
+
+def teardrop(data: Data, words: Bounds) -> Finding:
+    regions = [counts for _, _, counts in _open_regions(data)]
+    response = data.get(GROUP, "response", "teardrop_depth", "reaches_floor", "force")
+    depth = response["teardrop_depth"].values
+    widest = regions[-1]
+    if len(widest) < 4:
+        raise NotMeasured(f"data/{GROUP}.nc: no region of four rows that has not reached the floor")
+    return Finding(
+        f"contacts by row, from below, before the region reaches the floor: {', '.join(map(str, widest))}; depth grows "
+        f"from {depth[0]:.1f} to {depth.max():.1f} R",
+        [
+            Reading(
+                "as described",
+                Condition(
+                    "widest row per the wider end",
+                    Quantity.exact(widest.max() / max(widest[0], widest[-1])),
+                    1.0,
+                    strict=True,
+                ),
+                Condition(
+                    "smallest growth of the depth with the force, rows (known to half a row)",
+                    Quantity.exact(float(np.diff(depth).min() / ROW)),
+                    -0.5,
+                ),
+                Condition("growth of the depth, rows", Quantity.exact(float((depth.max() - depth[0]) / ROW)), 0.5),
+            )
+        ],
+    )
+
+
+def _slabs(data: Data, *names: str) -> xr.Dataset:
+    return data.get(GROUP, "sizes", "layers", "normal_stiffness", "force", *names).sortby("layers")
+
+
+def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
+    study = _slabs(data, "teardrop_depth", "teardrop_width", "reaches_floor")
+    stiffnesses = np.unique(study["normal_stiffness"].values)
+    stiffnesses = stiffnesses[np.argsort(np.abs(stiffnesses - STIFFNESS))]
+    readings, texts = [], []
+    for stiffness in stiffnesses.tolist():
+        slabs = study.isel(slab=np.isclose(study["normal_stiffness"].values, stiffness))
+        sizes = (("depth", "teardrop_depth", ROW), ("width", "teardrop_width", DISK))
+        use = (slabs["reaches_floor"].values[0] == 0) & (slabs["teardrop_depth"].values[0] > 2.0 * ROW)
+        if slabs.sizes["slab"] < 2 or not use.any():
+            raise NotMeasured(f"data/{GROUP}.nc: sizes holds one depth, or no open region away from the floor")
+        for k in range(1, slabs.sizes["slab"]):
+            conditions = []
+            for what, name, step in sizes:
+                thin, deep = slabs[name].values[0, use], slabs[name].values[k, use]
+                # a size is a whole number of steps: known to half a step
+                blur = 0.5 * step * len(thin)
+                ratio = Quantity(
+                    float(deep.sum() / thin.sum()),
+                    float((deep.sum() - blur) / thin.sum()),
+                    float((deep.sum() + blur) / thin.sum()),
+                    "bracket",
+                )
+                conditions.append(
+                    Condition(
+                        f"{what} per that in {slabs['layers'].values[0]:.0f} layers",
+                        ratio,
+                        1.0 - words["slightly"],
+                        words=("slightly",),
+                    )
+                )
+                if what == "depth":
+                    texts.append(f"{ratio.value:.2f} in {slabs['layers'].values[k]:.0f} layers (k_N = {stiffness:g})")
+            readings.append(Reading(f"{slabs['layers'].values[k]:.0f} layers, k_N = {stiffness:g}", *conditions))
+    return Finding(
+        "depth of the open region per that in the thinnest slab, same forces: " + ", ".join(texts),
+        readings,
+        "The paper does not name its sizes. With its stiffness gravity presses horizontal contacts of deep slabs "
+        "together, and they open later",
+    )
+
+
+def deep_and_shallow(data: Data, words: Bounds) -> Finding:
+    readings, texts = [], []
+    for name, alike in (("sizes", "width grows with depth"), ("widths", "same width")):
+        study = data.get(GROUP, name, "layers", "disks_per_row", "normal_stiffness", "crossover_bracket")
+        for stiffness in np.unique(study["normal_stiffness"].values).tolist():
+            slabs = study.isel(slab=np.isclose(study["normal_stiffness"].values, stiffness)).sortby("layers")
+            layers, row = slabs["layers"].values, slabs["disks_per_row"].values
+            # sizes grow in both directions; of widths, the middle one of the thin slabs and the deep one nearest to it
+            thin, deep = 0, len(layers) - 1
+            if name == "widths":
+                flat, steep = np.flatnonzero(layers == layers[0]), np.flatnonzero(layers == layers[-1])
+                thin = int(flat[np.argmin(np.abs(row[flat] - np.median(row[flat])))])
+                deep = int(steep[np.argmin(np.abs(row[steep] - row[thin]))])
+            if layers[thin] == layers[deep]:
+                raise NotMeasured(f"data/{GROUP}.nc: {name} holds one depth")
+            ends = [Quantity.bracket(*slabs["crossover_bracket"].values[k]) for k in (thin, deep)]
+            where = f"{layers[deep]} against {layers[thin]} layers, {alike}, k_N = {stiffness:g}"
+            readings.append(
+                Reading(where, Condition("crossover force, deep per shallow", ends[1].per(ends[0]), 1.0, strict=True))
+            )
+            texts.append(f"{ends[1].text('mg')} and {ends[0].text('mg')} ({where})")
+    return Finding(
+        "crossover in the deep and in the shallow slab: " + "; ".join(texts),
+        readings,
+        "Slabs of more than 15 layers that are as narrow as the thin one are not stored; there side walls are near",
+    )
+
+
+def stiffness_response(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "stiffness", "response_at_centre", "normal_stiffness", "force")
+    stiffness, force = study["normal_stiffness"].values, study["force"].values
+    chosen = (stiffness >= 999.0) & (stiffness <= 1.001e5)
+    if stiffness[chosen].size < 2 or stiffness[chosen].max() < 0.99e5 or stiffness[chosen].min() > 1001.0:
+        raise NotMeasured(f"data/{GROUP}.nc: stiffness does not span 1000 to 1e5")
+    values = study["response_at_centre"].transpose("normal_stiffness", "force").values[chosen]
+    change = np.ptp(values, axis=0) / np.abs(values[stiffness[chosen].argmax()])
+    most = (1.0 + words["about"]) * 0.02
+    return Finding(
+        f"changes by {change.min():.2%} (at {force[change.argmin()]:g} mg) to {change.max():.1%} (at "
+        f"{force[change.argmax()]:g} mg)",
+        [
+            Reading(
+                f"{f:g} mg",
+                Condition("change of the response at x = 0", Quantity.exact(c), most=most, words=("about",), unit="%"),
+            )
+            for f, c in zip(force.tolist(), change.tolist(), strict=True)
+        ],
+        "The paper does not name the force at which it compared",
+    )
+
+
+def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "stiffness", "teardrop_depth", "teardrop_width", "reaches_floor", "normal_stiffness")
+    study = study.sortby("normal_stiffness")
+    stiffness = study["normal_stiffness"].values
+    depth, width = study["teardrop_depth"].values, study["teardrop_width"].values
+    use = (depth[-1] > 2.0 * ROW) & ~study["reaches_floor"].values.astype(bool).any(axis=0)
+    high = stiffness >= 2000.0
+    if not use.any() or high.all() or high.sum() < 2:
+        raise NotMeasured(f"data/{GROUP}.nc: stiffness holds no force or too few stiffnesses to compare")
+    conditions = []
+    for what, size in (("depth", depth[:, use]), ("width", width[:, use])):
+        spread = float((np.ptp(size[high], axis=0) / size[-1]).max())
+        conditions.append(
+            Condition(
+                f"largest change of the {what} for k_N of 2000 and more",
+                Quantity.exact(spread),
+                most=words["nearly"],
+                words=("nearly",),
+                unit="%",
+            )
+        )
+    grown = float(((depth[-1] - depth[0])[use] / ROW).max())
+    return Finding(
+        f"depth grows by up to {grown:.1f} rows from k_N = {stiffness[0]:g} to {stiffness[-1]:g}; for 2000 and more it "
+        f"changes by {conditions[0].found.value:.1%}",
+        [
+            Reading(
+                "forces at which the region reaches no floor",
+                *conditions,
+                Condition("growth of the depth, rows", Quantity.exact(grown), 0.5),
+            )
+        ],
+    )
+
+
+def crossover_and_stiffness(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "stiffness", "crossover_bracket", "normal_stiffness").sortby("normal_stiffness")
+    stiffness = study["normal_stiffness"].values
+    ends = [
+        Quantity.bracket(*study["crossover_bracket"].values[k])
+        for k in np.flatnonzero((stiffness >= 999.0) & (stiffness <= 1.001e5))
+    ]
+    if len(ends) < 2:
+        raise NotMeasured(f"data/{GROUP}.nc: stiffness holds too few stiffnesses from 1000 to 1e5")
+    ratios = [end.per(ends[-1]) for end in ends[:-1]]
+    spread = Quantity(ratios[0].value, min(r.low for r in ratios), max(r.high for r in ratios), "range")
+    return Finding(
+        f"crossover from k_N = 1000 to 1e5: {ends[0].text('mg')} to {ends[-1].text('mg')}",
+        [
+            Reading(
+                "15 layers",
+                Condition(
+                    "crossover force per that at the largest k_N",
+                    spread,
+                    1.0 - words["nearly"],
+                    1.0 + words["nearly"],
+                    ("nearly",),
+                ),
+            )
+        ],
+    )
+
+
+CLAIMS = (
+    Claim(
+        "F4a",
+        "IV.A, Fig. 3",
+        "without friction: force at which the floor response gets two peaks, each above the response at x = 0",
+        "one peak turns into two as the force grows",
+        crossover,
+        (3, 4),
+        GROUP,
+    ),
+    Claim(
+        "F4b",
+        "IV.A, Figs. 3, 4",
+        "that force per the force at which the open region reaches the lowest row",
+        "the crossover comes at slightly smaller forces than the open region's reaching the floor",
+        before_the_floor,
+        (3, 4),
+        GROUP,
+    ),
+    Claim(
+        "F5a",
+        "IV.A, Fig. 4",
+        "without friction: directions of the opened contacts in their connected region below the load",
+        "horizontal contacts are opened",
+        horizontal,
+        (4,),
+        GROUP,
+    ),
+    Claim(
+        "F5b",
+        "IV.A, Fig. 4",
+        "rows and depth of that region at growing forces",
+        "the region has the shape of a teardrop and grows with the force",
+        teardrop,
+        (4, 5),
+        GROUP,
+    ),
+    Claim(
+        "F6",
+        "IV.B, Fig. 5",
+        "depth and width of the open region in deeper slabs over those in the thinnest, summed over the forces at "
+        "which the latter has not reached its floor",
+        "the size decreases only slightly as the depth of the slab increases",
+        teardrop_and_depth,
+        (5,),
+        GROUP,
+    ),
+    Claim(
+        "F7",
+        "IV.B, VIII",
+        "crossover force in a deep slab over that in a shallow one",
+        "under the same load deep slabs have one peak, shallow ones two",
+        deep_and_shallow,
+        (5,),
+        GROUP,
+    ),
+    Claim(
+        "F8",
+        "IV.C",
+        "without friction: change of the response at x = 0 over k_N from 1000 to 1e5",
+        "only about 2 %",
+        stiffness_response,
+        (5,),
+        GROUP,
+    ),
+    Claim(
+        "F9",
+        "IV.C",
+        "depth and width of the open region against k_N, at forces at which it reaches no floor",
+        "they increase with k_N and saturate for k_N of 2000 and more",
+        stiffness_teardrop,
+        (5,),
+        GROUP,
+    ),
+    Claim(
+        "F10",
+        "IV.C",
+        "without friction: crossover force at k_N from 1000 up over that at 1e5",
+        "the crossover is essentially independent of the rigidity",
+        crossover_and_stiffness,
+        (5,),
+        GROUP,
+    ),
+)

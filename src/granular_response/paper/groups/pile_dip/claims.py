@@ -1,0 +1,87 @@
+"""Claims P1 to P3: a pile of 11 layers with and without friction (Sec. V.F)."""
+
+from __future__ import annotations
+
+from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "pile_dip"
+
+
+def _dips(data: Data, case: str) -> dict[str, float]:
+    """The dip under the apex per largest value, by where it is read."""
+    stress, floor = data.get(GROUP, "stress", "dip", "case"), data.get(GROUP, "piles", "floor_dip", "case")
+    return {
+        "stress 4 radii above the floor": float(stress["dip"].sel(case=case)),
+        "floor forces": float(floor["floor_dip"].sel(case=case)),
+    }
+
+
+def _dip(data: Data, case: str, *, least: float = float("-inf"), most: float = float("inf")) -> Finding:
+    dips = _dips(data, case)
+    return Finding(
+        ", ".join(f"{dip:.2%} ({name})" for name, dip in dips.items()),
+        [
+            Reading(name, Condition("dip per largest value", Quantity.exact(dip), least, most, ("visible",), "%"))
+            for name, dip in dips.items()
+        ],
+    )
+
+
+def dip_without_friction(data: Data, words: Bounds) -> Finding:
+    return _dip(data, "frictionless", least=words["visible"])
+
+
+def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
+    return _dip(data, "frictional", most=words["visible"])
+
+
+def regions(data: Data, words: Bounds) -> Finding:
+    names = {"central_open_contacts": "contacts", "central_height": "height", "central_width": "width"}
+    study = data.get(GROUP, "piles", *names, "case")
+    ratios = {
+        text: float(study[name].sel(case="frictional")) / float(study[name].sel(case="frictionless"))
+        for name, text in names.items()
+    }
+    limit = 1.0 + words["similar"]
+    return Finding(
+        "with friction over without: " + ", ".join(f"{text} {ratio:.2f}" for text, ratio in ratios.items()),
+        [
+            Reading(
+                f"size as {text}",
+                Condition("size with friction per without", Quantity.exact(ratio), 1.0 / limit, limit, ("similar",)),
+            )
+            for text, ratio in ratios.items()
+        ],
+    )
+
+
+CLAIMS = (
+    Claim(
+        "P1",
+        "V.F, Fig. 17",
+        "pile of 11 layers without friction: vertical stress on the axis below the lower maximum beside it",
+        "a dip under the apex",
+        dip_without_friction,
+        (17,),
+        GROUP,
+    ),
+    Claim(
+        "P2",
+        "V.F, Fig. 17",
+        "the same with friction 0.94, walls 0.35, k_T/k_N = 0.5",
+        "no dip",
+        no_dip_with_friction,
+        (17,),
+        GROUP,
+    ),
+    Claim(
+        "P3",
+        "V.F, Fig. 17e, f",
+        "size of the region of open contacts on the axis, with friction over without",
+        "quite similar in size",
+        regions,
+        (17,),
+        GROUP,
+    ),
+)

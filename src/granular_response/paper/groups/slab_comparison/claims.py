@@ -1,0 +1,58 @@
+"""Claim A4: large slabs against isotropic elasticity (abstract, Sec. VIII)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "slab_comparison"
+
+
+def large_systems(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "slabs", "distance", "layers", "friction", "floor", "gravity", "disks_per_layer")
+    cases = list(
+        zip(*(study[n].values.tolist() for n in ("friction", "floor", "gravity", "disks_per_layer")), strict=True)
+    )
+    layers, distance = study["layers"].values, study["distance"].values
+    readings = []
+    for case in dict.fromkeys(cases):
+        here = np.array([one == case for one in cases])
+        order = np.argsort(layers[here])
+        if order.size < 2:
+            raise NotMeasured(f"data/{GROUP}.nc: slabs holds one depth of a case")
+        thin, deep = distance[here][order[0]], distance[here][order[-1]]
+        mu, floor, gravity, wide = case
+        readings.append(
+            Reading(
+                f"friction {mu:g}, {floor} floor, gravity {gravity}, {wide:g} disks a row per layer",
+                Condition(
+                    "difference from the elastic slab in the deepest one",
+                    Quantity.exact(deep),
+                    most=words["holds"],
+                    words=("holds",),
+                    unit="%",
+                ),
+                Condition("that per the one in the thinnest", Quantity.exact(deep / thin), most=1.0),
+            )
+        )
+    values = [reading.conditions[0].found.value for reading in readings]
+    return Finding(
+        f"the floor response of the deepest slab is {min(values):.2%} to {max(values):.2%} off the elastic one",
+        readings,
+        "Force of 0.01 mg; where gravity opens a row of contacts on the way (15 layers) the difference is 10 %",
+    )
+
+
+CLAIMS = (
+    Claim(
+        "A4",
+        "abstract, VIII",
+        "floor response to a small force in growing slabs against the isotropic elastic slab",
+        "in large systems the response is close to that of isotropic elasticity",
+        large_systems,
+        (1,),
+        GROUP,
+    ),
+)

@@ -1,0 +1,137 @@
+"""Claims K1, K5 and K6: the response against the ratio of the springs at large friction (Secs. V.B and V.C)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading, about
+from ...claims.words import Bounds
+
+GROUP = "stiffness_ratio_crossover"
+
+#: The paper's crossover, and the largest ratio of its Fig. 10.
+CROSSOVER, LARGEST = 0.3, 1.0
+
+
+def _ends(data: Data) -> dict[str, Quantity]:
+    """The crossover by what counts as one: two peaks end, end for good, the maximum at x = 0 begins."""
+    study = data.get(GROUP, "response", "double_peaked", "stiffness_ratio").sortby("stiffness_ratio")
+    ratio, double = study["stiffness_ratio"].values, study["double_peaked"].values > 0
+    last = np.flatnonzero(double)
+    if not last.size or last[-1] + 1 == len(ratio):
+        raise NotMeasured(f"data/{GROUP}.nc: response holds no end of two peaks")
+    return {
+        "two peaks end, going up": data.event(GROUP, "two_peaks_end"),
+        "they end for good": Quantity.bracket(ratio[last[-1]], ratio[last[-1] + 1]),
+        "the maximum at x = 0 begins": data.event(GROUP, "central_maximum_begins"),
+    }
+
+
+def crossover(data: Data, words: Bounds) -> Finding:
+    ends = _ends(data)
+    return Finding(
+        ", ".join(f"{name}: {end.text()}" for name, end in ends.items()),
+        [Reading(name, about("crossover", end, CROSSOVER, words)) for name, end in ends.items()],
+    )
+
+
+def independent(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "response", "floor_response", "response_at_centre", "stiffness_ratio")
+    study = study.sortby("stiffness_ratio")
+    ratio = study["stiffness_ratio"].values
+    response = study["floor_response"].transpose("stiffness_ratio", "floor_disk").values
+    usual = int(np.argmin(np.abs(ratio - 0.8)))
+    change = np.abs(response - response[usual]).max(axis=1) / response[usual].max()
+    readings = []
+    for start in (0.4, 0.5):
+        above = (ratio >= start - 1e-9) & (ratio <= LARGEST)
+        if above.sum() < 3:
+            raise NotMeasured(f"data/{GROUP}.nc: response holds too few ratios from {start:g} to {LARGEST:g}")
+        largest = Quantity.exact(change[above].max())
+        readings.append(
+            Reading(
+                f"from {start:g} on",
+                Condition(
+                    "change from the response at 0.8, per its largest value",
+                    largest,
+                    most=words["nearly"],
+                    words=("nearly",),
+                    unit="%",
+                ),
+            )
+        )
+    return Finding(
+        "largest change from the response at a ratio of 0.8: "
+        + ", ".join(f"{r.conditions[0].found.value:.1%} ({r.name})" for r in readings),
+        readings,
+        "The paper does not say from which ratio on",
+    )
+
+
+def no_sliding(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "response", "sliding_contacts", "stiffness_ratio")
+    sliding = study["sliding_contacts"].values[study["stiffness_ratio"].values > 0.0]
+    return Finding(
+        f"at most {sliding.max():.0f} contacts of disks at the Coulomb limit, at all ratios above 0",
+        [Reading("at rest under 15 mg", Condition("sliding contacts", Quantity.exact(sliding.max()), most=0.0))],
+    )
+
+
+def criterion(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "elastic", "root", "rotations")
+    roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
+    end = data.event(GROUP, "two_peaks_end")
+    asked = 1.0 - words["quite well"], 1.0 + words["quite well"]
+    return Finding(
+        f"root {roots['suppressed']:.4f} of the half plane without rotations, {roots['free']:.4f} with free ones; the "
+        f"slab's two peaks end at {end.text()}",
+        [
+            Reading(
+                name,
+                Condition(
+                    "root per crossover of the slab", Quantity.exact(roots[key]).per(end), *asked, ("quite well",)
+                ),
+            )
+            for key, name in (("suppressed", "rotations suppressed, as in eq. (5)"), ("free", "disks free to turn"))
+        ],
+    )
+
+
+CLAIMS = (
+    Claim(
+        "K1a",
+        "V.B, Fig. 10",
+        "friction 10, F = 15 mg: ratio k_T/k_N at which two peaks turn into one",
+        "about 0.3",
+        crossover,
+        (10,),
+        GROUP,
+    ),
+    Claim(
+        "K1b",
+        "V.B, Fig. 10",
+        "change of the floor response from that at k_T/k_N = 0.8, for larger ratios than the crossover up to 1",
+        "nearly independent of k_T/k_N",
+        independent,
+        (10,),
+        GROUP,
+    ),
+    Claim(
+        "K5",
+        "V.B",
+        "friction 10, F = 15 mg: contacts at the Coulomb limit",
+        "no sliding occurs",
+        no_sliding,
+        (10,),
+        GROUP,
+    ),
+    Claim(
+        "K6",
+        "V.C",
+        "root of the half plane's criterion r over the ratio at which the slab's two peaks end",
+        "the criterion fits the finite slab quite well",
+        criterion,
+        (10, 11),
+        GROUP,
+    ),
+)

@@ -1,0 +1,120 @@
+"""Claims U1 to U4: two loads at once (Sec. VI.B)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...claims.bootstrap import over_realizations
+from ...claims.claim import Claim, Condition, Data, Finding, Measure, NotMeasured, Quantity, Reading, about, at
+from ...claims.words import Bounds
+
+GROUP = "superposition"
+
+
+def superposition(force: float, word: str) -> Measure:
+    def measure(data: Data, words: Bounds) -> Finding:
+        names = {"floor forces": "floor_error_largest", "all contact forces": "contact_error_largest"}
+        study = at(data.get(GROUP, "errors", *names.values(), "force", "distance"), force=force)
+        readings, texts = [], []
+        for text, name in names.items():
+            error = study[name].transpose("realization", "distance").values
+            worst = np.nanmax(error, axis=1)  # over distances
+            typical = over_realizations(worst)
+            texts.append(f"{text} {typical.text('%')}, {worst.max():.1%} in the worst")
+            readings.append(
+                Reading(
+                    text,
+                    Condition(
+                        "largest difference of whole and sum, median of the realizations",
+                        typical,
+                        most=words[word],
+                        words=(word,),
+                        unit="%",
+                    ),
+                )
+            )
+        return Finding(
+            f"largest difference of whole and sum per largest added force, at the worst of {study.sizes['distance']} "
+            f"distances, median of {len(worst)} realizations: " + "; ".join(texts),
+            readings,
+            "The paper shows one realization",
+        )
+
+    return measure
+
+
+def linear_range(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "linear_range", "linear_until", "nonlinear_from")
+    until, beyond = study["linear_until"].values, study["nonlinear_from"].values
+    # a path that does not end is beyond all others
+    ends = np.where(np.isfinite(beyond), 0.5 * (until + beyond), 1e6)
+    typical = over_realizations(ends)
+    if typical.high >= 1e6:
+        value = typical.value if typical.value < 1e6 else float("nan")
+        typical = Quantity(value, min(typical.low, float(until.max())), float("inf"), typical.kind)
+    last = f"{beyond.max():.3g} mg" if np.isfinite(beyond).all() else f"beyond {until.max():.3g} mg"
+    return Finding(
+        f"median {typical.text('mg')}; single realizations end between {until.min():.3g} mg and {last}",
+        [Reading("5 % off, typical realization", about("end of the linear range", typical, 0.4, words, "mg"))],
+        "The paper has one realization and does not say how far off a response is no longer linear",
+    )
+
+
+def falls_with_depth(data: Data, words: Bounds) -> Finding:
+    study = at(data.get(GROUP, "errors", "row_error", "force", "distance", "gap"), force=1.0).sortby("gap")
+    error = study["row_error"].transpose("distance", "realization", "gap").values
+    if error.shape[2] < 2:
+        raise NotMeasured(f"data/{GROUP}.nc: errors holds one depth")
+    readings = []
+    for distance, one in zip(study["distance"].values.tolist(), error, strict=True):
+        fall = over_realizations(one[:, -1] / one.max(axis=1))
+        readings.append(
+            Reading(
+                f"loads {distance:g} apart",
+                Condition(
+                    "difference in the deepest row per the largest of any row",
+                    fall,
+                    most=1.0 - words["marked"],
+                    words=("marked",),
+                ),
+            )
+        )
+    return Finding(
+        "rms difference of whole and sum in the deepest row of contacts per the largest of any row, each per force in "
+        "its row: " + ", ".join(f"{r.conditions[0].found.value:.2f} ({r.name})" for r in readings),
+        readings,
+        "It falls with the distance of the loads from each other far more than with the depth below them",
+    )
+
+
+CLAIMS = (
+    Claim(
+        "U1",
+        "VI.B, Fig. 23",
+        "delta = 0.01, friction 0.05, 0.2 mg: response to two loads against the sum of their single responses, force "
+        "by force",
+        "superposition holds even for individual forces",
+        superposition(0.2, "holds"),
+        (23,),
+        GROUP,
+    ),
+    Claim("U2", "VI.B", "end of the linear range of that slab", "up to about 0.4 mg", linear_range, (24,), GROUP),
+    Claim(
+        "U3",
+        "VI.B, Fig. 24",
+        "the same as U1 at 1 mg",
+        "superposition holds quite well beyond the linear range",
+        superposition(1.0, "quite well"),
+        (24,),
+        GROUP,
+    ),
+    Claim(
+        "U4",
+        "VI.B, VIII",
+        "1 mg: difference of whole and sum against the depth below the loads",
+        "sufficiently far from the loads the response does not feel what happens near them",
+        falls_with_depth,
+        (24,),
+        GROUP,
+    ),
+)

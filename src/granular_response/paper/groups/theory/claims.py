@@ -1,0 +1,54 @@
+"""Claims K2 and K3: algebra of the spring model (Sec. V.C), which no simulation can fail."""
+
+from __future__ import annotations
+
+from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "theory"
+
+
+def root(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "peak_criterion", "root", "rotations")
+    roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
+    return Finding(
+        f"{roots['suppressed']:.6f}; with disks free to turn {roots['free']:.4f} (3/11)",
+        [
+            Reading(
+                "rotations suppressed, as in eq. (5)",
+                Condition("root", Quantity.exact(roots["suppressed"]), 0.29145, 0.29155),
+            )
+        ],
+        "Eq. (5) keeps the disks from turning; the paper's disks turn",
+    )
+
+
+def moduli(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "moduli", "error", "rotations", "measured", "formula")
+    error = study.sel(rotations="suppressed")["error"].values
+    return Finding(
+        f"largest difference {error.max():.1e} of the largest modulus, {error.size} lattices",
+        [
+            Reading(
+                "rotations suppressed, as in eq. (5)",
+                Condition("largest difference per largest modulus", Quantity.exact(error.max()), most=1e-10),
+            )
+        ],
+        "Eq. (6) as printed gives shear half its energy: its d is twice that of eq. (10), which the paper's r and root "
+        "use",
+    )
+
+
+CLAIMS = (
+    Claim("K2", "V.C", "root of r(beta) without horizontal springs", "0.2915", root, (10, 11), GROUP, derivation=True),
+    Claim(
+        "K3",
+        "V.C, eqs. (7)-(10)",
+        "lattice moduli a, b, c, d against the moduli of a periodic lattice, strained and relaxed",
+        "exact",
+        moduli,
+        (11,),
+        GROUP,
+        derivation=True,
+    ),
+)

@@ -1,0 +1,112 @@
+"""Claim T1: a torque on the loaded disk (Sec. V.G)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "torque"
+
+#: "Close to the load" and beyond (mean radii).
+NEAR, FAR = 6.0, 9.0
+
+
+def chains(data: Data, words: Bounds) -> Finding:
+    rings = data.get(GROUP, "reach", "force_change", "ring_outer", "torque").sortby("torque").isel(torque=-1)
+    near = rings["ring_outer"].values <= NEAR
+    if not near.any():
+        raise NotMeasured(f"data/{GROUP}.nc: reach holds no ring within {NEAR:g} radii")
+    change = float(rings["force_change"].values[near].mean())
+    torque = float(rings["torque"])
+    return Finding(
+        f"torque {torque:g}: contact forces within {NEAR:g} radii change by {change:.0%}",
+        [
+            Reading(
+                f"torque {torque:g}",
+                Condition(
+                    "change of the contact forces", Quantity.exact(change), words["marked"], words=("marked",), unit="%"
+                ),
+            )
+        ],
+        "One realization; additional torques can, says the paper, have quite a large effect",
+    )
+
+
+def _fields(data: Data) -> dict[str, np.ndarray]:
+    """Change of the stress and of its antisymmetric part (z, x) by the largest torque, and the distance of the load."""
+    components = ("stress_xx", "stress_xz", "stress_zx", "stress_zz")
+    study = data.get(GROUP, "stress", *components, "torque", "x", "z").sortby("torque")
+    disks = data.get(GROUP, "torques", "position", "loaded_disk", "torque").sortby("torque")
+    change = np.stack([study[name].values[-1] - study[name].values[0] for name in components])
+    place = disks["position"].values[0, int(disks["loaded_disk"])]
+    x, z = np.meshgrid(study["x"].values, study["z"].values)
+    return {
+        "distance": np.hypot(x - place[0], z - place[1]),
+        "whole": np.sqrt((change**2).sum(axis=0)),
+        "antisymmetric": 0.5 * np.abs(change[1] - change[2]),
+    }
+
+
+def near_the_load(data: Data, words: Bounds) -> Finding:
+    rings = data.get(GROUP, "reach", "stress_change", "antisymmetric_change", "ring_outer", "ring_inner", "torque")
+    rings = rings.sortby("torque").isel(torque=-1)
+    near, far = rings["ring_outer"].values <= NEAR, rings["ring_inner"].values >= FAR
+    fields = _fields(data)
+    within, beyond = fields["distance"] < NEAR, fields["distance"] > FAR
+    if not (near.any() and far.any() and within.any() and beyond.any()):
+        raise NotMeasured(f"data/{GROUP}.nc: holds nothing within {NEAR:g} or beyond {FAR:g} radii of the load")
+
+    def ring(name: str) -> float:
+        return float(rings[name].values[far].mean() / rings[name].values[near].mean())
+
+    def area(name: str) -> float:
+        return float(fields[name][beyond].mean() / fields[name][within].mean())
+
+    ratios = {
+        "antisymmetric part, mean over the area": area("antisymmetric"),
+        "whole stress, mean over the area": area("whole"),
+        "antisymmetric part, per stress of the ring": ring("antisymmetric_change"),
+        "whole stress, per stress of the ring": ring("stress_change"),
+    }
+    return Finding(
+        f"change beyond {FAR:g} radii per that within {NEAR:g}: "
+        + ", ".join(f"{ratio:.3f} ({name})" for name, ratio in ratios.items()),
+        [
+            Reading(
+                name,
+                Condition(
+                    "change far from the load per that near it",
+                    Quantity.exact(ratio),
+                    most=words["small"],
+                    words=("small",),
+                ),
+            )
+            for name, ratio in ratios.items()
+        ],
+        "The stress of the force alone falls with the distance too, so that its relative change reaches farther",
+    )
+
+
+CLAIMS = (
+    Claim(
+        "T1a",
+        "V.G, Fig. 18",
+        "25 x 13 disks, delta = 0.001, F = 10 mg at 30 degrees: what the largest torque changes in the contact forces "
+        "near the load",
+        "quite a large effect on the force chains",
+        chains,
+        (18,),
+        GROUP,
+    ),
+    Claim(
+        "T1b",
+        "V.G",
+        "what it changes in the stress far from the load over near it",
+        "the effect on the stress, above all its antisymmetric part, is confined to a region close to the load",
+        near_the_load,
+        (18,),
+        GROUP,
+    ),
+)

@@ -1,0 +1,393 @@
+"""Datasets in which every claim of the paper holds, small ones, for tests that then plant wrong data."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+import yaml
+
+from granular_response.paper.groups.theory import simulate as theory
+
+ROOT = Path(__file__).parents[2]
+FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [15.0, 50.0]]))
+X = np.linspace(-60.0, 60.0, 61)
+STARTS = ["touching-largest", "2.0"]
+
+
+def dataset(coords=None, **variables):
+    return xr.Dataset(
+        {name: value if isinstance(value, tuple) else ((), value) for name, value in variables.items()}, coords=coords
+    )
+
+
+def events(*rows):
+    names, frictions, low, high = zip(*rows, strict=True)
+    return dataset(
+        name=("event", list(names)),
+        friction=("event", np.array(frictions, float)),
+        low=("event", np.array(low, float)),
+        high=("event", np.array(high, float)),
+    )
+
+
+def by_friction(*rows):
+    return ("friction", "force"), np.stack([np.broadcast_to(row, FORCES.shape) for row in rows]).astype(float)
+
+
+def friction_study():
+    floor = [3.5, 19.0, 10.9]
+    depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in floor]
+    opened = np.round(10.0 * FORCES)
+    response = dataset(
+        {"friction": [0.0, 0.2, 1.0], "force": FORCES},
+        # one per cent off at these forces, five at five times as much
+        response_at_centre=by_friction(*(0.07 * (1.0 - 0.01 * FORCES / end) for end in (0.9, 5.5, 7.5))),
+        double_peaked=by_friction(FORCES > 3.0, FORCES > 20.1, 0.0),
+        half_maximum_width=by_friction(28.0, 28.0, 28.0 - 0.1 * FORCES),
+        peak_height=by_friction(0.07, 0.07, 0.07),
+        third_peak_prominence=by_friction(0.0, 0.1 * (FORCES > 38.0), 0.0),
+        teardrop_depth=by_friction(*depth),
+        teardrop_width=by_friction(*depth),
+        reaches_floor=by_friction(*(f < FORCES for f in floor)),
+        opened_contacts=by_friction(opened, 0.2 * opened, 0.2 * opened),
+    )
+    one_side = np.where(X > 0.0, 0.08, 0.01)
+    profiles = np.stack([np.exp(-((X / 20.0) ** 2)) * 0.07] * 2 + [one_side, one_side[::-1]])
+    large = dataset(
+        {"force": [90.0, 91.0, 93.0, 95.0], "x": ("floor_disk", X), "margin": [0.01, 0.05]},
+        asymmetry=("force", [0.001, 0.001, 1.5, 1.5]),
+        asymmetry_sign=("force", [1, 1, 1, -1]),
+        network_asymmetry=("force", [0.0, 0.0, 0.02, 0.02]),
+        mobilised_contacts=(("force", "margin"), np.array([[10, 20], [10, 20], [1, 2], [1, 2]])),
+        floor_response=(("force", "floor_disk"), profiles),
+    )
+    axis = dataset({"friction": [0.0, 0.1, 0.2, 1.0]}, central_dip=("friction", [0.9, 0.5, -0.01, -0.03]))
+    table = events(
+        ("first_opening", 0.0, 0.67, 0.69),
+        ("first_opening", 0.2, 3.9, 3.92),
+        ("first_opening", 1.0, 5.6, 5.62),
+        ("linear_range", 0.0, 0.88, 0.9),
+        ("linear_range", 0.2, 5.4, 5.5),
+        ("linear_range", 1.0, 7.2, 7.3),
+        ("crossover", 0.2, 20.1, 20.2),
+        ("reaches_floor", 0.0, 3.5, 3.6),
+        ("reaches_floor", 0.2, 19.0, 19.1),
+        ("reaches_floor", 1.0, 10.9, 11.0),
+        ("third_peak", 0.2, 38.0, 38.1),
+        ("friction_crossover", np.nan, 0.15, 0.16),
+    )
+    return {"response": response, "large_forces": large, "friction_axis": axis, "events": table}
+
+
+def breaking_study():
+    brackets = dataset(
+        low=("event", [91.2, 91.5]),
+        high=("event", [92.0, 92.5]),
+        ramp_time=("event", [20.0, 100.0]),
+        time_step=("event", [5e-4, 5e-4]),
+    )
+    return {"brackets": brackets, "copies": dataset(asymmetry_sign=("copy", [1.0, -1.0]))}
+
+
+def sensitivity_study():
+    peak = np.exp(-((X / 15.0) ** 2))
+    names = ["reference", "slow_gravity", "ramp_80", "path", "literal_friction"]
+    one = dataset(
+        {"variant": names},
+        x=("floor_disk", X),
+        floor_response=(("variant", "floor_disk"), np.stack([peak] * len(names))),
+    )
+    return {"mu_0.2": one, "mu_1": one.copy(deep=True)}
+
+
+def ratio_study():
+    ratio = np.array([0.0, 0.2, 0.3, 0.35, 0.4, 0.6, 0.8, 1.0])
+    centre = np.array([0.01, 0.05, 0.064, 0.068, 0.073, 0.075, 0.076, 0.074])
+    return {
+        "events": events(("two_peaks_end", 10.0, 0.295, 0.3), ("central_maximum_begins", 10.0, 0.31, 0.315)),
+        "response": dataset(
+            {"stiffness_ratio": ratio},
+            double_peaked=("stiffness_ratio", [1, 1, 1, 0, 0, 0, 0, 0]),
+            response_at_centre=("stiffness_ratio", centre),
+            floor_response=(("stiffness_ratio", "floor_disk"), centre[:, None] * np.exp(-((X / 20.0) ** 2))),
+            sliding_contacts=("stiffness_ratio", np.zeros(8)),
+        ),
+        "elastic": dataset({"rotations": ["suppressed", "free"]}, root=("rotations", [0.2915, 3.0 / 11.0])),
+    }
+
+
+def fields_study():
+    x, z = np.arange(-10.0, 11.0, 2.0), np.arange(0.0, 21.0, 2.0)
+    grid = ("friction", "z", "x")
+    ones = np.ones((3, z.size, x.size))
+    return {
+        "stress": dataset(
+            {"friction": [0.0, 0.2, 1.0], "x": x, "z": z},
+            misalignment=("friction", [0.1, 20.0, 30.0]),
+            axis_angle=("friction", [30.0, 12.0, 3.0]),
+            axis_share=("friction", [0.02, 0.09, 0.12]),
+            distance_to_lattice=("friction", [0.5, 0.1, 0.04]),
+            antisymmetric_near=("friction", [0.0, 0.01, 0.03]),
+            antisymmetric_near_mean=("friction", [0.0, 0.01, 0.02]),
+            stress_xx=(grid, ones),
+            stress_zz=(grid, ones),
+            stress_xz=(grid, 0.03 * ones),
+            stress_zx=(grid, -0.03 * ones),
+            load_height=20.0,
+        ),
+        "profiles": dataset(
+            {"friction": [0.0, 1.0], "row": [2.5, 9.5]},
+            axis_magnitude=(("friction", "row"), np.array([[0.2, 0.2], [1.0, 0.9]])),
+        ),
+    }
+
+
+def pile_study():
+    cases = {"case": ["frictionless", "mirrored", "frictional"]}
+    return {
+        "stress": dataset(cases, dip=("case", [0.07, 0.07, 0.0])),
+        "piles": dataset(
+            cases,
+            floor_dip=("case", [0.08, 0.08, -0.01]),
+            central_open_contacts=("case", [49.0, 49.0, 50.0]),
+            central_height=("case", [14.0, 14.0, 14.0]),
+            central_width=("case", [16.0, 16.0, 18.0]),
+        ),
+    }
+
+
+def torque_study():
+    dims = ("torque", "ring")
+    near_only = np.array([[0.0, 0.0, 0.0], [0.9, 0.7, 0.01]])
+    reach = dataset(
+        {"torque": [0.0, 5.0], "ring_inner": ("ring", [0.0, 3.0, 9.0]), "ring_outer": ("ring", [3.0, 6.0, 12.0])},
+        force_change=(dims, near_only),
+        stress_change=(dims, near_only),
+        antisymmetric_change=(dims, near_only),
+    )
+    x, z = np.arange(0.0, 41.0, 2.0), np.arange(0.0, 21.0, 2.0)
+    away = np.hypot(*np.meshgrid(x - 20.0, z - 20.0))
+    change = np.stack([np.zeros_like(away), np.exp(-((away / 4.0) ** 2))])
+    grid = ("torque", "z", "x")
+    stress = dataset(
+        {"torque": [0.0, 5.0], "x": x, "z": z},
+        stress_xx=(grid, change),
+        stress_xz=(grid, change),
+        stress_zx=(grid, -change),
+        stress_zz=(grid, change),
+    )
+    disks = dataset(
+        {"torque": [0.0, 5.0]},
+        position=(("torque", "disk", "axis"), np.full((2, 1, 2), 20.0)),
+        loaded_disk=0,
+    )
+    return {"reach": reach, "stress": stress, "torques": disks}
+
+
+def comparison_study():
+    return {
+        "slabs": dataset(
+            distance=("slab", [0.02, 0.002, 0.03, 0.001]),
+            layers=("slab", [5, 40, 5, 20]),
+            friction=("slab", [0.0, 0.0, 1.0, 1.0]),
+            floor=("slab", ["smooth", "smooth", "rough", "rough"]),
+            gravity=("slab", ["at-once"] * 4),
+            disks_per_layer=("slab", [8, 8, 8, 8]),
+        )
+    }
+
+
+def numerics_study():
+    grid = {"friction": [0.0, 0.2], "stop_kinetic_energy": [1e-9, 1e-13]}
+    errors = np.array([[0.1, 1e-3], [0.1, 1e-4]])
+    dims = ("friction", "stop_kinetic_energy")
+    return {
+        "stop_energy": dataset(grid, rest_error=(dims, errors), loaded_error=(dims, errors)),
+        "restart": dataset({"load": [0.0, 4.0]}, kinetic_energy=(("load", "reading"), np.full((2, 3), 1e-28))),
+        "at_rest": dataset(network_fixed_steps=6000.0, sliding_contacts=0.0, loose_disks=0.0),
+        "time_step": dataset({"time_step": [5e-4, 2.5e-4]}, difference=("time_step", [0.0, 1e-5])),
+        "integrators": dataset({"integrator": ["beeman", "gear"]}, difference=("integrator", [0.0, 1e-6])),
+        "damping": dataset(
+            {"damping_ratio": [0.1, 0.2, 0.5, 0.8, 1.0]},
+            relaxation_time=("damping_ratio", [120.0, 70.0, 40.0, 45.0, 50.0]),
+            settled=("damping_ratio", [1, 1, 1, 1, 1]),
+            beeman_limit=("damping_ratio", [2e-3, 1e-3, 5.1e-4, 3e-4, 2e-4]),
+        ),
+    }
+
+
+def frictionless_study():
+    forces = np.array([1.0, 2.0, 4.0])
+    # a lattice of one open column: two disks in each row, one row above the other
+    rows = [8, 7, 7, 6, 6, 6, 5]
+    first = 2 * np.arange(len(rows))
+    position = np.array(
+        [p for k, row in enumerate(rows) for p in ([4.0 * k, row * 3**0.5], [4.0 * k + 2.0, row * 3**0.5])]
+    )
+    depths = {"layers": ("slab", [15, 30, 15, 30]), "normal_stiffness": ("slab", [3000.0, 3000.0, 1e5, 1e5])}
+    wide = np.array([[30.0, 40.0, 50.0], [29.0, 39.0, 49.0]] * 2)
+    crossover = (("slab", "bracket"), np.array([[3.0, 3.1], [6.0, 6.1]] * 2))
+    stiffness = [500.0, 1000.0, 2000.0, 3000.0, 1e5]
+    axes = ("normal_stiffness", "force")
+    size = np.array([[20.0, 30.0, 50.0]] + [[40.0, 60.0, 90.0]] * 4)
+    return {
+        "events": events(("crossover", 0.0, 3.0, 3.1), ("teardrop_reaches_floor", 0.0, 3.5, 3.6)),
+        "response": dataset(
+            {"force": forces}, teardrop_depth=("force", [1.0, 5.0, 12.0]), reaches_floor=("force", [0, 0, 0])
+        ),
+        "states": dataset(
+            {"force": forces},
+            teardrop=(("force", "contact"), np.ones((3, len(rows)), int)),
+            position=(("force", "disk", "axis"), np.stack([position] * 3)),
+            contact_disk=("contact", first),
+            contact_partner=("contact", first + 1),
+        ),
+        "sizes": dataset(
+            {"force": forces, **depths},
+            disks_per_row=("slab", [61, 122, 61, 122]),
+            teardrop_depth=(("slab", "force"), wide),
+            teardrop_width=(("slab", "force"), wide),
+            reaches_floor=(("slab", "force"), np.zeros((4, 3), int)),
+            crossover_bracket=crossover,
+        ),
+        "widths": dataset(depths, disks_per_row=("slab", [61, 62, 61, 62]), crossover_bracket=crossover),
+        "stiffness": dataset(
+            {"force": forces, "normal_stiffness": stiffness},
+            response_at_centre=(axes, np.array([[0.05] * 3, [0.0693] * 3, [0.07] * 3, [0.07] * 3, [0.07] * 3])),
+            teardrop_depth=(axes, size),
+            teardrop_width=(axes, size),
+            reaches_floor=(axes, np.zeros((5, 3), int)),
+            crossover_bracket=(("normal_stiffness", "bracket"), np.tile([3.0, 3.03], (5, 1))),
+        ),
+    }
+
+
+def profile(dip, x=None):
+    """A smooth response with a dip at x = 0 of about this part of its largest value; below 0 a single peak."""
+    x = np.linspace(-40.0, 40.0, 81) if x is None else x
+    return np.exp(-((x / 20.0) ** 2)) - dip * np.exp(-((x / 6.0) ** 2))
+
+
+def disordered_cases():
+    """Coordinates of the cases: the lattice, three frictions at three disorders, and the literal start."""
+    cases = [(delta, mu, STARTS[0]) for delta in (0.0, 0.01, 0.1, 0.25) for mu in (0.0, 0.2, 1.0)]
+    cases += [(0.01, mu, STARTS[1]) for mu in (0.0, 0.2)]
+    delta, mu, start = zip(*cases, strict=True)
+    return {
+        "polydispersity": ("case", list(delta)),
+        "friction": ("case", list(mu)),
+        "lattice_constant": ("case", list(start)),
+    }
+
+
+def averages_study():
+    cases = disordered_cases()
+    mu, delta = np.array(cases["friction"][1]), np.array(cases["polydispersity"][1])
+    n, few = len(mu), 6
+    rng = np.random.default_rng(0)
+    place = np.linspace(-60.0, 60.0, 81)
+    noise = 0.002 * rng.standard_normal((n, few, 1, 1))
+    dips = np.where(mu[:, None] == 0.0, [0.5, 0.6, 0.7], [-0.1, 0.0, 0.2])
+    shapes = np.array([[profile(d, place) for d in row] for row in dips])
+    ensembles = dataset(
+        {**cases, "force": (("case", "step"), np.tile([1.0, 15.0, 30.0], (n, 1)))},
+        x=(("case", "realization", "slot"), np.broadcast_to(place, (n, few, place.size)).copy()),
+        outcome=(("case", "realization", "step"), np.zeros((n, few, 3), int)),
+        floor_response=(("case", "realization", "step", "slot"), shapes[:, None] * (1.0 + noise)),
+    )
+    chosen = [k for k in range(n) if delta[k] == 0.01 and mu[k] < 0.5]
+    x = np.linspace(-40.0, 40.0, 81)
+    spread = np.where(mu[chosen] == 0.0, 0.05, 0.005)[:, None, None] * rng.standard_normal((len(chosen), few, 1))
+    single = np.stack([[profile(0.6 if mu[k] == 0.0 else -0.1, x)] * few for k in chosen]) * (1.0 + spread)
+    force = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
+    ends = np.array([0.15, 0.15, 0.15, 0.9, 1.8, 1.8])
+    linear = dataset(
+        {"polydispersity": ("path", [0.01] * 3 + [0.0] * 3), "friction": ("path", [0.0, 0.2, 1.0] * 2)},
+        force=("force", force),
+        response_at_centre=(("path", "force"), 0.07 * (1.0 - 0.1 * np.maximum(0.0, force / ends[:, None] - 1.0))),
+    )
+    contacts = np.where(delta[:, None] == 0.0, 6.0, 4.25 + 0.01 * rng.standard_normal((n, few)))
+    packings = dataset(
+        cases,
+        coordination_number=(("case", "realization"), contacts),
+        coordination_number_with_walls=(("case", "realization"), contacts),
+        coordination_number_bulk=(("case", "realization"), contacts),
+        horizontal_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 0.9, 0.3 * contacts / 4.25)),
+        oblique_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 1.85, 1.7 * contacts / 4.25)),
+    )
+    individual = dataset(
+        {
+            "polydispersity": ("case", delta[chosen]),
+            "friction": ("case", mu[chosen]),
+            "lattice_constant": ("case", [cases["lattice_constant"][1][k] for k in chosen]),
+            "x": x,
+        },
+        response=(("case", "realization", "x"), single),
+    )
+    return {"ensembles": ensembles, "individual": individual, "linear_range": linear, "packings": packings}
+
+
+def phases_study():
+    cases = disordered_cases()
+    grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [12.0, 40.0]]
+    force = np.array([f for row in grid for f in row])
+    interval = np.stack([0.95 * force, force, 1.05 * force], axis=-1)
+    mu = np.array(cases["friction"][1])
+    dip = np.where(mu == 0.0, 0.8, -0.05)
+    levels = {"width": [3.0, 6.0], "level": [0.025, 0.5, 0.975]}
+    spread = dip[:, None, None] + np.array([-0.02, 0.0, 0.02]) + np.zeros((1, 3, 1))
+    steps = np.array([5.0, 15.0, 60.0])
+    return {
+        "crossovers": dataset(
+            {**cases, **levels},
+            force=(("width", "case"), np.stack([force] * 2)),
+            kind=(("width", "case"), np.zeros((2, force.size), int)),
+            interval=(("width", "case", "level"), np.stack([interval] * 2)),
+        ),
+        "shapes": dataset(
+            {**cases, **levels},
+            applied_force=(("case", "step"), np.tile(steps, (force.size, 1))),
+            shape=(("width", "case", "step"), np.stack([dip[:, None] + np.zeros((1, 3))] * 2)),
+            shape_interval=(("width", "case", "step", "level"), np.stack([spread] * 2)),
+            few_agree=(("width", "case", "step"), np.full((2, force.size, 3), 0.99)),
+        ),
+    }
+
+
+def superposition_study():
+    rng = np.random.default_rng(0)
+    error = np.array([0.01, 0.1]) * rng.uniform(0.8, 1.2, (8, 2, 1))
+    rows = np.array([0.1, 0.05, 0.02]) * rng.uniform(0.9, 1.1, (8, 2, 2, 1))
+    dims = ("realization", "distance", "force")
+    return {
+        "errors": dataset(
+            {"force": [0.2, 1.0], "distance": [4.0, 8.0], "gap": [1.0, 3.0, 5.0]},
+            floor_error_largest=(dims, error),
+            contact_error_largest=(dims, error),
+            row_error=((*dims, "gap"), rows),
+        ),
+        "linear_range": dataset(
+            linear_until=("realization", np.linspace(0.35, 0.4, 8)),
+            nonlinear_from=("realization", np.linspace(0.4, 0.45, 8)),
+        ),
+    }
+
+
+def everything():
+    """Datasets in which every claim of the paper that is measured holds, in every reading."""
+    return {
+        "frictionless_crossover": frictionless_study(),
+        "friction_linear_range": friction_study(),
+        "symmetry_breaking": breaking_study(),
+        "sensitivity": sensitivity_study(),
+        "slab_comparison": comparison_study(),
+        "stiffness_ratio_crossover": ratio_study(),
+        "theory": theory.simulate(theory.Parameters(**yaml.safe_load((ROOT / "params.yaml").read_text())["theory"])),
+        "friction_fields": fields_study(),
+        "pile_dip": pile_study(),
+        "torque": torque_study(),
+        "polydisperse_averages": averages_study(),
+        "phase_diagram": phases_study(),
+        "superposition": superposition_study(),
+        "numerics": numerics_study(),
+    }
