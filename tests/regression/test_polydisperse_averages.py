@@ -12,7 +12,7 @@ from granular_response.plot import style
 from granular_response.store import files as store
 
 PARAMETERS = {
-    "method": "auto",
+    "method": "stages",
     "scene": {
         "packing": {"layers": 5, "disks_per_row": 13, "lattice_constant": "touching-largest"},
         "protocol": {"integrator": "verlet", "stop_kinetic_energy": 1e-9, "maximum_steps": 200_000},

@@ -21,7 +21,7 @@ SCENE = {
     "protocol.ramp_time": 5.0,
 }
 PARAMETERS = {
-    "method": "auto",
+    "method": "stages",
     "scene": SCENE,
     "realizations": 3,
     "pair_realizations": 2,

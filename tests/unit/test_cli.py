@@ -194,12 +194,14 @@ def test_a_result_is_continued_and_nothing_else(tmp_path):
         assert more["load_factor"].values.tolist() == [1.0, 1.5, 3.0]
         np.testing.assert_array_equal(more["position"][:2], one["position"])
         np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"])
-    finished = call("continue", "result.nc", "--to", "0.5", "-o", "less.nc", folder=tmp_path)
-    assert_one_line_error(finished, "result.nc: load factors 0.5: must be finite and grow, from above 1")
+    finished = call("continue", "result.nc", "--to", "0.5", "--to", "0", "-o", "less.nc", folder=tmp_path)
+    assert finished.returncode == 0 and "load factors 1, 0.5, 0" in finished.stdout
+    finished = call("continue", "result.nc", "--to", "nan", "-o", "nan.nc", folder=tmp_path)
+    assert_one_line_error(finished, "result.nc: load factors nan: must be finite")
     store.write(tmp_path / "study.nc", {"other": xr.Dataset()})
-    finished = call("continue", "study.nc", "--to", "2", "-o", "less.nc", folder=tmp_path)
+    finished = call("continue", "study.nc", "--to", "2", "-o", "nan.nc", folder=tmp_path)
     assert_one_line_error(finished, "study.nc: holds no states, must be a result of granular-response run")
-    assert not (tmp_path / "less.nc").exists()
+    assert not (tmp_path / "nan.nc").exists()
 
 
 def test_run_by_another_method(tmp_path):

@@ -219,12 +219,12 @@ def solve(
     load_factors: Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> Result:
-    """Settle a scene under gravity, then load it.
+    """Settle a scene under gravity, then take it through its load programme.
 
     Parameters
     ----------
     scene : a scene, nested mappings with its keys, or the path of a scene file.
-    load_factors : multipliers of the scene's loads at which states are kept.
+    load_factors : multipliers of the scene's loads, in turn, growing or falling; ``protocol.load_factors`` if None.
     progress : called with the part done of a stage, 1 and the stage's name.
 
     Raises
@@ -238,8 +238,7 @@ def solve(
         scene = Scene.from_yaml(scene)
     elif not isinstance(scene, Scene):
         scene = Scene.from_dict(scene)
-    chosen = {} if load_factors is None else {"load_factors": load_factors}
-    return Result(solve_scene(scene, progress=progress, **chosen))
+    return Result(solve_scene(scene, load_factors=load_factors, progress=progress))
 
 
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:

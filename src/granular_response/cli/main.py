@@ -136,19 +136,19 @@ def run(
     "continue",
     epilog=_examples(
         "granular-response continue slab.nc --to 2 -o slab-to-twice-the-load.nc",
-        "granular-response continue slab.nc --to 1.5 --to 2 --to 4 -o slab-further.nc",
+        "granular-response continue slab.nc --to 0.5 --to 0 -o slab-unloaded.nc",
     ),
 )
 def continue_(
     result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
     to: Annotated[
         list[float],
-        typer.Option(help="Multiple of the scene's loads to go to; repeated, growing.", show_default=False),
+        typer.Option(help="Multiple of the scene's loads to go to; repeated, up or down.", show_default=False),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
     folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
 ) -> None:
-    """Raise the loads of a result further.
+    """Take a result through further loads, up or down.
 
     The states so far are kept. The new ones are, to the last bit, those of a run that was never interrupted.
     """

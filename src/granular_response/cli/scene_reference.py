@@ -42,6 +42,7 @@ UNITS = {
     "torque": "disk weight × mean radius",
     "time_step": "sqrt(R/g)",
     "ramp_time": "sqrt(R/g)",
+    "load_factors": "",
     "stop_kinetic_energy": "disk weight × mean radius",
 }
 #: No key accepts this.

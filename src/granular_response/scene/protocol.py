@@ -14,7 +14,12 @@ TimeStep = Annotated[
 ]
 
 
-Method = Literal["auto", "dynamics", "path", "minimise"]
+LoadFactors = Annotated[
+    tuple[Annotated[float, Field(strict=True, allow_inf_nan=False)], ...],
+    Field(min_length=1),
+    allowed("must be a list of one or more finite numbers"),
+]
+Method = Literal["auto", "dynamics", "path", "stages", "minimise"]
 Integrator = Literal["beeman", "verlet", "gear"]
 
 
@@ -41,7 +46,15 @@ class Protocol(Description):
         default="auto",
         description="auto: the cheapest method that is valid for the scene; dynamics: equations of motion "
         "until rest, as in the paper; path: a sequence of equilibria under a slowly growing "
-        "load; minimise: the nearest minimum of the energy, for scenes without friction.",
+        "load; stages: from each load factor to the next by plain static increments, and by dynamics over ramp_time "
+        "where these fail, which is cheaper than a path in disordered packings with friction; "
+        "minimise: the nearest minimum of the energy, for scenes without friction, where stages minimise too.",
+    )
+    load_factors: LoadFactors = Field(
+        default=(1.0,),
+        description="Load programme: multipliers of the loads at which states are kept, in turn. They may grow, fall, "
+        "change sign and repeat: [0.5, 1, 0.5, 0] loads and unloads. Every method goes on from the state before, but "
+        "dynamics starts each ramp at rest until the programme first turns, as in the paper.",
     )
     integrator: Integrator = Field(
         default="beeman",

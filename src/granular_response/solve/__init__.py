@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from .equilibrium import EquilibriumError, certify, finish
     from .path import PathError, PathRecord, follow
     from .problem import Problem
-    from .solution import NotSettled, Solution, continue_solution, loaded_states, rest_state, solve_scene
+    from .settle import NotSettled
+    from .solution import Solution, continue_solution, loaded_states, rest_state, solve_scene
     from .timestep import UnstableTimeStep
 
 # Names are looked up on first use: whoever reads states alone does not load the solvers.
@@ -36,7 +37,7 @@ _HOME = {
     "PathRecord": "path",
     "follow": "path",
     "Problem": "problem",
-    "NotSettled": "solution",
+    "NotSettled": "settle",
     "Solution": "solution",
     "continue_solution": "solution",
     "loaded_states": "solution",

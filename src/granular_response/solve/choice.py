@@ -12,7 +12,7 @@ from .problem import Problem
 class Choice:
     """A method for one stage and the reason for it."""
 
-    method: str  #: dynamics, minimise or path
+    method: str  #: dynamics, minimise, path or stages
     reason: str
 
 
@@ -43,7 +43,8 @@ def rest_method(problem: Problem) -> Choice:
     asked = problem.scene.protocol.method
     if asked == "minimise" and problem.rotations:
         raise SceneError(
-            "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
+            "protocol.method = minimise: must be path, stages, dynamics or auto in a scene with friction "
+            "(contact or wall)"
         )
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
@@ -66,19 +67,21 @@ def load_method(problem: Problem) -> Choice:
     Raises
     ------
     SceneError
-        When ``path`` is asked for a scene with the literal friction law.
+        When ``path`` or ``stages`` is asked for a scene with the literal friction law.
     """
     asked = problem.scene.protocol.method
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
     if _literal(problem):
-        if asked == "path":
-            raise SceneError(f"protocol.method = path: must be dynamics or auto, {_LITERAL}")
+        if asked in ("path", "stages"):
+            raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {_LITERAL}")
         return Choice("dynamics", _LITERAL)
     if asked == "path":
         return Choice("path", "protocol.method is path")
+    if problem.rotations and asked == "stages":
+        return Choice("stages", "protocol.method is stages")
     if problem.rotations:
-        return Choice("path", "friction and a load that only grows: a path of equilibria")
+        return Choice("path", "friction: a path of equilibria through every load between")
     return Choice("minimise", "no friction: equilibrium is a minimum of the energy")
 
 

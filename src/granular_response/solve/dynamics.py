@@ -116,11 +116,12 @@ class Dynamics:
 
     def _accelerations(self, out: FloatArray) -> None:
         """Accelerations now; springs do not advance."""
-        g0, g1, gt = self.gravity
-        l0, l1, lt = self.load
-        gravity = g1 if self.time >= gt else g0 + (g1 - g0) * self.time / gt
-        load = l1 if self.time >= lt else l0 + (l1 - l0) * self.time / lt
-        accelerations(self.q, self.v, out, gravity, load, 0.0, self.model)
+        accelerations(self.q, self.v, out, self._now(self.gravity), self._now(self.load), 0.0, self.model)
+
+    def _now(self, ramp: Ramp) -> float:
+        """Where a ramp is now."""
+        start, end, duration = ramp
+        return end if self.time >= duration else start + (end - start) * self.time / duration
 
     def set_ramps(self, gravity: Ramp = (1.0, 1.0, 0.0), load: Ramp = (0.0, 0.0, 0.0)) -> None:
         """Start new linear ramps ``(from, to, duration)`` now; the clock restarts at zero."""
@@ -206,7 +207,7 @@ class Dynamics:
                 zero_walls.astype(np.int8),
             ),
             box=problem.packing.box,
-            load_factor=self.load[1],
+            load_factor=self._now(self.load),
             reached=Reached(method="dynamics", steps=self.steps, time=self.time, rebuilds=self.rebuilds),
         )
         return problem.with_static_forces(bare)
@@ -260,8 +261,8 @@ class Dynamics:
         held[part[c.wall_disk[wall & (problem.wall_friction | (c.wall == FLOOR))]]] = True
         if held.all():
             return False
-        force = -self.gravity[1] * problem.weight
-        np.add.at(force, problem.load_disk, self.load[1] * problem.load[:, 1])
+        force = -self._now(self.gravity) * problem.weight
+        np.add.at(force, problem.load_disk, self._now(self.load) * problem.load[:, 1])
         return bool((np.abs(np.bincount(part, force, parts)[~held]) > BALANCED).any())
 
     def lifted_disk(self) -> int | None:

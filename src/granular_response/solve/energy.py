@@ -14,6 +14,7 @@ import numpy as np
 
 from ..state import FloatArray, Reached, State
 from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, attainable, certify, external_force
+from .line_search import shortened
 from .problem import Problem
 from .system import REGULARISATION, StaticSystem, Trial
 
@@ -153,6 +154,9 @@ class _Descent:
     def _damp(self, factor: float) -> None:
         self.damping = max(factor * self.damping, 1e-8 * self.stiffness)
 
+    def _shorter(self, step: FloatArray, slope: float, full: Trial) -> tuple[FloatArray, Trial]:
+        return shortened(self.system, self.known, self.external, self.q, step, slope, full=full, until=POOR)
+
     def _take(self, step: FloatArray) -> None:
         """Take a step, or the part of it that is good for something, and set the damping by how good it was."""
         slope = float(step @ self.unbalanced)
@@ -164,7 +168,7 @@ class _Descent:
         if predicted > rounding:
             ratio = (self.value - new_value) / predicted
             if ratio < POOR:
-                step, new = _shorter(self.system, self.known, self.external, self.q, step, slope, new)
+                step, new = self._shorter(step, slope, new)
                 if energy(self.system, new, self.external) > self.value:
                     self._damp(MORE)
                     return
@@ -174,7 +178,7 @@ class _Descent:
             ratio = 1.0
             if new_size > 10.0 * self.size and new_size > self.tolerance:
                 length = float(np.abs(step).max())
-                step, new = _shorter(self.system, self.known, self.external, self.q, step, slope, new)
+                step, new = self._shorter(step, slope, new)
                 ratio = float(np.abs(step).max()) / length
         else:
             ratio = 1.0 if new_size < 2.0 * self.size or new_size < self.tolerance else 0.0
@@ -186,28 +190,6 @@ class _Descent:
             self.damping = LESS * self.damping if self.damping > 1e-9 * self.stiffness else 0.0
         elif ratio < POOR:
             self._damp(MORE)
-
-
-def _shorter(system: StaticSystem, known, external, q, step, slope, full: Trial) -> tuple[FloatArray, Trial]:
-    """The part of a step that is too long at which the energy's slope has fallen to a quarter."""
-    low, at_low = 0.0, slope
-    high, at_high = 1.0, float((full.contact_force + external) @ step)
-    part, trial = 1.0, full
-    for k in range(8):
-        if at_high >= 0.0:
-            return step, trial
-        secant = low + (high - low) * at_low / (at_low - at_high)
-        part = secant if k % 2 == 0 else 0.5 * (low + high)
-        part = min(max(part, low + 0.05 * (high - low)), high - 0.05 * (high - low))
-        trial = system.trial(known, q + part * step)
-        here = float((trial.contact_force + external) @ step)
-        if abs(here) < 0.25 * slope:
-            break
-        if here > 0:
-            low, at_low = part, here
-        else:
-            high, at_high = part, here
-    return part * step, trial
 
 
 def _down_from_saddle(system: StaticSystem, known, external, q, trial: Trial) -> tuple[FloatArray, Trial]:

@@ -16,6 +16,8 @@ from .system import Configuration, StaticSystem, Trial
 
 #: Largest force or torque left on any disk, in units of a mean disk weight.
 TOLERANCE = 1e-10
+#: Most factorisations of a Newton solution.
+NEWTON_ITERATIONS = 30
 #: A Newton step moves no disk farther than this (mean radii).
 LONGEST_STEP = 0.05
 
@@ -60,7 +62,7 @@ def newton(
     start: FloatArray | None = None,
     *,
     tolerance: float = TOLERANCE,
-    maximum_iterations: int = 30,
+    maximum_iterations: int = NEWTON_ITERATIONS,
 ) -> tuple[Trial, NewtonReport]:
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
@@ -180,7 +182,7 @@ def check_overlaps(problem: Problem, state: State) -> None:
             )
 
 
-def finish(problem: Problem, state: State, *, load_factor: float | None = None) -> State:
+def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_ITERATIONS) -> State:
     """Bring a nearly settled state to rest by Newton iterations (Sec. III.C), with its certificate.
 
     Springs start from the state's own, so friction remembers what it went through.
@@ -190,10 +192,10 @@ def finish(problem: Problem, state: State, *, load_factor: float | None = None) 
     EquilibriumError
         When the state is too far from rest for Newton's method: relax it further first.
     """
-    factor = state.load_factor if load_factor is None else load_factor
+    factor = state.load_factor
     system = StaticSystem(problem, state)
     known = system.start(state)
-    trial, report = newton(system, known, external_force(problem, factor))
+    trial, report = newton(system, known, external_force(problem, factor), maximum_iterations=maximum_iterations)
     if not report.converged:
         raise EquilibriumError(
             f"no static equilibrium within {report.iterations} Newton iterations of the state "

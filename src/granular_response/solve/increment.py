@@ -17,6 +17,7 @@ import numpy as np
 
 from ..state import FloatArray
 from .equilibrium import newton
+from .line_search import shortened
 from .system import Configuration, StaticSystem, Trial
 
 #: Newton iterations on the true law before limits are held fixed.
@@ -31,6 +32,8 @@ MOST_WORK = 150
 SHIFT = 1e-7
 #: Residual at which a minimisation with fixed limits ends; they change anyway.
 ROUGH = 1e-7
+#: Part to which the energy's slope falls along a step.
+FLAT = 0.1
 LONGEST_STEP = 0.05
 
 
@@ -109,26 +112,6 @@ def _minimise_with_limits(
         if length > LONGEST_STEP:
             step *= LONGEST_STEP / length
         slope = float(r @ step)
-        trial, q = _line_search(system, known, external, limits, q, step, slope)
+        step, trial = shortened(system, known, external, q, step, slope, limits=limits, until=FLAT, beyond=FLAT)
+        q = q + step
     return trial
-
-
-def _line_search(system, known, external, limits, q, step, slope) -> tuple[Trial, FloatArray]:
-    """Go along ``step`` to where the energy's slope has fallen to a tenth, never beyond the full step."""
-    low, at_low, high = 0.0, slope, 1.0
-    part = 1.0
-    trial = system.trial(known, q + step, limits)
-    at_high = float((trial.contact_force + external) @ step)
-    if at_high >= -0.1 * slope:
-        return trial, q + step
-    for k in range(8):
-        part = low + (high - low) * at_low / (at_low - at_high) if k % 2 == 0 else 0.5 * (low + high)
-        trial = system.trial(known, q + part * step, limits)
-        here = float((trial.contact_force + external) @ step)
-        if abs(here) < 0.1 * slope:
-            break
-        if here > 0:
-            low, at_low = part, here
-        else:
-            high, at_high = part, here
-    return trial, q + part * step

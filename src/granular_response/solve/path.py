@@ -1,4 +1,4 @@
-"""Quasi-static loading: a sequence of equilibria under a growing load (the limit of an infinitely slow ramp).
+"""Quasi-static loading: a sequence of equilibria under a growing or falling load (the limit of infinitely slow ramps).
 
 Each increment is solved with the return map of ``kernels.statics`` (see :mod:`.increment`). Where a contact goes on
 opening, sliding or sticking throughout an increment the return map is exact for any length of the increment.
@@ -21,9 +21,11 @@ import numpy as np
 
 from ..state import Crossing, Reached, State
 from .dynamics import Dynamics, Stop, relax
-from .equilibrium import EquilibriumError, certify, external_force, finish
+from .equilibrium import certify, external_force
 from .increment import Work, solve_increment
 from .problem import Problem
+from .settle import CROSSING as CROSSING_OVER
+from .settle import CROSSING_STOP, NotSettled, nudged, settle
 from .system import Configuration, StaticSystem, Trial
 from .timestep import resolve_time_step
 
@@ -41,8 +43,8 @@ CROSSING = 0.1
 STABILITY_STEP = 1.0
 #: Factorisations that statics may spend on the load of one look; after that dynamics is the cheaper way.
 MOST_WORK = 1000
-#: Displacement along a suspicious direction with which dynamics starts, and the one that counts as leaving.
-NUDGE, LEFT = 1e-6, 2e-5
+#: Displacement after which an equilibrium that was displaced a little counts as left.
+LEFT = 2e-5
 
 
 class PathError(RuntimeError):
@@ -72,7 +74,7 @@ def follow(
     progress: Callable[[float], None] | None = None,
     record: PathRecord | None = None,
 ) -> list[State]:
-    """States at increasing load ``factors``, reached from ``rest`` through every smaller load.
+    """States at the load ``factors`` in turn, growing or falling, reached through every load between.
 
     Parameters
     ----------
@@ -102,6 +104,11 @@ class _DynamicsOptions:
     time_step: float | None
     ramp: float
     maximum_steps: int
+
+
+def _towards(here: float, target: float, step: float) -> float:
+    """A load factor one ``step`` nearer to ``target``, or the target."""
+    return min(here + step, target) if target > here else max(here - step, target)
 
 
 class _Path:
@@ -147,9 +154,7 @@ class _Path:
     def states(self, factors: Sequence[float]) -> list[State]:
         results = []
         for target in factors:
-            if target < self.factor - 1e-12 * max(1.0, abs(self.factor)):
-                raise PathError(f"load factors must increase, got {target:g} after {self.factor:g}")
-            while self.factor < target:
+            while self.factor != target:
                 self._advance(target)
                 if self.progress is not None:
                     self.progress(self.factor)
@@ -160,21 +165,21 @@ class _Path:
     def _advance(self, target: float) -> None:
         """One increment towards ``target``, by statics or across the end of a branch by dynamics."""
         if self._worked_too_much():
-            self._cross(min(self.mark[0] + STABILITY_STEP / self.unit, target), "too much work")
+            self._cross(_towards(self.mark[0], target, STABILITY_STEP / self.unit), "too much work")
             return
-        new = min(self.factor + self.step, target)
-        if target - new < 0.1 * self.step:
+        new = _towards(self.factor, target, self.step)
+        if abs(target - new) < 0.1 * self.step:
             new = target
         increment = new - self.factor
         guess = self.known.q if self.rate is None else self.known.q + increment * self.rate
         rounds = self.record.work.rounds
         found = solve_increment(self.system, self.known, external_force(self.problem, new), guess, self.record.work)
         if found is None:
-            if increment > 1.2 * self.shortest:  # the last one before a target is up to 1.1 steps long
-                self.step = max(0.5 * increment, self.shortest)
+            if abs(increment) > 1.2 * self.shortest:  # the last one before a target is up to 1.1 steps long
+                self.step = max(0.5 * abs(increment), self.shortest)
                 self.rate = None
             else:
-                self._cross(min(self.factor + self.crossing, target), "no equilibrium")
+                self._cross(_towards(self.factor, target, self.crossing), "no equilibrium")
                 self.crossing *= 2.0
             return
         self.crossing = max(0.5 * self.crossing, CROSSING / self.unit)
@@ -186,7 +191,7 @@ class _Path:
             self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
             self._cross(target, "rearrangement")
             return
-        if new == target or new - self.stable_at >= STABILITY_STEP / self.unit:
+        if new == target or abs(new - self.stable_at) >= STABILITY_STEP / self.unit:
             self._look_at_stability()
 
     @property
@@ -197,7 +202,7 @@ class _Path:
     def _worked_too_much(self) -> bool:
         """Whether the last stretch of load has cost more than it may."""
         work = self.record.work.factorisations
-        if self.factor - self.mark[0] >= STABILITY_STEP / self.unit:
+        if abs(self.factor - self.mark[0]) >= STABILITY_STEP / self.unit:
             self.mark = (self.factor, work)
         return work - self.mark[1] > MOST_WORK
 
@@ -212,12 +217,11 @@ class _Path:
 
     def _leaves(self) -> bool:
         """Whether the present equilibrium, slightly displaced, moves away for good."""
-        n = self.problem.n
         state = self._state()
-        nudge = NUDGE * self.system.unstable_direction(self.trial)[: 2 * n].reshape(2, n).T
-        nudged = self.problem.with_static_forces(replace(state, position=state.position + nudge))
         options = self.dynamics
-        dynamics = Dynamics(self.problem, nudged, options.integrator, self._time_step())
+        time_step = resolve_time_step(self.problem) if options.time_step is None else options.time_step
+        beside = nudged(self.problem, state, self.system, self.trial)
+        dynamics = Dynamics(self.problem, beside, options.integrator, time_step)
         self.record.stability_trials += 1
         stop = Stop(1e-11, maximum_steps=min(200_000, options.maximum_steps))
         settled = relax(dynamics, stop, load=(self.factor, self.factor, 0.0))
@@ -228,7 +232,7 @@ class _Path:
         unstable = self.factor
         self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
         self.rate = None
-        while unstable - self.factor > CROSSING / self.unit:
+        while abs(unstable - self.factor) > CROSSING / self.unit:
             middle = 0.5 * (self.factor + unstable)
             external = external_force(self.problem, middle)
             found = solve_increment(self.system, self.known, external, self.known.q, self.record.work)
@@ -245,40 +249,26 @@ class _Path:
         """Dynamics from the last equilibrium to one at load factor ``new``."""
         options = self.dynamics
         here = self._state()
-        dynamics = Dynamics(self.problem, here, options.integrator, self._time_step())
         start = self.factor
-        load = (start, new, options.ramp)
-        energy = 1e-9
-        settled = here
-        for _ in range(4):
-            settled = relax(dynamics, Stop(energy, maximum_steps=options.maximum_steps), load=load)
-            if not settled.reached.settled:
-                energy_left = settled.reached.kinetic_energy
-                raise PathError(
-                    f"no equilibrium beyond load factor {start:g}: the packing does not come to rest within "
-                    f"protocol.maximum_steps = {options.maximum_steps} (kinetic energy {energy_left:.1e} per disk)"
-                )
-            load = (new, new, 0.0)
-            energy *= 1e-2
-            try:
-                settled = finish(self.problem, settled, load_factor=new)
-            except EquilibriumError as error:
-                failure = str(error)
-                continue
+
+        def accept(found: State) -> bool:
             self.factor = new
-            self._begin(settled)
-            if settled.certificate.stable or not self._leaves():
-                break
-            failure = "the equilibrium found is unstable"
-        else:
-            raise PathError(f"no equilibrium beyond load factor {start:g}: {failure}")
+            self._begin(found)
+            return found.certificate.stable is True or not self._leaves()
+
+        stop = Stop(CROSSING_STOP, maximum_steps=options.maximum_steps)
+        ramp = (start, new, options.ramp)
+        try:
+            settled = settle(
+                self.problem, here, CROSSING_OVER, stop, what=f"load factor {new:g}", load=ramp, accept=accept,
+                integrator=options.integrator, time_step=options.time_step,
+            )  # fmt: skip
+        except NotSettled as error:
+            raise PathError(f"no equilibrium beyond load factor {start:g}: {error}") from error
         moved = float(np.abs(settled.position - here.position).max())
         self.record.crossings.append(Crossing(float(start), float(new), reason, moved))
         self.mark = (new, self.record.work.factorisations)
         self.step = self.longest
-
-    def _time_step(self) -> float:
-        return resolve_time_step(self.problem) if self.dynamics.time_step is None else self.dynamics.time_step
 
     def _state(self) -> State:
         state = self.system.state(self.trial, self.factor)

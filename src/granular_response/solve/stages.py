@@ -1,4 +1,4 @@
-"""Loading in stages: statics where it goes easily, dynamics for the rest of a stage.
+"""Loading in stages (``protocol.method: stages``): statics where it goes easily, dynamics for the rest of a stage.
 
 A quasi-static path through a disordered packing with friction meets many small events, and locating each of them
 by statics costs far more than it is worth when responses are averaged over an ensemble. Here each stage, from
@@ -16,24 +16,20 @@ import numpy as np
 
 from ..state import FloatArray, Reached, State
 from .choice import stop_energy
-from .dynamics import Dynamics, Stop, relax
+from .dynamics import Dynamics, Stop
 from .equilibrium import certify, external_force, newton
 from .problem import Problem
-from .solution import NotSettled
+from .settle import STAGE, settle
 from .system import StaticSystem
-from .timestep import resolve_time_step
 
 #: First and shortest static increment, in mean disk weights.
 FIRST_STEP, SHORTEST_STEP = 2.0, 1.0
-#: Newton iterations after which a static increment, or a static finish, counts as failed.
+#: Newton iterations after which a static increment counts as failed.
 ITERATIONS = 8
 #: Displacement after which contacts are listed again (mean radii); far below the skin of the list.
 LISTED_AGAIN = 0.1
-#: Shortest ramp, the time that follows each ramp before the first static finish, and that between the first two
-#: finishes, which doubles from each to the next; in sqrt(R/g).
-SHORTEST_RAMP, HOLD, MORE_TIME = 1.0, 1.5, 2.5
-#: How often the static finish is tried.
-ATTEMPTS = 8
+#: Shortest ramp, in sqrt(R/g).
+SHORTEST_RAMP = 1.0
 
 
 class Collapsed(RuntimeError):
@@ -54,7 +50,7 @@ class Stage:
 
     @property
     def static(self) -> bool:
-        return self.static_until >= self.end
+        return self.static_until == self.end
 
 
 def climb(
@@ -71,7 +67,7 @@ def climb(
     Parameters
     ----------
     problem : with its loads chosen.
-    state : certified, at a load factor below ``factor``.
+    state : certified, at another load factor.
     ramp_time : time in which dynamics crosses the stage, or the same part of it as of the stage that is left; that of
         the protocol if None.
     statics : False leaves all to dynamics, which saves time where statics is known to fail.
@@ -85,8 +81,8 @@ def climb(
         When the packing does not come to rest in the protocol's ``maximum_steps``, or falls for ever.
     """
     start = state.load_factor
-    if not factor > start:
-        raise ValueError(f"load factors must increase, got {factor:g} after {start:g}")
+    if factor == start:
+        return state, Stage(start, start, factor)
     reached, done = _static(problem, state, factor) if statics else (state, False)
     stage = Stage(start, reached.load_factor, factor)
     disk = int(problem.load_disk[0])
@@ -102,69 +98,35 @@ def climb(
 def _dynamic(problem: Problem, start: State, factor: float, ramp_time: float, lowest: float) -> State:
     """Ramp, hold, relax to the protocol's stop energy, and finish by Newton iterations."""
     protocol = problem.scene.protocol
-    dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
+    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps)
     disk = int(problem.load_disk[0])
 
-    def watch(_: int, __: float) -> None:
+    def watch(dynamics: Dynamics) -> None:
         height = dynamics.height(disk)
         if height < lowest:
             raise Collapsed(factor, height)
 
-    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps)
-    dynamics.set_ramps(load=(start.load_factor, factor, ramp_time))
-    dynamics.advance(round((ramp_time + HOLD) / dynamics.time_step))
-    load = (factor, factor, 0.0)
-    settled = relax(dynamics, stop, load=load, progress=watch)
-    wait = MORE_TIME
-    for _ in range(ATTEMPTS):
-        finished = _finish(problem, settled)
-        if finished is not None:
-            return finished
-        if not settled.reached.settled:
-            break
-        dynamics.set_ramps(load=load)
-        dynamics.advance(round(wait / dynamics.time_step))
-        wait *= 2.0
-        settled = replace(dynamics.state(), reached=settled.reached)
-    raise NotSettled(
-        f"the packing did not come to rest under load {factor:g} within protocol.maximum_steps = "
-        f"{protocol.maximum_steps} (kinetic energy {settled.reached.kinetic_energy:.1e} per disk)"
-    )
-
-
-def _finish(problem: Problem, settled: State) -> State | None:
-    """The stable equilibrium beside a nearly settled state, if a few Newton iterations lead there."""
-    system = StaticSystem(problem, settled)
-    known = system.start(settled)
-    external = external_force(problem, settled.load_factor)
-    trial, report = newton(system, known, external, maximum_iterations=ITERATIONS)
-    if not report.converged:
-        return None
-    modes = system.negative_modes(trial)
-    if modes:
-        return None
-    state = system.state(trial, settled.load_factor)
-    certificate = certify(problem, state, modes=modes)
-    reached = replace(settled.reached, newton_iterations=report.iterations, certificate=certificate)
-    return replace(state, reached=reached)
+    ramp = (start.load_factor, factor, ramp_time)
+    return settle(problem, start, STAGE, stop, what=f"load {factor:g}", load=ramp, watch=watch)
 
 
 def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]:
     """As far towards ``target`` as plain Newton iterations go, and whether that is all the way."""
     unit = max(float(np.hypot(problem.load[:, 0], problem.load[:, 1]).sum()), 1e-300)
-    step = FIRST_STEP / unit
     factor = state.load_factor
+    sense = 1.0 if target > factor else -1.0
+    step = FIRST_STEP / unit
     system = StaticSystem(problem, state)
     known = system.start(state)
     trial = None
     rate: FloatArray | None = None
-    while factor < target:
-        new = target if target - factor < 1.5 * step else factor + step
+    while factor != target:
+        new = target if abs(target - factor) < 1.5 * step else factor + sense * step
         guess = known.q if rate is None else known.q + (new - factor) * rate
         found, report = newton(system, known, external_force(problem, new), guess, maximum_iterations=ITERATIONS)
         moved = float(np.abs(found.configuration.q[: 2 * problem.n] - known.q[: 2 * problem.n]).max())
         if not report.converged or moved > LISTED_AGAIN:
-            step = 0.5 * (new - factor)
+            step = 0.5 * abs(new - factor)
             rate = None
             if step * unit < SHORTEST_STEP:
                 break
@@ -184,4 +146,4 @@ def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]
         return state, False
     there = system.state(trial, factor)
     reached = Reached(method="statics", certificate=certify(problem, there, modes=modes))
-    return replace(there, reached=reached), factor >= target
+    return replace(there, reached=reached), factor == target

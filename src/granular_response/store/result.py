@@ -440,7 +440,6 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
         problem=problem,
         rest=rest,
         loaded=tuple(loaded),
-        load_factors=tuple(state.load_factor for state in loaded),
         rest_choice=rest_method(problem),
         load_choice=load_method(problem) if loaded else None,
     )

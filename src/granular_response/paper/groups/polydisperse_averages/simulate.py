@@ -3,7 +3,7 @@
 A *case* is a polydispersity, a coefficient of friction (of the walls too), a lattice constant of the start and a list
 of growing forces; it has several realizations of the radii. One task settles one realization under gravity and
 then loads it through all forces of its case, so a packing is settled once. Without friction each load is followed
-by minimisation, with friction by stages (``solve.staircase``), unless ``method`` asks for the paper's protocol,
+by minimisation, with friction by stages (``solve.stages``), unless ``method`` asks for the paper's protocol,
 dynamics from rest to each force.
 
 What becomes of a realization at each force is stored: ``at_rest``; ``collapsed``, where the load has pushed its
@@ -26,6 +26,7 @@ from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.polydisperse_averages.parameters import Case, Individual, Parameters
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Problem, loaded_states
+from granular_response.solve.choice import load_method
 from granular_response.solve.stages import Collapsed, climb
 from granular_response.solve.timestep import stability_limit
 from granular_response.state import State
@@ -174,7 +175,7 @@ class _Loading:
         scene = problem.scene.updated({"protocol.stop_kinetic_energy": task.stop_kinetic_energy})
         self.task, self.rest, self.state = task, rest, rest
         self.problem = replace(problem, scene=scene)
-        self.method = scene.protocol.method
+        self.method = load_method(self.problem).method
         self.lowest = float(rest.position[int(problem.load_disk[0]), 1]) - task.collapse_depth
         self.statics = True
 
@@ -183,7 +184,7 @@ class _Loading:
         if self.method == "dynamics":
             return loaded_states(self.problem, self.rest, [force])[1][0], 0.0
         before = self.state.load_factor
-        if self.method != "auto" or not self.problem.rotations:
+        if self.method != "stages":
             self.state = loaded_states(self.problem, self.state, [force])[1][0]
             return self.state, (force if self.state.reached.relaxation_steps is None else before)
         self.state, stage = climb(

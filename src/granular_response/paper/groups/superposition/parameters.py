@@ -22,7 +22,7 @@ Paths = Annotated[
 
 
 class Parameters(SceneGroup):
-    """Section ``superposition``; with ``method`` auto, loading is in stages."""
+    """Section ``superposition``."""
 
     scene: Annotated[Scene, over(_UNLOADED, "packing.realization", "loads")] = _UNLOADED
     realizations: Count = Field(description="Of the radii.")

@@ -25,6 +25,7 @@ from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.superposition.parameters import Parameters
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states
+from granular_response.solve.choice import load_method
 from granular_response.solve.stages import climb
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
@@ -143,15 +144,12 @@ def load_single(task: Task) -> Single:
 
 
 def _path(task: Task, places: Sequence[int]) -> tuple[list[State], list[bool], FloatArray]:
-    """States at all forces, whether their stages needed dynamics, and where the loaded disks are at rest.
-
-    In stages unless the scene asks for a method.
-    """
+    """States at all forces, whether their stages needed dynamics, and where the loaded disks are at rest."""
     loads = [{"disk": {"row": "top", "offset": place}, "force": [0.0, -1.0]} for place in places]
     problem = Problem.from_scene(task.scene.updated({"loads": loads})).with_loads(task.rest.position)
     load_x = task.rest.position[problem.load_disk, 0]
-    method = task.scene.protocol.method
-    if method != "auto":
+    method = load_method(problem).method
+    if method != "stages":
         return loaded_states(problem, task.rest, task.forces)[1], [method == "dynamics"] * len(task.forces), load_x
     states, by_dynamics, state = [], [], task.rest
     for force in task.forces:

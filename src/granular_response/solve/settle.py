@@ -1,0 +1,158 @@
+"""From motion to equilibrium: dynamics until a packing is nearly at rest, then statics.
+
+The one hand-over there is. When it happens, how often it is tried and what lies between two tries depends on what
+the dynamics is for; the three ways below are all that differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from ..state import State
+from .dynamics import Dynamics, Ramp, Stop, relax
+from .energy import minimise
+from .equilibrium import NEWTON_ITERATIONS, EquilibriumError, finish
+from .problem import Problem
+from .system import StaticSystem, Trial
+from .timestep import resolve_time_step
+
+#: Displacement along an unstable direction, of the disk that it moves most (mean radii).
+NUDGE = 1e-6
+
+
+class NotSettled(RuntimeError):
+    """A packing did not come to rest."""
+
+
+@dataclass(frozen=True)
+class HandOver:
+    """How dynamics hands over to statics. Times in sqrt(R/g)."""
+
+    tries: int  #: how often statics is tried
+    iterations: int = NEWTON_ITERATIONS  #: of Newton's method in a try
+    hold: float = 0.0  #: time after the ramps before the kinetic energy is looked at
+    wait: float = 0.0  #: time of dynamics after the first try
+    growth: float = 1.0  #: of the wait from try to try
+    cooling: float = 1.0  #: below 1: in place of a wait, dynamics to this part of the kinetic energy before
+    nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
+    nudged: bool = False  #: from the third unstable equilibrium on, dynamics starts from it, displaced a little
+
+
+#: Rest under gravity, and loads by dynamics: the fall is long, and a wait costs little of it.
+PROTOCOL = HandOver(tries=8, wait=20.0, nudged=True)
+#: The end of a branch on a path: the first try is early, and each further one has a hundredth of the energy.
+CROSSING = HandOver(tries=4, cooling=1e-2)
+#: Kinetic energy per disk at the first try of a crossing.
+CROSSING_STOP = 1e-9
+#: Stages of ensembles: there are thousands of them, so the first try is early and cheap.
+STAGE = HandOver(tries=8, iterations=8, hold=1.5, wait=2.5, growth=2.0, nearly=float("inf"))
+
+
+def settle(
+    problem: Problem,
+    start: State,
+    how: HandOver,
+    stop: Stop,
+    *,
+    what: str,
+    gravity: Ramp = (1.0, 1.0, 0.0),
+    load: Ramp = (0.0, 0.0, 0.0),
+    integrator: str | None = None,
+    time_step: float | None = None,
+    accept: Callable[[State], bool | None] = lambda state: state.certificate.stable,
+    progress: Callable[[int, float], None] | None = None,
+    watch: Callable[[Dynamics], None] | None = None,
+) -> State:
+    """The certified equilibrium in which the motion from ``start`` ends.
+
+    Parameters
+    ----------
+    problem : with its loads chosen.
+    start : where the motion begins.
+    how, stop : the hand-over, and when it is first tried.
+    what : that the packing comes to rest under, for messages.
+    gravity, load : linear ramps ``(from, to, duration)``.
+    integrator, time_step : those of the protocol unless given.
+    accept : whether an equilibrium will do; by default, when it is stable.
+    progress : called with the steps done and the kinetic energy per disk.
+    watch : called with the dynamics as often, and may end it by raising.
+
+    Raises
+    ------
+    NotSettled
+        When the steps run out, or no try leads to an equilibrium.
+    DynamicsError
+        When the motion blows up, or a load carries a disk off.
+    """
+    integrator = problem.scene.protocol.integrator if integrator is None else integrator
+    time_step = resolve_time_step(problem) if time_step is None else time_step
+    dynamics = Dynamics(problem, start, integrator, time_step)
+    held = (load[1], load[1], 0.0)
+    if how.hold:
+        dynamics.set_ramps(gravity, load)
+        dynamics.advance(round((max(gravity[2], load[2]) + how.hold) / time_step))
+        gravity, load = (gravity[1], gravity[1], 0.0), held
+
+    def look(steps: int, energy: float) -> None:
+        if progress is not None:
+            progress(steps, energy)
+        if watch is not None:
+            watch(dynamics)
+
+    settled = relax(dynamics, stop, gravity=gravity, load=load, progress=look)
+    energy, wait = stop.kinetic_energy, how.wait
+    why = ""
+    for attempt in range(1, how.tries + 1):
+        left = settled.reached.kinetic_energy or 0.0
+        if not settled.reached.settled and left > how.nearly * energy:
+            break
+        try:
+            found = _statics(problem, settled, how)
+            if accept(found):
+                return found
+            why = ": the equilibrium found is unstable"
+            if how.nudged and attempt > 2:
+                dynamics = Dynamics(problem, _displaced(problem, found), integrator, time_step)
+        except EquilibriumError as error:
+            why = f": {error}"
+        if not settled.reached.settled or attempt == how.tries:
+            break
+        if how.cooling < 1.0:
+            energy *= how.cooling
+            settled = relax(dynamics, replace(stop, kinetic_energy=energy), load=held)
+        else:
+            dynamics.set_ramps(load=held)
+            dynamics.advance(round(wait / time_step))
+            wait *= how.growth
+            settled = replace(dynamics.state(), reached=replace(settled.reached, more_relaxations=attempt))
+    raise NotSettled(not_settled(problem, settled, what) + why)
+
+
+def not_settled(problem: Problem, state: State, what: str) -> str:
+    """The message for a packing that is still moving under ``what``."""
+    return (
+        f"the packing did not come to rest under {what} within protocol.maximum_steps = "
+        f"{problem.scene.protocol.maximum_steps} (kinetic energy {state.reached.kinetic_energy:.1e} per disk)"
+    )
+
+
+def _statics(problem: Problem, settled: State, how: HandOver) -> State:
+    """The equilibrium beside a nearly settled state: without friction the minimum of the energy."""
+    if problem.rotations:
+        return finish(problem, settled, maximum_iterations=how.iterations)
+    found = minimise(problem, problem.relisted(settled), load_factor=settled.load_factor)
+    return replace(found, reached=found.reached.after(settled.reached))
+
+
+def nudged(problem: Problem, state: State, system: StaticSystem, trial: Trial) -> State:
+    """An equilibrium displaced a little along the most unstable direction of its tangent."""
+    n = problem.n
+    shift = NUDGE * system.unstable_direction(trial)[: 2 * n].reshape(2, n).T
+    return problem.with_static_forces(replace(state, position=state.position + shift))
+
+
+def _displaced(problem: Problem, state: State) -> State:
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    return nudged(problem, state, system, system.trial(known, known.q))

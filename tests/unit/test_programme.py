@@ -1,0 +1,119 @@
+"""Load programmes: up, down, to zero and beyond, by every method."""
+
+import numpy as np
+import pytest
+from small_scenes import scene
+
+from granular_response.observe.floor import floor_disks, floor_force
+from granular_response.scene import Scene, SceneError
+from granular_response.solve import continue_solution, solve_scene
+from granular_response.store import files as store
+from granular_response.store.result import solution_from, to_dataset
+
+LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
+PROGRAMME = (0.5, 1.0, 0.5, 0.0, 1.0)
+
+
+def under_the_load(solution) -> list[float]:
+    """What the load adds to the force on the middle floor disk, in mean disk weights, in each state."""
+    disks = floor_disks([solution.rest, *solution.loaded])
+    middle = len(disks) // 2
+    at_rest = floor_force(solution.rest, disks)[middle]
+    return [float(floor_force(state, disks)[middle] - at_rest) for state in solution.loaded]
+
+
+def slab(**changes) -> Scene:
+    return scene(4, 9, loads=LOAD, **changes)
+
+
+def test_unloading_with_friction_leads_along_another_branch():
+    solution = solve_scene(slab(contact__friction=0.2, protocol__load_factors=list(PROGRAMME)))
+    assert solution.load_factors == PROGRAMME
+    for state in solution.loaded:
+        assert state.certificate.force_residual < 1e-12 and state.certificate.stable
+    loading, full, unloading, unloaded, again = under_the_load(solution)
+    assert loading / 3.0 == pytest.approx(0.2919, abs=5e-4)
+    assert unloading / 3.0 == pytest.approx(0.2325, abs=5e-4)
+    assert unloaded == pytest.approx(-0.1126, abs=2e-3)  # friction keeps what the load has done
+    assert again == pytest.approx(full, rel=0.01)
+
+
+def test_unloading_without_friction_leads_back():
+    solution = solve_scene(slab(contact__friction=0.0), load_factors=PROGRAMME)
+    loading, full, unloading, unloaded, again = under_the_load(solution)
+    assert (unloading, again) == (pytest.approx(loading, abs=1e-9), pytest.approx(full, abs=1e-9))
+    assert unloaded == pytest.approx(0.0, abs=1e-9)
+
+
+def test_dynamics_agrees_with_the_path_on_the_way_down():
+    path, dynamics = (
+        under_the_load(solve_scene(slab(contact__friction=0.2, **changes), load_factors=(1.0, 0.5)))
+        for changes in ({}, {"protocol__method": "dynamics", "protocol__ramp_time": 200.0})
+    )
+    assert dynamics == pytest.approx(path, abs=0.02)
+
+
+def test_loads_may_change_their_sign():
+    """The slab is symmetric, and so are its answers to loads from either side, from rest."""
+    pushed = scene(5, 9, loads=[{"disk": "top-centre", "force": [1.0, 0.0]}])
+    right, left = (solve_scene(pushed, load_factors=[sign]) for sign in (1.0, -1.0))
+    assert left.load_factors == (-1.0,)
+    a, b = (
+        floor_force(one.loaded[0], floor_disks([one.rest])) - floor_force(one.rest, floor_disks([one.rest]))
+        for one in (right, left)
+    )
+    assert np.abs(a).max() > 0.05
+    assert b == pytest.approx(a[::-1], abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"contact__friction": 0.2},
+        {"contact__friction": 0.0},
+        {"contact__friction": 0.2, "protocol__method": "dynamics", "protocol__stop_kinetic_energy": 1e-9},
+        {"contact__friction": 0.2, "protocol__method": "stages", "packing__polydispersity": 0.1},
+    ],
+    ids=["path", "minimise", "dynamics", "stages"],
+)
+def test_a_programme_that_is_cut_and_taken_up_again_has_the_same_bits(tmp_path, changes):
+    whole = solve_scene(slab(**changes), load_factors=PROGRAMME)
+    parts = solve_scene(slab(**changes), load_factors=PROGRAMME[:1])
+    for factor in PROGRAMME[1:]:
+        store.write(tmp_path / "part.nc", to_dataset(parts))
+        parts = continue_solution(solution_from(store.read(tmp_path / "part.nc")[""]), [factor])
+    assert parts.load_factors == whole.load_factors == PROGRAMME
+    for one, other in zip(whole.loaded, parts.loaded, strict=True):
+        assert np.array_equal(one.position, other.position)
+        assert np.array_equal(one.angle, other.angle)
+
+
+def test_dynamics_starts_from_rest_until_the_programme_turns():
+    by_dynamics = slab(protocol__method="dynamics", protocol__stop_kinetic_energy=1e-9)
+    both = solve_scene(by_dynamics, load_factors=(0.5, 1.0, 0.5))
+    alone = solve_scene(by_dynamics, load_factors=(1.0, 0.5))
+    assert np.array_equal(both.loaded[1].position, alone.loaded[0].position)
+    assert np.array_equal(both.loaded[2].position, alone.loaded[1].position)
+    assert not np.array_equal(both.loaded[0].position, both.loaded[2].position)
+
+
+def test_stages_are_a_method_of_a_scene():
+    disordered = slab(contact__friction=0.2, packing__polydispersity=0.1, packing__lattice_constant="touching-largest")
+    path, stages = (
+        solve_scene(disordered.updated({"protocol.method": method}), load_factors=(0.1, 0.2))
+        for method in ("path", "stages")
+    )
+    assert stages.load_choice.method == "stages"
+    assert under_the_load(stages) == pytest.approx(under_the_load(path), abs=0.02)
+    for state in stages.loaded:
+        assert state.certificate.stable and state.certificate.force_residual < 1e-9
+    smooth = solve_scene(slab(contact__friction=0.0, protocol__method="stages"))
+    assert smooth.load_choice.method == "minimise"
+
+
+@pytest.mark.parametrize("factors", [[], [float("nan")], [1.0, float("inf")]])
+def test_a_programme_is_one_or_more_finite_numbers(factors):
+    with pytest.raises(SceneError, match=r"^load factors.*must be (one or more numbers|finite)"):
+        solve_scene(slab(), load_factors=factors)
+    with pytest.raises(SceneError, match=r"^protocol.load_factors = \[.*must be a list of one or more finite numbers"):
+        slab(protocol__load_factors=factors)
