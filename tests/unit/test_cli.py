@@ -29,6 +29,7 @@ from granular_response.paper.pipeline import drawing, simulation
 from granular_response.scene import SceneError
 from granular_response.scene.base import Description
 from granular_response.store import files as store
+from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Resources, current
 
 ROOT = Path(__file__).parents[2]
@@ -313,6 +314,43 @@ def test_simulate_and_draw(group, tmp_path):
     assert Path("data/squares.nc").read_bytes() == first
     assert [path.read_bytes() for path in drawing.draw(group)] == before
     assert sorted(path.name for path in (tmp_path / "data").iterdir()) == ["squares.nc"]
+
+
+def test_a_second_run_of_a_group_is_refused_while_the_first_one_lasts(group, monkeypatch):
+    """Not when it comes first to the end: it would take away what the other keeps."""
+    said = []
+
+    def second(done, total, what=""):
+        if done == 2 and not said:
+            kept = sorted(Path("data/.squares.checkpoint").rglob("*.npz"))
+            with pytest.raises(pipeline.GroupError) as caught:
+                simulation.simulate(group, workers=1)
+            said.append(str(caught.value))
+            assert simulation.simulate(group, Path("data/other.nc"), workers=1) == Path("data/other.nc")
+            assert sorted(Path("data/.squares.checkpoint").rglob("*.npz")) == kept and len(kept) == 2
+
+    simulation.simulate(group, workers=1, progress=second)
+    assert said == ["data/squares.nc: another run is making it; wait for it, or give another --output"]
+    assert sorted(path.name for path in Path("data").iterdir()) == ["other.nc", "squares.nc"]
+    simulation.simulate(group, workers=1)
+
+
+def test_a_run_that_is_killed_leaves_no_lock(group):
+    Path("data/.squares.checkpoint").mkdir(parents=True)
+    code = "import fcntl, os, time; d = os.open('data/.squares.checkpoint', os.O_RDONLY); fcntl.flock(d, fcntl.LOCK_EX)"
+    code += "; print(1, flush=True); time.sleep(60)"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as other:
+        other.stdout.readline()
+        with pytest.raises(pipeline.GroupError, match="another run is making it"):
+            simulation.simulate(group, workers=1)
+        other.kill()
+    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
+
+
+def test_an_error_at_once_leaves_no_folder(group):
+    with pytest.raises(SweepError, match="workers = 0"):
+        simulation.simulate(group, workers=0)
+    assert not Path("data/.squares.checkpoint").exists()
 
 
 def test_finished_tasks_outlive_an_interruption(group, monkeypatch):

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -77,17 +81,56 @@ def simulate(
 
     Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
     continues; rest states are kept there for other groups.
+
+    Raises what ``parameters`` raises, and GroupError while another run makes the same file.
     """
     function = group_member(group, "simulate", "simulate")
     given, described = parameters(group, parameter_file)
     output = output or data_path(group)
     store.check_writable(output, [parameter_file])
     kept = output.parent / f".{output.stem}.checkpoint"
-    with using(scheduler=scheduler, checkpoint=kept, rest_states=output.parent.absolute() / REST_STATES):
+    rest_states = output.parent.absolute() / REST_STATES
+    with _alone(kept, output), using(scheduler=scheduler, checkpoint=kept, rest_states=rest_states):
         try:
             datasets = function(described, workers=workers, progress=progress)
         except SceneError as error:
             raise SceneError(f"{parameter_file}: section {group}: {error}") from error
-    store.write(output, datasets, {"group": group, "parameters": text.write(given)})
-    shutil.rmtree(kept, ignore_errors=True)
+        store.write(output, datasets, {"group": group, "parameters": text.write(given)})
+        shutil.rmtree(kept, ignore_errors=True)
     return output
+
+
+@contextmanager
+def _alone(folder: Path, output: Path) -> Iterator[None]:
+    """Hold the checkpoint of ``output`` against other runs, which would remove it when they are done.
+
+    The folder itself is locked, so a run that was killed leaves no lock behind. Where there can be no folder, or the
+    file system knows no locks, nothing is held: checkpoints are optional.
+    """
+    held = None
+    with suppress(OSError):
+        while held is None:
+            folder.mkdir(parents=True, exist_ok=True)
+            held = os.open(folder, os.O_RDONLY)
+            try:
+                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                os.close(held)
+                raise GroupError(f"{output}: another run is making it; wait for it, or give another --output") from None
+            if not _same(held, folder):  # the run before removed it between these lines
+                os.close(held)
+                held = None
+    try:
+        yield
+    finally:
+        if held is not None:
+            with suppress(OSError):
+                folder.rmdir()  # if nothing was kept
+            os.close(held)
+
+
+def _same(descriptor: int, path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(descriptor), path.stat())
+    except FileNotFoundError:
+        return False
