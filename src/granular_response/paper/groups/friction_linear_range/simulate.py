@@ -4,7 +4,7 @@ Figs. 6 to 9 (linear range, profiles, contact changes), Fig. 12 (friction at one
 forces), and the forces at which things happen, by bisection. One load path per coefficient of friction
 serves every force, and a bisection continues it from the state below. At large forces with much friction
 symmetric equilibria lose their stability, and which one is reached depends on the transient: there the
-paper's protocol is followed literally, with dynamics from rest to each force.
+paper's protocol is followed, dynamics from rest to each force; its ramp time is not told.
 """
 
 from __future__ import annotations

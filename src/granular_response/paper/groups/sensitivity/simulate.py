@@ -1,8 +1,8 @@
 """How much each reading of the paper matters: the same slab and load with one thing changed at a time.
 
-For each variant the floor response is compared, disk by disk, with that of the reference (the paper's protocol:
-Beeman, gravity at once, ramp of 20, spring and dashpot cut at the Coulomb limit, Newton finish). Stored are the
-largest and the root-mean-square difference, and what the variant itself settled to.
+For each variant the floor response is compared, disk by disk, with that of the reference: the paper's protocol with
+Beeman, and where the paper says nothing, gravity at once, a ramp of 20, spring and dashpot cut at the Coulomb limit,
+Newton finish. Stored are the largest and the root-mean-square difference, and what the variant itself settled to.
 """
 
 from __future__ import annotations

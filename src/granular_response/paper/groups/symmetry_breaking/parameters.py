@@ -50,6 +50,6 @@ class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "loads", "protocol.ramp_time", "protocol.time_step")] = UNIT_LOAD
     asymmetry: Positive = Field(description="Above which symmetry counts as lost.")
     tolerance: Positive = Field(description="Width of the brackets, in mean disk weights.")
-    protocols: Annotated[tuple[Protocol, ...], AfterValidator(some)] = Field(description="The first: the paper's.")
+    protocols: Annotated[tuple[Protocol, ...], AfterValidator(some)] = Field(description="Ramps and steps to try.")
     copies: Copies
     held: Held

@@ -1,7 +1,7 @@
 """The loss of symmetry of the response at large friction, and what decides its sign (Sec. V.E).
 
-The paper's protocol is followed literally: from rest, a force is ramped up and the motion followed until it dies
-out. The force at which the response loses its symmetry is bracketed for several durations of the ramp and
+From rest, a force is ramped up and the motion followed until it dies out, as in the paper, which names no duration
+of the ramp. The force at which the response loses its symmetry is bracketed for several durations of the ramp and
 time steps. At one force beyond it, copies of the packing that differ in the order of the arithmetic or by
 rounding-sized displacements tell what the sign depends on. And equilibria of the symmetric branch are displaced
 a little under constant force, which tells a loss of stability from a growth of asymmetry during loading.
