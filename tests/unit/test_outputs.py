@@ -1,6 +1,7 @@
 """What commands write: never over their inputs, never in place of what is no regular file."""
 
 import os
+import resource
 import shutil
 import stat
 import subprocess
@@ -29,6 +30,7 @@ COMMANDS = {
     "simulate": (["simulate", "theory", "--params", "params.yaml"], ["params.yaml"]),
     "draw": (["draw", "theory", "--data", "theory/fig01_predictions.png"], ["theory"]),
     "export": (["export", "result.nc"], ["result.nc"]),
+    "plot": (["plot", "result.pdf"], ["result.pdf"]),
     "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),
     "report": (["report", "--root", ".", "--notes", "notes.md"], ["notes.md", "data/torque.nc", "figures/claims.json"]),
 }
@@ -56,6 +58,7 @@ def inputs(tmp_path_factory) -> Path:
         (folder / path).write_text("{}")
     shutil.copy(ROOT / "params.yaml", folder)
     assert call("run", "scene.yaml", "-o", "result.nc", folder=folder).returncode == 0
+    shutil.copy(folder / "result.nc", folder / "result.pdf")
     assert call("simulate", "theory", "--workers", 1, "-o", "theory/theory.nc", folder=folder).returncode == 0
     (folder / "theory" / "theory.nc").rename(folder / "theory" / "fig01_predictions.png")
     return folder
@@ -129,5 +132,41 @@ def test_a_name_that_is_not_utf8_is_refused_before_anything_is_solved(inputs, tm
     command = [sys.executable.encode(), b"-m", b"granular_response", b"run", os.fsencode(inputs / "scene.yaml")]
     finished = subprocess.run([*command, b"-o", b"r\xff.nc"], cwd=tmp_path, capture_output=True)
     assert finished.returncode == 2 and finished.stderr.count(b"\n") == 1
-    assert b"has a name that is not UTF-8" in finished.stderr and b"r\\udcff.nc" in finished.stderr
+    assert b"has a name that is not UTF-8" in finished.stderr and b"r\xff.nc" in finished.stderr
     assert not any(tmp_path.iterdir())
+
+
+def test_standard_output_on_a_full_device(inputs, tmp_path):
+    run = ["run", inputs / "scene.yaml", "-o", "a.nc"]
+    for arguments in (["show", inputs / "result.nc"], run, ["version"], ["-h"]):
+        with open("/dev/full", "w") as full:
+            command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
+            finished = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
+        said = "granular-response: standard output cannot be written: No space left on device\n"
+        assert (finished.returncode, finished.stderr) == (2, said)
+    assert "" in store.read(tmp_path / "a.nc")
+
+
+def test_a_locale_of_plain_letters_and_a_home_that_is_not_there(inputs, tmp_path):
+    changes = {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": "C", "HOME": "/nonexistent"}
+    shutil.copy(inputs / "scene.yaml", tmp_path / "größe.yaml")
+    for arguments in (["run", "größe.yaml", "-o", "größe.nc"], ["show", "größe.nc"]):
+        finished = call(*arguments, folder=tmp_path, encoding="utf-8", env={**os.environ, **changes})
+        assert finished.returncode == 0, finished.stderr
+        assert finished.stderr == ""
+    assert (tmp_path / "größe.nc").exists()
+    (tmp_path / "table.yaml").write_text(TABLE.replace("disks.nc", "größe.csv"), encoding="utf-8")
+    finished = call("run", "table.yaml", "-o", "a.nc", folder=tmp_path, encoding="utf-8", env={**os.environ, **changes})
+    assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
+
+
+def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
+    (tmp_path / "huge.yaml").write_text("packing: {kind: slab, layers: 10000, disks_per_row: 200}\n")
+    little = 9 * 10**9
+    finished = call(
+        "run", "huge.yaml", "-o", "a.nc", folder=tmp_path,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (little, little)),
+    )  # fmt: skip
+    assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
+    assert "1995000 disks need at least 9.3 GiB of memory, there are " in finished.stderr
+    assert not (tmp_path / "a.nc").exists()

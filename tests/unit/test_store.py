@@ -222,6 +222,34 @@ def test_no_space_left_keeps_the_old_file(path):
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 
+FULL_DISK = """
+import os, resource, sys
+import netCDF4, numpy as np
+
+path, limit = sys.argv[1], resource.getrlimit(resource.RLIMIT_FSIZE)
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))
+file = netCDF4.Dataset(path, "w")
+try:
+    file.createDimension("n", 100_000)
+    file.createVariable("a", "f8", ("n",))[...] = np.arange(100_000.0)
+    file.close()
+except RuntimeError as error:
+    print(error)
+del file
+os.unlink(path)
+links = (f"/proc/self/fd/{number}" for number in range(3, 20))
+print(sum(os.readlink(link).startswith(path) for link in links if os.path.lexists(link)))
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="open files are listed on Linux only")
+def test_why_files_are_made_in_memory(tmp_path):
+    """HDF5 gives no reason when a disk is full, and keeps the file, removed or not."""
+    command = [sys.executable, "-c", FULL_DISK, str(tmp_path / "direct.nc")]
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert run.stdout.split("\n")[:2] == ["NetCDF: HDF error", "1"], run.stdout + run.stderr
+
+
 def test_a_folder_that_cannot_be_made_or_written(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(StoreError, match="cannot be written"):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import gc
+import io
+import os
 import sys
 import warnings
 from pathlib import Path
@@ -427,6 +430,25 @@ def _expected_errors() -> tuple[type[BaseException], ...]:
     return tuple(found)
 
 
+#: Errors of a stream, which has no name.
+_NOT_WRITTEN = (errno.EIO, errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
+
+
+def _speak_any_name() -> None:
+    """Names of files are printed as they are, also those that the locale or Unicode cannot spell."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            if stream.encoding.lower().replace("-", "") in ("ascii", "ansi_x3.41968", "usascii", "utf8"):
+                stream.reconfigure(encoding="utf-8", errors="surrogateescape")
+            else:
+                stream.reconfigure(errors="backslashreplace")
+
+
+def _hush() -> None:
+    """What standard output still holds goes nowhere, so that the end of the process does not try again."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
 def main() -> None:
     """Entry point. Expected errors are one line on standard error and exit code 2.
 
@@ -435,10 +457,25 @@ def main() -> None:
     """
     gc.disable()
     warnings.formatwarning = lambda message, *_, **__: f"granular-response: {message}\n"
+    _speak_any_name()
     try:
-        app()
+        try:
+            app()
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except BrokenPipeError:  # who was listening has gone
+        _hush()
+        sys.exit(1)
     except Exception as error:
         expected = _expected_errors()
+        if isinstance(error, OSError) and error.filename is None and error.errno in _NOT_WRITTEN:
+            _hush()
+            typer.echo(f"granular-response: standard output cannot be written: {error.strerror}", err=True)
+            sys.exit(2)
+        if isinstance(error, MemoryError):
+            typer.echo(f"granular-response: not enough memory: {error or 'the scene is too large'}", err=True)
+            sys.exit(2)
         cause = error.__cause__
         programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
         if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written

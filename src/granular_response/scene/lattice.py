@@ -61,6 +61,11 @@ class LatticePacking(Description):
         return None
 
     @property
+    def disk_count(self) -> int:
+        """Number of disks."""
+        return int(self.row_count().sum())
+
+    @property
     def spacing(self) -> float:
         """The lattice constant as a number, in mean radii."""
         if isinstance(self.lattice_constant, str):
@@ -69,7 +74,7 @@ class LatticePacking(Description):
 
     @model_validator(mode="after")
     def _check_size(self) -> LatticePacking:
-        if (n := int(self.row_count().sum())) > MOST_DISKS:
+        if (n := self.disk_count) > MOST_DISKS:
             raise Problem(f"must have at most {MOST_DISKS} disks", key=("layers",), value=f"{n} disks")
         return self
 

@@ -50,6 +50,11 @@ class FilePacking(Description):
         return self
 
     @property
+    def disk_count(self) -> int:
+        """0: only the file knows the number of disks."""
+        return 0
+
+    @property
     def folder(self) -> str | None:
         """Folder at which a relative path starts; None for the current one."""
         return self._folder
@@ -118,6 +123,8 @@ class FilePacking(Description):
                     lines.append(reader.line_num)
         except FileNotFoundError:
             raise self._error(None, "no such file") from None
+        except UnicodeEncodeError:
+            raise self._error(None, "has a name that this locale cannot spell") from None
         except UnicodeDecodeError:
             raise self._error(None, "is not a text file in UTF-8") from None
         except csv.Error as error:

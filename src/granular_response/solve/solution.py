@@ -18,6 +18,7 @@ from .nested import rest_start
 from .path import follow
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
+from .size import check_memory
 from .stages import climb
 from .timestep import resolve_time_step
 
@@ -68,6 +69,7 @@ def solve_scene(
         Each with one line that says what to change.
     """
     factors = load_programme(scene.protocol.load_factors if load_factors is None else load_factors)
+    check_memory(scene)
     problem = Problem.from_scene(scene)
     rest = rest_state(problem, progress=progress)
     problem = problem.with_loads(rest.position)

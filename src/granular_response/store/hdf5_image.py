@@ -3,6 +3,11 @@
 netCDF's in-memory files differ from those it makes on disk in two ways: they are padded, and the object
 header of the root group holds the time of its creation. ``plain_bytes`` removes both. Numbers in brackets are
 sections of the HDF5 file format specification, version 3.
+
+A file that netCDF makes on disk has the same bytes every time too, so a temporary file and a rename would do but for a
+full disk: HDF5 then says "HDF error" without a reason and keeps the file open until the process ends, so that the space
+of a file that has been removed is not given back and the next write meets a lock (``tests/unit/test_store.py`` shows
+it). Plain writes of bytes from memory fail with a reason and leave nothing behind.
 """
 
 from __future__ import annotations
