@@ -14,8 +14,8 @@ import numba as nb
 from timing import interleaved, write
 
 from granular_response.kernels import forces
-from granular_response.kernels.integrators import beeman
-from granular_response.kernels.integrators.record import LOOK_EVERY, moved_beyond
+from granular_response.kernels.integrators import stepping
+from granular_response.kernels.integrators.stepping import LOOK_EVERY, moved_beyond
 from granular_response.machine.lanes import aligned, aligned_zeros
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem
@@ -54,22 +54,23 @@ def measure(layers: int, per_row: int, friction: float, settle: int, steps: int)
     }
 
 
-@nb.njit(error_model="numpy")
-def _repeat_pairs(times, q, v, rim, f, n, runs, dx, dz, reach, spring, scratch, law, rule):
+@nb.njit(error_model="numpy", _nrt=False)
+def _repeat_pairs(times, q, v, rim, f, n, spring, shape, pairs, rule):
     for _ in range(times):
-        forces.add_pair_forces(q, v, rim, f, n, runs, dx, dz, reach, spring, scratch, law, rule, 0.0)
+        forces.add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rule, 0.0)
 
 
-@nb.njit(error_model="numpy")
-def _repeat_walls(times, q, v, rim, f, n, disk, normal, gap, spring, law, rule):
+@nb.njit(error_model="numpy", _nrt=False)
+def _repeat_walls(times, q, v, rim, f, n, spring, shape, walls, rule):
     for _ in range(times):
-        forces.add_wall_forces(q, v, rim, f, n, disk, normal, gap, spring, law, rule, 0.0)
+        forces.add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, 0.0)
 
 
-@nb.njit(error_model="numpy")
-def _repeat_integration(times, q, v, a, a_before, force, inverse_mass, predicted):
+@nb.njit(error_model="numpy", _nrt=False)
+def _repeat_integration(times, scheme, q, v, memory, inverse_mass):
+    a, b, c, force, seen = memory
     for _ in range(times):
-        beeman._correct(q, v, a, a_before, force, inverse_mass, predicted, 0.0, True)
+        stepping.end_and_begin(scheme, q, v, a, b, c, force, inverse_mass, seen, 0.0)
 
 
 @nb.njit(error_model="numpy")
@@ -85,20 +86,19 @@ def profile(layers: int, per_row: int, friction: float, settle: int) -> list[dic
     problem = slab(layers, per_row, friction)
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", TIME_STEP)
     dynamics.advance(settle)
-    # as in kernels.forces.forces; the weights, radii and loads are not timed by themselves
-    n, _, inverse_mass, _, rim, _, _, runs, dx, dz, reach, spring, scratch, law, *rest = dynamics.model
-    wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule = rest
+    # as in kernels.forces; the weights, radii and loads are not timed by themselves
+    model = dynamics.model
+    n, rule, rim, walls = model.n, model.rule, model.rim, model.walls
+    spring = None if model.pairs.spring is None else aligned(model.pairs.spring)
+    pairs = model.pairs._replace(spring=spring)
     q, v, f = aligned(dynamics.q), aligned(dynamics.v), aligned_zeros(dynamics.q.size)
-    spring = None if spring is None else aligned(spring)
-    history = aligned(dynamics.history)
+    memory = stepping.Memory(*(row if row is None else aligned(row) for row in dynamics.rows))
     times = 200
     parts = {
-        "pair forces": lambda: _repeat_pairs(times, q, v, rim, f, n, runs, dx, dz, reach, spring, scratch, law, rule),
-        "wall forces": lambda: _repeat_walls(
-            times, q, v, rim, f, n, wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule
-        ),
+        "pair forces": lambda: _repeat_pairs(times, q, v, rim, f, n, spring, pairs.shape, pairs, rule),
+        "wall forces": lambda: _repeat_walls(times, q, v, rim, f, n, walls.spring, walls.shape, walls, rule),
         "integration": lambda: _repeat_integration(
-            times, q, v, history[0], history[1], history[2], inverse_mass, dynamics.predicted
+            times, dynamics.integrator.scheme, q, v, memory, model.inverse_mass
         ),
         "watching displacements": lambda: _repeat_look(times, q, v, n, 0.5),
     }

@@ -7,6 +7,7 @@ group to group as there. Groups that neither draw a figure of the paper nor chec
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import tempfile
@@ -14,7 +15,6 @@ import time
 from contextlib import nullcontext
 from pathlib import Path
 
-import yaml
 from startup import run
 from timing import write
 
@@ -24,8 +24,8 @@ EXTENSIONS = ("slab_comparison", "sensitivity", "stability")
 
 def groups() -> list[str]:
     """Figure groups in the order in which they can run."""
-    stages = yaml.safe_load((ROOT / "dvc.yaml").read_text(encoding="utf-8"))["stages"]
-    return [group for kind in ("simulate", "derive", "stress") for group in stages[kind]["foreach"]]
+    listed = ROOT / "src" / "granular_response" / "paper" / "groups" / "groups.json"
+    return list(json.loads(listed.read_text(encoding="utf-8"))["groups"])
 
 
 def main(path: str, folder: str | None = None) -> None:

@@ -33,10 +33,9 @@ def all_walls(dynamics: Dynamics) -> None:
     disk, wall = np.tile(np.arange(n), 3), np.repeat(np.arange(3, dtype=np.int8), n)
     gap = problem.packing.box.wall_gap(c.reference[disk], problem.packing.radius[disk], wall)
     dynamics.candidates = replace(c, wall_disk=disk, wall=wall, wall_gap=gap)
-    model = list(dynamics.model)
     dynamics.wall_normal = wall_normals(wall)
-    model[14], model[15], model[16] = disk, dynamics.wall_normal, gap
-    dynamics.model = tuple(model)
+    walls = dynamics.model.walls._replace(disk=disk, normal=dynamics.wall_normal, gap=gap)
+    dynamics.model = dynamics.model._replace(walls=walls)
 
 
 def search_often(dynamics: Dynamics, steps: int, every: int = 100) -> None:
@@ -66,7 +65,7 @@ def main(path: str) -> None:
     # rotations and tangential springs where nothing rubs: a friction too small to be felt switches them on
     _, plain = settled(0.0)
     problem = Problem.from_scene(scene(0.0))
-    tiny = replace(problem, pair_law=(*problem.pair_law[:4], 1e-300, problem.pair_law[5]))
+    tiny = replace(problem, pair_law=Problem.from_scene(scene(0.2)).pair_law._replace(friction=1e-300))
     forced = Dynamics(tiny, tiny.bare_state(), "beeman", TIME_STEP)
     forced.advance(20_000)
     rows.append(

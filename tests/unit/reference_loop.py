@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from granular_response.contact import Linear
+
 
 @dataclass
 class Material:
@@ -18,7 +20,7 @@ class Material:
 
     @property
     def law(self):
-        return (self.kn, self.nun, self.kt, self.nut, self.mu, self.least)
+        return Linear(self.kn, self.nun, self.kt, self.nut, self.mu, self.least)
 
 
 def contact_force(m: Material, overlap, velocity_normal, velocity_tangential, spring, dt, literal=False):

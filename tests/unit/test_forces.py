@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from reference_loop import Material, forces
 
-from granular_response.contact.linear import CUT, LITERAL
+from granular_response.contact import CUT, LITERAL
 from granular_response.contact.pair import frictional_pair, frictionless_pair
 from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
+from granular_response.kernels.model import Pairs, Walls
 from granular_response.scene import SlabPacking
 
 
@@ -29,11 +30,12 @@ def run_kernel(position, velocity, spin, radius, first, second, springs, materia
     spring[slot] = springs
     out = np.zeros(3 * n if friction else 2 * n)
     size = len(out)
-    add_pair_forces(
-        q[:size], v[:size], radius * spin if friction else None, out, n, runs,
-        np.ascontiguousarray(d[0]), np.ascontiguousarray(d[1]), radius[i] + radius[j],
-        spring if friction else None, np.zeros(SCRATCH), material.law, rule, dt,
+    pairs = Pairs(
+        runs, np.ascontiguousarray(d[0]), np.ascontiguousarray(d[1]), radius[i] + radius[j], None,
+        spring if friction else None, np.zeros(SCRATCH), material.law,
     )  # fmt: skip
+    rim = radius * spin if friction else None
+    add_pair_forces(q[:size], v[:size], rim, out, n, pairs.spring, pairs.shape, pairs, rule, dt)
     force = out[: 2 * n].reshape(2, n).T
     torque = -radius * out[2 * n :] if friction else np.zeros(n)
     return force, torque, spring[slot], spring, slot
@@ -244,20 +246,18 @@ def agrees_to_the_bit(runs, order, n, friction, rule):
         moved = dx[s] + (q[i] - q[j]), dz[s] + (q[n + i] - q[n + j]), v[i] - v[j], v[n + i] - v[n + j]
         if rough:
             px, pz, pt, springs[s] = frictional_pair(
-                *moved, rim[i] + rim[j], reach[s], spring[s], material.law, rule, dt
+                *moved, rim[i] + rim[j], reach[s], None, spring[s], material.law, rule, dt
             )  # fmt: skip
             expected[2 * n + i] += pt
             expected[2 * n + j] += pt
         else:
-            px, pz = frictionless_pair(*moved, reach[s], material.law)
+            px, pz = frictionless_pair(*moved, reach[s], None, material.law)
         expected[i] += px
         expected[j] -= px
         expected[n + i] += pz
         expected[n + j] -= pz
-    add_pair_forces(
-        q, v, rim if rough else None, f, n, runs, dx, dz, reach, spring if rough else None, np.zeros(SCRATCH),
-        material.law, rule, dt,
-    )  # fmt: skip
+    pairs = Pairs(runs, dx, dz, reach, None, spring if rough else None, np.zeros(SCRATCH), material.law)
+    add_pair_forces(q, v, rim if rough else None, f, n, pairs.spring, None, pairs, rule, dt)
     assert np.array_equal(f, expected)
     assert np.array_equal(spring, springs)
 
@@ -275,10 +275,8 @@ def test_wall_by_hand(wall, rule):
     v = np.array([-0.3 * nx - along * nz, -0.3 * nz + along * nx, spin])
     q = np.array([-0.01 * nx, -0.01 * nz, 0.0])
     f, spring = np.zeros(3), np.array([1e-4])
-    add_wall_forces(
-        q, v, np.array([1.0 * spin]), f, 1, np.array([0]), np.array([[nx, nz]]), np.zeros(1), spring, material.law,
-        rule, dt,
-    )  # fmt: skip
+    walls = Walls(np.array([0]), np.array([[nx, nz]]), np.zeros(1), None, spring, material.law)
+    add_wall_forces(q, v, np.array([1.0 * spin]), f, 1, spring, None, walls, rule, dt)
     fn = 10.0 + 3.0
     slip = along - spin
     ft = -(800.0 * (1e-4 + slip * dt) + 5.0 * slip)
@@ -289,17 +287,14 @@ def test_wall_by_hand(wall, rule):
 
 def test_open_wall_contact_forgets_its_spring():
     f, spring = np.zeros(3), np.array([1e-2])
-    add_wall_forces(
-        np.array([0.0, 1e-9, 0.0]), np.zeros(3), np.zeros(1), f, 1, np.array([0]), np.array([[0.0, 1.0]]),
-        np.zeros(1), spring, Material().law, CUT, 1e-3,
-    )  # fmt: skip
+    walls = Walls(np.array([0]), np.array([[0.0, 1.0]]), np.zeros(1), None, spring, Material().law)
+    add_wall_forces(np.array([0.0, 1e-9, 0.0]), np.zeros(3), np.zeros(1), f, 1, spring, None, walls, CUT, 1e-3)
     assert not f.any() and spring[0] == 0
 
 
 def test_frictionless_wall_beside_rotating_disks():
     f = np.zeros(3)
-    add_wall_forces(
-        np.array([0.3, -0.01, 0.0]), np.array([1.0, 0.0, 1.0]), np.array([1.0]), f, 1, np.array([0]),
-        np.array([[0.0, 1.0]]), np.zeros(1), None, Material(mu=0.0).law, CUT, 1e-3,
-    )  # fmt: skip
+    walls = Walls(np.array([0]), np.array([[0.0, 1.0]]), np.zeros(1), None, None, Material(mu=0.0).law)
+    q, v = np.array([0.3, -0.01, 0.0]), np.array([1.0, 0.0, 1.0])
+    add_wall_forces(q, v, np.array([1.0]), f, 1, None, None, walls, CUT, 1e-3)
     assert f == pytest.approx([0.0, 30.0, 0.0])

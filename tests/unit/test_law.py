@@ -7,22 +7,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 from reference_loop import Material, contact_force
 
-from granular_response.contact.linear import normal_force, tangential_cut, tangential_literal
+from granular_response.contact import Linear
+from granular_response.contact.coulomb import tangential_cut, tangential_literal
+from granular_response.contact.law import normal_force
 
 # round numbers: k_N 1000, nu_N 10, k_T 800, nu_T 5, mu 0.5
-LAW = (1000.0, 10.0, 800.0, 5.0, 0.5, -math.inf)
-NO_PULL = (*LAW[:5], 0.0)
+LAW = Linear(1000.0, 10.0, 800.0, 5.0, 0.5, -math.inf)
+NO_PULL = LAW._replace(least_force=0.0)
 
 
 def test_head_on():
-    assert normal_force(0.01, -0.3, LAW) == pytest.approx(10.0 + 3.0)
-    assert normal_force(0.01, 0.3, LAW) == pytest.approx(10.0 - 3.0)
+    assert normal_force(0.01, None, -0.3, LAW) == pytest.approx(10.0 + 3.0)
+    assert normal_force(0.01, None, 0.3, LAW) == pytest.approx(10.0 - 3.0)
 
 
 def test_dashpot_may_pull_unless_cut_off():
-    assert normal_force(0.001, 2.0, LAW) == pytest.approx(1.0 - 20.0)
-    assert normal_force(0.001, 2.0, NO_PULL) == 0.0
-    assert normal_force(0.01, 0.3, NO_PULL) == normal_force(0.01, 0.3, LAW)
+    assert normal_force(0.001, None, 2.0, LAW) == pytest.approx(1.0 - 20.0)
+    assert normal_force(0.001, None, 2.0, NO_PULL) == 0.0
+    assert normal_force(0.01, None, 0.3, NO_PULL) == normal_force(0.01, None, 0.3, LAW)
 
 
 def test_sticking():
@@ -69,7 +71,7 @@ finite = st.floats(-5.0, 5.0, allow_nan=False)
 @given(overlap=st.floats(1e-6, 0.1), normal=finite, slip=finite, spring=st.floats(-0.02, 0.02), dt=st.floats(0.0, 1e-2))
 def test_agrees_with_the_plain_law(overlap, normal, slip, spring, dt):
     material = Material(1000.0, 10.0, 800.0, 5.0, 0.5)
-    fn = normal_force(overlap, normal, LAW)
+    fn = normal_force(overlap, None, normal, LAW)
     for literal, kernel in ((False, tangential_cut), (True, tangential_literal)):
         expected = contact_force(material, overlap, normal, slip, spring, dt, literal)
         assert (fn, *kernel(spring, slip, fn, LAW, dt)) == pytest.approx(expected, rel=1e-12, abs=1e-13)

@@ -30,9 +30,9 @@ def by_rows(dense, b):
 def test_banded_lu(n, b):
     dense = banded(n, b, 3)
     stored = by_rows(dense, b)
-    band_lu.factorise(stored, b)
+    band_lu.factorise(stored.ravel(), len(stored), b)
     x = np.arange(1.0, n + 1.0)
-    band_lu.solve(stored, b, x)
+    band_lu.solve(stored.ravel(), len(stored), b, x)
     assert x == pytest.approx(np.linalg.solve(dense, np.arange(1.0, n + 1.0)), rel=1e-12)
 
 
@@ -40,7 +40,7 @@ def test_banded_lu(n, b):
 def test_four_rows_at_once_give_the_bits_of_one_by_one(n, b):
     dense = banded(n, b, 5)
     stored = by_rows(dense, b)
-    band_lu.factorise(stored, b)
+    band_lu.factorise(stored.ravel(), len(stored), b)
     for k in range(n):
         for i in range(k + 1, min(n, k + b + 1)):
             dense[i, k] *= 1.0 / dense[k, k]

@@ -12,7 +12,6 @@ from matplotlib.colors import to_rgba
 import granular_response as gr
 from granular_response.plot import field, network, pictures, style
 from granular_response.state import Box
-from granular_response.store import files
 
 matplotlib.use("Agg")
 
@@ -50,7 +49,7 @@ def test_forces_are_those_that_the_load_adds(result, ax):
     gr.plot.forces(result, ax=ax, scale="linear")
     data = result.to_dataset()
     rest, loaded = (pictures.Shown.of(data, k) for k in (0, 2))
-    added = np.concatenate([loaded.pair_force() - rest.pair_force(), loaded.wall_force() - rest.wall_force()])
+    added = np.concatenate([loaded.values(f) - rest.values(f) for f in ("contact_force", "wall_force")])
     size = np.linalg.norm(added, axis=1)
     black, red = lines(ax, style.BLACK), lines(ax, style.VERMILION)
     drawn = np.concatenate([np.array(c.get_segments()) for c in (black, red)])
@@ -184,18 +183,17 @@ def test_bad_input_is_named(result, ax):
 
 
 def test_files_are_pictures_of_results(result, tmp_path):
-    result.save(tmp_path / "result.nc")
     for suffix, begins in {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}.items():
-        path = pictures.draw_file(tmp_path / "result.nc", tmp_path / f"new/picture{suffix}", ["response"])
+        path = pictures.save(result, tmp_path / f"new/picture{suffix}", ["response"])
         assert path.read_bytes().startswith(begins)
     with pytest.raises(pictures.PictureError, match=r"picture\.jpg: format '\.jpg' is unknown, must be"):
-        pictures.draw_file(tmp_path / "result.nc", tmp_path / "picture.jpg", ["response"])
+        pictures.save(result, tmp_path / "picture.jpg", ["response"])
     (tmp_path / "folder.pdf").mkdir()
     with pytest.raises(pictures.PictureError, match="cannot be written"):
-        pictures.draw_file(tmp_path / "result.nc", tmp_path / "folder.pdf", ["response"])
-    files.write(tmp_path / "study.nc", {"group": result.to_dataset()[["radius"]]})
-    with pytest.raises(pictures.PictureError, match="holds no states"):
-        pictures.draw_file(tmp_path / "study.nc", tmp_path / "picture.pdf", ["response"])
+        pictures.save(result, tmp_path / "folder.pdf", ["response"])
+    with pytest.raises(pictures.PictureError, match="is read by the same command"):
+        pictures.save(result, path, ["response"], inputs=[path])
+    assert path.read_bytes().startswith(b"<?xml")
 
 
 def test_pairs_across_periodic_sides_are_two_half_lines(ax):

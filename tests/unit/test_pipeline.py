@@ -2,6 +2,7 @@
 
 import ast
 import functools
+import re
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 
 PIPELINE = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
+GROUPS = yaml.safe_load((SOURCE / "granular_response/paper/groups/groups.json").read_text())["groups"]
 PARAMETERS = yaml.safe_load((ROOT / "params.yaml").read_text())
 
 SIMULATION = [
@@ -25,18 +27,25 @@ SIMULATION = [
 #: Modules at which a stage starts; {} is its figure group.
 STARTS = {
     "simulate": SIMULATION,
-    "derive": SIMULATION,
-    "stress": SIMULATION,
     "draw": ["granular_response.paper.pipeline.drawing", "granular_response.paper.groups.{}.draw"],
     "claims": ["granular_response.paper.claims.table"],
-    "report": ["granular_response.paper.report"],
+    "report": [
+        "granular_response.paper.report",
+        *(f"granular_response.paper.groups.{group}.captions" for group in NAMES),
+    ],
 }
+
+
+def groups_of(kind):
+    """The groups that have a stage of this kind; None for a stage of all of them."""
+    assert PIPELINE[kind].get("foreach", "${groups}") == "${groups}"
+    return list(GROUPS) if "foreach" in PIPELINE[kind] else [None]
 
 
 def stages():
     """Every single stage: its name as DVC has it, its kind, its group and its definition."""
     for kind, definition in PIPELINE.items():
-        for group in definition.get("foreach", [None]):
+        for group in groups_of(kind):
             template = definition["do"] if group else definition
             yield pytest.param(kind, group, fill(template, group), id=f"{kind}@{group}" if group else kind)
 
@@ -46,12 +55,12 @@ def fill(value, group):
         return {fill(key, group): fill(entry, group) for key, entry in value.items()}
     if isinstance(value, list):
         return [fill(entry, group) for entry in value]
-    return value.replace("${item}", str(group)) if isinstance(value, str) else value
+    if group is None or not isinstance(value, str):
+        return value
+    return value.replace("${key}", group).replace("${item.needs}", GROUPS[group]["needs"])
 
 
 STAGES = list(stages())
-#: Kinds of stages that store the datasets of a group.
-SIMULATING = ("simulate", "derive", "stress")
 
 
 def file_of(module: str) -> Path | None:
@@ -133,7 +142,7 @@ def test_every_imported_module_is_a_dependency(kind, group, definition):
 @pytest.mark.parametrize("kind", PIPELINE)
 def test_every_dependency_is_imported_by_some_group(kind):
     """One list serves all groups of a kind, so a module may be needed by one of them only."""
-    groups = PIPELINE[kind].get("foreach", [None])
+    groups = groups_of(kind)
     files = set().union(*(imported_files(kind, group) for group in groups if group_exists(kind, group)))
     template = PIPELINE[kind].get("do", PIPELINE[kind])
     needless = [
@@ -160,7 +169,7 @@ def test_dependencies_and_parameters_exist(kind, group, definition):
 
 @pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
 def test_stages_have_the_agreed_form(kind, group, definition):
-    if kind in SIMULATING:
+    if kind == "simulate":
         assert definition["cmd"] == f"granular-response simulate {group}"
         assert definition["outs"] == [f"data/{group}.nc"]
         assert definition["params"] == ["common", group]
@@ -171,20 +180,19 @@ def test_stages_have_the_agreed_form(kind, group, definition):
         assert "params" not in definition
 
 
-def test_every_group_has_both_stages():
-    simulated = [group for kind in SIMULATING for group in PIPELINE[kind]["foreach"]]
-    assert sorted(simulated) == sorted(PIPELINE["draw"]["foreach"])
-
-
 def test_what_is_derived_comes_after_the_data_that_it_reads():
-    for group in PIPELINE["derive"]["foreach"]:
-        assert PARAMETERS[group]["responses"] in PIPELINE["derive"]["do"]["deps"]
+    for group, section in PARAMETERS.items():
+        if "responses" in section:
+            assert GROUPS[group]["needs"] == section["responses"]
 
 
 def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():
     folders = {path.parent.name for path in SOURCE.glob("granular_response/paper/groups/*/__init__.py")}
     assert len(NAMES) == len(set(NAMES)) and set(NAMES) == folders == set(PARAMETERS) - {"common"}
-    assert PIPELINE["draw"]["foreach"] == list(NAMES)
+    assert list(NAMES) == list(GROUPS) and groups_of("simulate") == groups_of("draw") == list(NAMES)
+    assert [f"figures/{group}" for group in sorted(NAMES)] == [
+        dependency for dependency in PIPELINE["report"]["deps"] if re.fullmatch(r"figures/\w+", dependency)
+    ]
 
 
 @pytest.mark.parametrize("group", NAMES)
@@ -237,4 +245,4 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, change, said):
 def test_dvc_reads_the_pipeline():
     repo = pytest.importorskip("dvc.repo")
     names = {stage.addressing for stage in repo.Repo(ROOT).index.stages}
-    assert {f"draw@{group}" for group in PIPELINE["draw"]["foreach"]} <= names
+    assert {f"{kind}@{group}" for kind in ("simulate", "draw") for group in NAMES} <= names

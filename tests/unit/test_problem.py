@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
+from granular_response.contact import Linear
 from granular_response.solve import Problem
 from granular_response.solve.problem import carry_springs, static_contacts
 
@@ -73,9 +74,9 @@ def test_candidates_hold_every_contact_within_their_limit(move):
 
 
 def test_static_contacts_by_hand():
-    law = (1000.0, 0.0, 800.0, 0.0, 0.5, -np.inf)
+    law = Linear(1000.0, 0.0, 800.0, 0.0, 0.5, -np.inf)
     spring = np.array([1e-3, -1e-3, 1e-3])
-    c = static_contacts([0, 1, 2], [3, 4, 5], np.array([0.01, 0.001, -0.001]), spring, law)
+    c = static_contacts([0, 1, 2], [3, 4, 5], np.array([0.01, 0.001, -0.001]), spring, None, law)
     assert c.normal_force == pytest.approx([10.0, 1.0, 0.0])
     assert c.tangential_force == pytest.approx([-0.8, 0.8, 0.0])
     assert c.status.tolist() == [1, 2, 0]

@@ -61,7 +61,8 @@ def twisted(integrator: str, part: float) -> float:
     )
     down = state.position - [[0.0, 1.0 / 6000.0]]
     state = replace(state, position=down, velocity=np.array([[1e-6, 0.0]]), angular_velocity=np.array([2e-6]))
-    step = part * oscillator_limit(integrator, 0.0, 3 * problem.wall_law[3], 3 * problem.wall_law[2])
+    law = problem.wall_law
+    step = part * oscillator_limit(integrator, 0.0, 3 * law.tangential_damping, 3 * law.tangential_stiffness)
     dynamics = Dynamics(problem, state, integrator, step)
     dynamics.set_ramps()
     before = dynamics.kinetic_energy()

@@ -35,8 +35,8 @@ def mechanical_energy(dynamics: Dynamics) -> float:
     problem, state = dynamics.problem, dynamics.state()
     total = dynamics.kinetic_energy() * problem.n + float(problem.weight @ state.position[:, 1])
     for contacts, law in ((state.pairs, problem.pair_law), (state.walls, problem.wall_law)):
-        total += 0.5 * law[0] * float((np.maximum(contacts.overlap, 0.0) ** 2).sum())
-        total += 0.5 * law[2] * float((contacts.spring**2).sum()) if law[4] else 0.0
+        total += 0.5 * law.normal_stiffness * float((np.maximum(contacts.overlap, 0.0) ** 2).sum())
+        total += 0.5 * law.tangential_stiffness * float((contacts.spring**2).sum())
     return total
 
 

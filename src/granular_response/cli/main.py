@@ -288,10 +288,12 @@ def plot(
 ) -> None:
     """Draw a result: response, force chains, contacts and stress on one page."""
     from ..plot import pictures
+    from ..store.checked import read_result
 
     _loaded()
 
-    typer.echo(str(pictures.draw_file(result, output, what.split(","), state=state, scale=scale)))
+    stored = read_result(result)
+    typer.echo(str(pictures.save(stored, output, what.split(","), state=state, scale=scale, inputs=[result])))
 
 
 @app.command(

@@ -1,1 +1,11 @@
-"""Contact laws: the force of one contact from its overlap and motion (Sec. III.A)."""
+"""Contact laws: one file each for the part along the normal, one for what all have along the tangent (Sec. III.A)."""
+
+from .coulomb import CUT, LITERAL
+from .hertz import Hertz
+from .law import Law
+from .linear import Linear
+
+#: By the name that a scene file has for them.
+LAWS: dict[str, type[Law]] = {"linear": Linear, "hertz": Hertz}
+
+__all__ = ["CUT", "LAWS", "LITERAL", "Hertz", "Law", "Linear"]

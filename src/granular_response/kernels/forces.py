@@ -13,8 +13,7 @@ the force of the pair it is first in before that of the pair it is second in, al
 
 from __future__ import annotations
 
-from ..contact.linear import LITERAL, normal_force, tangential_cut, tangential_literal
-from ..contact.pair import frictional_pair, frictionless_pair
+from ..contact.pair import frictional, frictional_pair, frictionless, frictionless_pair
 from ..machine.lanes import WIDTH, gather, put, spread, take
 from ..machine.machine_code import kernel
 
@@ -24,27 +23,34 @@ _BLOCK = 64
 #: Length of the scratch that this takes.
 SCRATCH = 3 * _BLOCK
 
+@kernel(forceinline=True)
+def _shape_at(shape, k, like):
+    """What the law needs of the bodies from contact ``k`` on; None for a law that needs nothing."""
+    if shape is None:
+        return None
+    return take(shape, k, like)
 
 @kernel(forceinline=True)
-def _forces_at(like, i, j, s, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt):
+def _forces_at(like, i, j, s, n, q, v, rim, spring, shape, pairs, rule, dt):
     """Force on the first disk, and its tangential part, of the pair of disks ``i`` and ``j`` in slot ``s``.
 
     Or of as many pairs from there on as ``like`` has lanes. Springs advance.
     """
-    dx = take(dx0, s, like) + (take(q, i, like) - take(q, j, like))
-    dz = take(dz0, s, like) + (take(q, n + i, like) - take(q, n + j, like))
+    dx = take(pairs.dx, s, like) + (take(q, i, like) - take(q, j, like))
+    dz = take(pairs.dz, s, like) + (take(q, n + i, like) - take(q, n + j, like))
     du = take(v, i, like) - take(v, j, like)
     dw = take(v, n + i, like) - take(v, n + j, like)
+    reach = take(pairs.reach, s, like)
+    form = _shape_at(shape, s, like)
     if spring is None:
-        px, pz = frictionless_pair(dx, dz, du, dw, take(reach, s, like), law)
+        px, pz = frictionless_pair(dx, dz, du, dw, reach, form, pairs.law)
         return px, pz, like
     rims = take(rim, i, like) + take(rim, j, like)
     px, pz, pt, new = frictional_pair(
-        dx, dz, du, dw, rims, take(reach, s, like), take(spring, s, like), law, rule, dt
+        dx, dz, du, dw, rims, reach, form, take(spring, s, like), pairs.law, rule, dt
     )  # fmt: skip
     put(spring, s, new)
     return px, pz, pt
-
 
 @kernel(forceinline=True)
 def _add(f, n, i, px, pz, pt, spring):
@@ -54,21 +60,24 @@ def _add(f, n, i, px, pz, pt, spring):
     if spring is not None:
         put(f, 2 * n + i, take(f, 2 * n + i, pt) + pt)
 
-
 @kernel
-def _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt):
-    """Add the forces of ``count`` pairs from disks ``i``, ``j`` and slot ``s`` on."""
-    k = count
+def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt):
+    """Add the forces of run ``r``."""
+    i = pairs.runs[r, 0]
+    j = pairs.runs[r, 1]
+    k = pairs.runs[r, 2]
+    s = pairs.runs[r, 3]
+    scratch = pairs.scratch
     while k % WIDTH:
         k -= 1
-        px, pz, pt = _forces_at(0.0, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+        px, pz, pt = _forces_at(0.0, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rule, dt)
         _add(f, n, i + k, px, pz, pt, spring)
         _add(f, n, j + k, -px, -pz, pt, spring)
     like = spread(0.0)
     if j - i >= WIDTH:
         while k:
             k -= WIDTH
-            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rule, dt)
             _add(f, n, i + k, px, pz, pt, spring)
             _add(f, n, j + k, -px, -pz, pt, spring)
         return
@@ -77,7 +86,7 @@ def _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, 
         start = max(k - _BLOCK, 0)
         while k > start:
             k -= WIDTH
-            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt)
+            px, pz, pt = _forces_at(like, i + k, j + k, s + k, n, q, v, rim, spring, shape, pairs, rule, dt)
             _add(f, n, i + k, px, pz, pt, spring)
             put(scratch, k - start, px)
             put(scratch, _BLOCK + k - start, pz)
@@ -90,36 +99,36 @@ def _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, 
             pt = take(scratch, 2 * _BLOCK + end - start, like)
             _add(f, n, j + end, -px, -pz, pt, spring)
 
-
 @kernel
-def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, scratch, law, rule, dt):
-    """Add the forces of the runs of count one, ``singles`` (s, 4), several at once.
-
-    Their slots follow one another. Other arguments as in :func:`add_pair_forces`.
-    """
-    count = singles.shape[0]
-    whole = count - count % WIDTH
+def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rule, dt):
+    """Add the forces of the runs of count one, from ``start`` on, several at once; their slots follow one another."""
+    runs = pairs.runs
+    scratch = pairs.scratch
+    end = runs.shape[0]
+    whole = end - (end - start) % WIDTH
     like = spread(0.0)
-    for r in range(0, whole, WIDTH):
-        s = singles[r, 3]
-        dx = take(dx0, s, like) + (gather(q, 0, singles, r, 0) - gather(q, 0, singles, r, 1))
-        dz = take(dz0, s, like) + (gather(q, n, singles, r, 0) - gather(q, n, singles, r, 1))
-        du = gather(v, 0, singles, r, 0) - gather(v, 0, singles, r, 1)
-        dw = gather(v, n, singles, r, 0) - gather(v, n, singles, r, 1)
+    for r in range(start, whole, WIDTH):
+        s = runs[r, 3]
+        dx = take(pairs.dx, s, like) + (gather(q, 0, runs, r, 0) - gather(q, 0, runs, r, 1))
+        dz = take(pairs.dz, s, like) + (gather(q, n, runs, r, 0) - gather(q, n, runs, r, 1))
+        du = gather(v, 0, runs, r, 0) - gather(v, 0, runs, r, 1)
+        dw = gather(v, n, runs, r, 0) - gather(v, n, runs, r, 1)
+        reach = take(pairs.reach, s, like)
+        form = _shape_at(shape, s, like)
         if spring is None:
-            px, pz = frictionless_pair(dx, dz, du, dw, take(reach, s, like), law)
+            px, pz = frictionless_pair(dx, dz, du, dw, reach, form, pairs.law)
         else:
-            rims = gather(rim, 0, singles, r, 0) + gather(rim, 0, singles, r, 1)
+            rims = gather(rim, 0, runs, r, 0) + gather(rim, 0, runs, r, 1)
             px, pz, pt, new = frictional_pair(
-                dx, dz, du, dw, rims, take(reach, s, like), take(spring, s, like), law, rule, dt
+                dx, dz, du, dw, rims, reach, form, take(spring, s, like), pairs.law, rule, dt
             )  # fmt: skip
             put(spring, s, new)
             put(scratch, 2 * WIDTH, pt)
         put(scratch, 0, px)
         put(scratch, WIDTH, pz)
         for lane in range(WIDTH):
-            i = singles[r + lane, 0]
-            j = singles[r + lane, 1]
+            i = runs[r + lane, 0]
+            j = runs[r + lane, 1]
             f[i] += scratch[lane]
             f[j] -= scratch[lane]
             f[n + i] += scratch[WIDTH + lane]
@@ -127,18 +136,17 @@ def _add_single_pairs(q, v, rim, f, n, singles, dx0, dz0, reach, spring, scratch
             if spring is not None:
                 f[2 * n + i] += scratch[2 * WIDTH + lane]
                 f[2 * n + j] += scratch[2 * WIDTH + lane]
-    for r in range(whole, count):
-        i = singles[r, 0]
-        j = singles[r, 1]
-        px, pz, pt = _forces_at(
-            0.0, i, j, singles[r, 3], n, q, v, rim, dx0, dz0, reach, spring, law, rule, dt
-        )  # fmt: skip
+    for r in range(whole, end):
+        i = runs[r, 0]
+        j = runs[r, 1]
+        px, pz, pt = _forces_at(0.0, i, j, runs[r, 3], n, q, v, rim, spring, shape, pairs, rule, dt)
         _add(f, n, i, px, pz, pt, spring)
         _add(f, n, j, -px, -pz, pt, spring)
 
-
+# Springs and shapes are arguments of their own, beside the pairs that hold them: only of an argument does the compiler
+# know that it is None.
 @kernel
-def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, scratch, law, rule, dt):
+def add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rule, dt):
     """Add the forces of all disk-disk candidates to ``f``.
 
     Parameters
@@ -146,95 +154,72 @@ def add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, scratch, law
     q, v, f : (2 n,) or (3 n,) generalised displacements, velocities, forces. With friction the third part
         of ``f`` collects the sum of tangential forces, not yet multiplied by ``-radius``.
     rim : (n,) radius times angular velocity, or None without friction.
-    runs : (r, 4) int64 candidate runs, those of count one last; ``dx0``, ``dz0``, ``reach`` : (m,) reference
-        separation and sum of radii of each slot; ``spring`` : (m,) tangential springs, updated in place, or None
-        without friction.
-    scratch : (SCRATCH,).
-    law : tuple, see ``contact.linear``; ``rule`` : CUT or LITERAL; ``dt`` : time step of the spring update.
+    pairs : ``model.Pairs``, and its ``spring`` and ``shape``; ``rule`` : CUT or LITERAL; ``dt`` : time step of the
+        spring update.
     """
-    for r in range(runs.shape[0]):
-        i = runs[r, 0]
-        j = runs[r, 1]
-        count = runs[r, 2]
-        s = runs[r, 3]
-        if count == 1:
-            _add_single_pairs(q, v, rim, f, n, runs[r:], dx0, dz0, reach, spring, scratch, law, rule, dt)
+    for r in range(pairs.runs.shape[0]):
+        if pairs.runs[r, 2] == 1:
+            _add_single_pairs(r, n, q, v, rim, f, spring, shape, pairs, rule, dt)
             break
-        _add_run(i, j, s, count, n, q, v, rim, f, dx0, dz0, reach, spring, scratch, law, rule, dt)
-
+        _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt)
 
 @kernel
-def add_wall_forces(q, v, rim, f, n, disk, normal, gap0, spring, law, rule, dt):
-    """Add the forces of the listed disk-wall candidates to ``f``.
-
-    ``disk`` : (w,) disks that can touch a wall; ``normal`` : (w, 2) inward normals; ``gap0`` : (w,) reference
-    gap; ``spring`` : (w,) or None for frictionless walls. Other arguments as in :func:`add_pair_forces`.
-    """
-    for c in range(disk.size):
-        i = disk[c]
-        nx = normal[c, 0]
-        nz = normal[c, 1]
-        overlap = -(gap0[c] + q[i] * nx + q[n + i] * nz)
+def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
+    """Add the forces of the disk-wall candidates to ``f``; arguments as in :func:`add_pair_forces`."""
+    for c in range(walls.disk.size):
+        i = walls.disk[c]
+        nx = walls.normal[c, 0]
+        nz = walls.normal[c, 1]
+        overlap = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+        form = _shape_at(shape, c, 0.0)
         if overlap > 0.0:
-            fn = normal_force(overlap, v[i] * nx + v[n + i] * nz, law)
-            f[i] += fn * nx
-            f[n + i] += fn * nz
-            if spring is not None:
-                slip = v[n + i] * nx - v[i] * nz - rim[i]
-                if rule == LITERAL:
-                    force, new = tangential_literal(spring[c], slip, fn, law, dt)
-                else:
-                    force, new = tangential_cut(spring[c], slip, fn, law, dt)
-                spring[c] = new
-                f[i] -= force * nz
-                f[n + i] += force * nx
-                f[2 * n + i] += force
+            if spring is None:
+                fx, fz = frictionless(overlap, nx, nz, v[i], v[n + i], form, walls.law)
+            else:
+                fx, fz, ft, spring[c] = frictional(
+                    overlap, nx, nz, v[i], v[n + i], rim[i], form, spring[c], walls.law, rule, dt
+                )  # fmt: skip
+                f[2 * n + i] += ft
+            f[i] += fx
+            f[n + i] += fz
         elif spring is not None:
             spring[c] = 0.0
 
+@kernel
+def forces(q, v, f, gravity, load_factor, dt, model):
+    """Fill ``f`` with all forces and torques at ``(q, v)``; springs advance by ``dt``."""
+    _fill(q, v, f, gravity, load_factor, dt, model.rim, model.pairs, model.walls, model)
 
 @kernel
-def forces(
-    q, v, f, gravity, load_factor, dt,
-    n, weight, inverse_mass, radius, rim, load, load_disk,
-    runs, dx0, dz0, reach, spring, scratch, pair_law,
-    wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule,
-):  # fmt: skip
-    """Fill ``f`` with all forces and torques at ``(q, v)``; springs advance by ``dt``.
-
-    The arguments from ``n`` on describe the scene and stay the same from step to step; integrators pass them
-    as one tuple, the *model*. ``weight`` : (n,), multiplied by ``gravity``; ``load`` : (l, 3) force and torque
-    on the disks ``load_disk`` (l,), multiplied by ``load_factor``; ``inverse_mass`` : like ``q``, moments of
-    inertia included, for those who need accelerations; ``rim`` : (n,) scratch, or None without rotations.
-    """
+def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, model):
+    n = model.n
+    weight = model.weight
+    radius = model.radius
     for i in range(n):
         f[i] = 0.0
     for i in range(n):
         f[n + i] = -gravity * weight[i]
     if rim is not None:
-        spin = v[2 * n :]
-        total = f[2 * n :]
         for i in range(n):
-            rim[i] = radius[i] * spin[i]
-            total[i] = 0.0
-    add_pair_forces(q, v, rim, f, n, runs, dx0, dz0, reach, spring, scratch, pair_law, rule, dt)
-    add_wall_forces(q, v, rim, f, n, wall_disk, wall_normal, wall_gap, wall_spring, wall_law, rule, dt)
+            rim[i] = radius[i] * v[2 * n + i]
+            f[2 * n + i] = 0.0
+    add_pair_forces(q, v, rim, f, n, pairs.spring, pairs.shape, pairs, model.rule, dt)
+    add_wall_forces(q, v, rim, f, n, walls.spring, walls.shape, walls, model.rule, dt)
     if rim is not None:
-        total = f[2 * n :]
         for i in range(n):
-            total[i] *= -radius[i]
-    for c in range(load_disk.size):
-        i = load_disk[c]
+            f[2 * n + i] *= -radius[i]
+    load = model.load
+    for c in range(model.load_disk.size):
+        i = model.load_disk[c]
         f[i] += load_factor * load[c, 0]
         f[n + i] += load_factor * load[c, 1]
         if rim is not None:
             f[2 * n + i] += load_factor * load[c, 2]
 
-
 @kernel
 def accelerations(q, v, a, gravity, load_factor, dt, model):
     """Fill ``a`` with all accelerations; arguments as of :func:`forces`."""
-    forces(q, v, a, gravity, load_factor, dt, *model)
-    inverse_mass = model[2]
+    forces(q, v, a, gravity, load_factor, dt, model)
+    inverse_mass = model.inverse_mass
     for k in range(a.size):
         a[k] *= inverse_mass[k]

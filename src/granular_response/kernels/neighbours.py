@@ -137,24 +137,21 @@ def run_pairs(runs):
 
 
 @kernel
-def mark_closed(q, reference, radius, first, second, wall_disk, wall_normal, wall_gap, closed):
+def mark_closed(q, n, dx, dz, reach, slot, first, second, wall_disk, wall_normal, wall_gap, closed):
     """Fill ``closed``: which listed pairs overlap, then which listed wall contacts do.
 
-    ``reference`` (n, 2): centres when the list was made, ``wall_gap``: gaps at that time; ``q`` : displacements since.
+    ``dx``, ``dz``, ``reach`` (slots,): separations when the list was made and sums of radii, ``slot`` (m,) those of the
+    listed pairs; ``wall_gap``: gaps at that time; ``q`` : displacements since.
     """
     pairs = len(first)
-    n = len(radius)
     for k in range(pairs):
-        i, j = first[k], second[k]
-        dx = (reference[i, 0] + q[i]) - (reference[j, 0] + q[j])
-        dz = (reference[i, 1] + q[n + i]) - (reference[j, 1] + q[n + j])
-        reach = radius[i] + radius[j]
-        closed[k] = dx * dx + dz * dz < reach * reach
+        i, j, s = first[k], second[k], slot[k]
+        x = dx[s] + (q[i] - q[j])
+        z = dz[s] + (q[n + i] - q[n + j])
+        closed[k] = x * x + z * z < reach[s] * reach[s]
     for k in range(len(wall_disk)):
         i = wall_disk[k]
-        shift_x = (reference[i, 0] + q[i]) - reference[i, 0]
-        shift_z = (reference[i, 1] + q[n + i]) - reference[i, 1]
-        closed[pairs + k] = wall_gap[k] + (wall_normal[k, 0] * shift_x + wall_normal[k, 1] * shift_z) < 0.0
+        closed[pairs + k] = wall_gap[k] + (wall_normal[k, 0] * q[i] + wall_normal[k, 1] * q[n + i]) < 0.0
 
 
 @kernel

@@ -8,16 +8,71 @@ so there is no linearised geometry. A contact that closes within the increment c
 it closed.
 
 Vectors are laid out ``[x | z | angle]`` as everywhere in ``kernels``. For contact ``c`` the local tangent
-``G[c]`` (3, 3) is the derivative of ``(f_x, f_z, f_t)`` on the first disk with respect to
+``tangent[c]`` (3, 3) is the derivative of ``(f_x, f_z, f_t)`` on the first disk with respect to
 ``(w_x, w_z, rho)``, the relative displacement and ``R_i theta_i + R_j theta_j``.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact.coulomb import return_map
+from ..contact.law import elastic_force, energy, stiffness
 from ..machine.machine_code import kernel
 from ..state.status import OPEN, SLIDING, STICKING
+
+Floats = NDArray[Any]
+
+
+class Pairs(NamedTuple):
+    """(m,) listed contacts between disks at zero displacement."""
+
+    first: NDArray[Any]
+    second: NDArray[Any]
+    dx: Floats  #: separation
+    dz: Floats
+    gap: Floats
+    shape: Floats | None  #: what the law needs of the radii
+    law: Any
+
+
+class Walls(NamedTuple):
+    """(w,) listed contacts of disks with walls at zero displacement."""
+
+    disk: NDArray[Any]
+    normal: Floats  #: (w, 2) inward
+    gap: Floats
+    shape: Floats | None
+    law: Any
+
+
+class Known(NamedTuple):
+    """What contacts remember of the converged configuration at the beginning of an increment."""
+
+    overlap: Floats  #: (m,)
+    spring: Floats | None  #: (m,); None without friction
+    limits: Floats | None  #: (m,) fixed Coulomb limits in place of ``mu f_n``; None for the true law
+
+
+class Response(NamedTuple):
+    """Contact forces at a trial configuration, to be filled."""
+
+    overlap: Floats  #: (m,)
+    normal: Floats
+    tangential: Floats
+    spring: Floats
+    status: NDArray[Any]
+    tangent: Floats  #: (m, 3, 3)
+
+    @classmethod
+    def empty(cls, size: int) -> Response:
+        """Room for ``size`` contacts."""
+        overlap, normal, tangential, spring = np.zeros((4, size))
+        return cls(overlap, normal, tangential, spring, np.zeros(size, np.int8), np.empty((size, 3, 3)))
 
 
 @kernel
@@ -46,135 +101,177 @@ def _fill_tangent(g, nx, nz, normal, tangential, inverse, k, kt_w_t, kt_w_n, kt_
     g[2, 2] = kt_rho
 
 
-@kernel
-def pair_statics(
-    q, q0, n, first, second, dx0, dz0, gap0, radius, overlap0, spring0, limits, law,
-    overlap, normal, tangential, spring, status, force, g,
-):  # fmt: skip
-    """Forces of disk-disk contacts at ``q`` and their local tangents.
+@kernel(forceinline=True)
+def _shape_at(shape, c):
+    if shape is None:
+        return None
+    return shape[c]
 
-    ``dx0, dz0, gap0`` : (m,) separation and gap at zero displacement; ``overlap0, spring0`` : (m,) at ``q0``
-    (``spring0`` None without friction). Filled: ``overlap, normal, tangential, spring, status`` (m,), the
-    generalised contact force ``force`` (dof,) is added to, and ``g`` (m, 3, 3). ``limits`` : (m,) gives every
-    contact a fixed Coulomb limit in place of ``mu f_n`` (None: the true law); the tangent is then symmetric.
+
+@kernel(forceinline=True)
+def _open(c, rubs, out):
+    out.status[c] = OPEN
+    out.normal[c] = 0.0
+    if rubs is not None:
+        out.tangential[c] = 0.0
+        out.spring[c] = 0.0
+    out.tangent[c, :, :] = 0.0
+
+
+@kernel(forceinline=True)
+def _press(c, xi, nx, nz, inverse, shape, law, out):
+    """Closed contact without friction; returns the normal force."""
+    form = _shape_at(shape, c)
+    fn = elastic_force(law, xi, form)
+    out.normal[c] = fn
+    out.status[c] = STICKING
+    _fill_tangent(out.tangent[c], nx, nz, fn, 0.0, inverse, stiffness(law, xi, form), 0.0, 0.0, 0.0, 0.0)
+    return fn
+
+
+@kernel(forceinline=True)
+def _rub(c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overlap0, spring0, limits, out):
+    """Closed contact with friction; returns normal and tangential force.
+
+    ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal.
     """
-    k, kt, mu = law[0], law[2], law[4]
-    for c in range(first.size):
-        i = first[c]
-        j = second[c]
+    form = _shape_at(shape, c)
+    fn = elastic_force(law, xi, form)
+    k = stiffness(law, xi, form)
+    share = 1.0 if overlap0[c] >= 0.0 else xi / (xi - overlap0[c])
+    limit = law.friction * fn if limits is None else limits[c]
+    ft, s, sense = return_map(spring0[c] + share * slip, limit, law)
+    if sense != 0.0:
+        out.status[c] = SLIDING
+        slides = sense * law.friction if limits is None else 0.0
+        _fill_tangent(out.tangent[c], nx, nz, fn, ft, inverse, k, 0.0, 0.0, 0.0, slides)
+    else:
+        out.status[c] = STICKING
+        stiff = law.tangential_stiffness * share
+        _fill_tangent(out.tangent[c], nx, nz, fn, ft, inverse, k, stiff * mean / distance, stiff * slip_n, stiff, 0.0)
+    out.normal[c] = fn
+    out.tangential[c] = ft
+    out.spring[c] = s
+    return fn, ft
+
+
+@kernel
+def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out, force):
+    """Forces of disk-disk contacts at ``q``, one increment after ``q0``, and their local tangents.
+
+    ``pairs`` : :class:`Pairs`, and its ``shape``; ``overlap0``, ``spring0``, ``limits`` : those of :class:`Known`;
+    ``out`` : :class:`Response`, filled; the generalised contact force ``force`` (dof,) is added to.
+    """
+    law = pairs.law
+    for c in range(pairs.first.size):
+        i = pairs.first[c]
+        j = pairs.second[c]
         ux = q[i] - q[j]
         uz = q[n + i] - q[n + j]
-        d0 = math.sqrt(dx0[c] * dx0[c] + dz0[c] * dz0[c])
-        dx = dx0[c] + ux
-        dz = dz0[c] + uz
+        dx0 = pairs.dx[c]
+        dz0 = pairs.dz[c]
+        d0 = math.sqrt(dx0 * dx0 + dz0 * dz0)
+        dx = dx0 + ux
+        dz = dz0 + uz
         d = math.sqrt(dx * dx + dz * dz)
         # |d| - |d0| without cancellation
-        stretch = (2.0 * (dx0[c] * ux + dz0[c] * uz) + ux * ux + uz * uz) / (d + d0)
-        xi = -(gap0[c] + stretch)
-        overlap[c] = xi
+        stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (d + d0)
+        xi = -(pairs.gap[c] + stretch)
+        out.overlap[c] = xi
         if xi <= 0.0:
-            status[c] = OPEN
-            normal[c] = 0.0
-            if spring0 is not None:
-                tangential[c] = 0.0
-                spring[c] = 0.0
-            g[c, :, :] = 0.0
+            _open(c, spring0, out)
             continue
         nx = dx / d
         nz = dz / d
-        fn = k * xi
-        normal[c] = fn
-        status[c] = STICKING
         if spring0 is None:
+            fn = _press(c, xi, nx, nz, 1.0 / d, shape, law, out)
             force[i] += fn * nx
             force[n + i] += fn * nz
             force[j] -= fn * nx
             force[n + j] -= fn * nz
-            _fill_tangent(g[c], nx, nz, fn, 0.0, 1.0 / d, k, 0.0, 0.0, 0.0, 0.0)
-            continue
-        wx = ux - (q0[i] - q0[j])
-        wz = uz - (q0[n + i] - q0[n + j])
-        px = dx - wx
-        pz = dz - wz
-        before = math.sqrt(px * px + pz * pz)
-        turn = math.atan2(px * wz - pz * wx, px * dx + pz * dz)
-        mean = 0.5 * (before + d)
-        roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
-        share = 1.0 if overlap0[c] >= 0.0 else xi / (xi - overlap0[c])
-        s = spring0[c] + share * (mean * turn - roll)
-        ft = -kt * s
-        limit = mu * fn if limits is None else limits[c]
-        if abs(ft) > limit:
-            sign = 1.0 if ft > 0.0 else -1.0
-            ft = sign * limit
-            s = -ft / kt
-            status[c] = SLIDING
-            _fill_tangent(g[c], nx, nz, fn, ft, 1.0 / d, k, 0.0, 0.0, 0.0, sign * mu if limits is None else 0.0)
         else:
-            stiff = kt * share
-            _fill_tangent(
-                g[c], nx, nz, fn, ft, 1.0 / d, k, stiff * mean / d, stiff * 0.5 * turn, stiff, 0.0
+            wx = ux - (q0[i] - q0[j])
+            wz = uz - (q0[n + i] - q0[n + j])
+            px = dx - wx
+            pz = dz - wz
+            before = math.sqrt(px * px + pz * pz)
+            turn = math.atan2(px * wz - pz * wx, px * dx + pz * dz)
+            mean = 0.5 * (before + d)
+            roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
+            fn, ft = _rub(
+                c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean, d, 0.5 * turn,
+                shape, law, overlap0, spring0, limits, out,
             )  # fmt: skip
-        tangential[c] = ft
-        spring[c] = s
-        fx = fn * nx - ft * nz
-        fz = fn * nz + ft * nx
-        force[i] += fx
-        force[n + i] += fz
-        force[j] -= fx
-        force[n + j] -= fz
-        force[2 * n + i] -= radius[i] * ft
-        force[2 * n + j] -= radius[j] * ft
+            fx = fn * nx - ft * nz
+            fz = fn * nz + ft * nx
+            force[i] += fx
+            force[n + i] += fz
+            force[j] -= fx
+            force[n + j] -= fz
+            force[2 * n + i] -= radius[i] * ft
+            force[2 * n + j] -= radius[j] * ft
 
 
 @kernel
-def wall_statics(
-    q, q0, n, disk, wall_normal, gap0, radius, overlap0, spring0, limits, law,
-    overlap, normal, tangential, spring, status, force, g,
-):  # fmt: skip
-    """As :func:`pair_statics` for disk-wall contacts; ``wall_normal`` : (w, 2)."""
-    k, kt, mu = law[0], law[2], law[4]
-    for c in range(disk.size):
-        i = disk[c]
-        nx = wall_normal[c, 0]
-        nz = wall_normal[c, 1]
-        xi = -(gap0[c] + q[i] * nx + q[n + i] * nz)
-        overlap[c] = xi
+def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, out, force):
+    """As :func:`pair_statics` for disk-wall contacts; ``walls`` : :class:`Walls`."""
+    law = walls.law
+    for c in range(walls.disk.size):
+        i = walls.disk[c]
+        nx = walls.normal[c, 0]
+        nz = walls.normal[c, 1]
+        xi = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+        out.overlap[c] = xi
         if xi <= 0.0:
-            status[c] = OPEN
-            normal[c] = 0.0
-            if spring0 is not None:
-                tangential[c] = 0.0
-                spring[c] = 0.0
-            g[c, :, :] = 0.0
+            _open(c, spring0, out)
             continue
-        fn = k * xi
-        normal[c] = fn
-        status[c] = STICKING
-        ft = 0.0
         if spring0 is None:
-            _fill_tangent(g[c], nx, nz, fn, 0.0, 0.0, k, 0.0, 0.0, 0.0, 0.0)
+            fn = _press(c, xi, nx, nz, 0.0, shape, law, out)
+            ft = 0.0
         else:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-            share = 1.0 if overlap0[c] >= 0.0 else xi / (xi - overlap0[c])
-            s = spring0[c] + share * slip
-            ft = -kt * s
-            limit = mu * fn if limits is None else limits[c]
-            if abs(ft) > limit:
-                sign = 1.0 if ft > 0.0 else -1.0
-                ft = sign * limit
-                s = -ft / kt
-                status[c] = SLIDING
-                _fill_tangent(g[c], nx, nz, fn, ft, 0.0, k, 0.0, 0.0, 0.0, sign * mu if limits is None else 0.0)
-            else:
-                stiff = kt * share
-                _fill_tangent(g[c], nx, nz, fn, ft, 0.0, k, stiff, 0.0, stiff, 0.0)
-            tangential[c] = ft
-            spring[c] = s
+            fn, ft = _rub(c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, shape, law, overlap0, spring0, limits, out)
             force[2 * n + i] -= radius[i] * ft
         force[i] += fn * nx - ft * nz
         force[n + i] += fn * nz + ft * nx
+
+
+@kernel
+def spring_forces(overlap, spring, shape, law, out):
+    """Fill ``out`` (:class:`Response`, its tangents aside) with forces from overlaps and springs (m,) as they are.
+
+    A touching contact slides when its spring force has reached the Coulomb limit (to 1e-9 of it).
+    """
+    rubs = law.friction > 0.0
+    for c in range(overlap.size):
+        xi = overlap[c]
+        out.overlap[c] = xi
+        if not xi > 0.0:
+            out.status[c] = OPEN
+            continue
+        fn = elastic_force(law, xi, _shape_at(shape, c))
+        out.normal[c] = fn
+        out.status[c] = STICKING
+        if rubs:
+            out.spring[c] = spring[c]
+            out.tangential[c] = -law.tangential_stiffness * spring[c]
+            if abs(out.tangential[c]) >= law.friction * fn * (1 - 1e-9):
+                out.status[c] = SLIDING
+
+
+@kernel
+def elastic_energies(overlap, shape, law, out):
+    """Fill ``out`` (m,) with the elastic energies of the normal parts of contacts."""
+    for c in range(overlap.size):
+        out[c] = energy(law, overlap[c], _shape_at(shape, c)) if overlap[c] > 0.0 else 0.0
+
+
+@kernel
+def stiffnesses(overlap, shape, law, out):
+    """Fill ``out`` (m,) with the normal stiffnesses of contacts."""
+    for c in range(overlap.size):
+        out[c] = stiffness(law, overlap[c], _shape_at(shape, c)) if overlap[c] > 0.0 else 0.0
 
 
 @kernel

@@ -22,9 +22,10 @@ SOURCES = ("contact", "kernels", "machine", "solve/linear", "state")
 
 
 def kernel(function: Callable | None = None, **options: Any) -> Any:
-    """Decorator: compile with Numba on first use, without Python's division errors, and keep the machine code.
+    """Decorator: compile with Numba on first use and keep the machine code.
 
-    ``options`` are those of ``numba.njit`` beside that.
+    Kernels have no Python errors of division, make no arrays and so count no references to them: counting costs a
+    small scene half of its time. ``options`` are those of ``numba.njit`` beside that.
     """
     if function is None:
         return partial(kernel, **options)
@@ -33,7 +34,7 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     if folder is not None:
         nb.config.CACHE_DIR = str(folder)  # asked for when a function is decorated, so others keep their own
     try:
-        return nb.njit(cache=folder is not None, error_model="numpy", **options)(function)
+        return nb.njit(cache=folder is not None, error_model="numpy", _nrt=False, **options)(function)
     finally:
         nb.config.CACHE_DIR = before
 

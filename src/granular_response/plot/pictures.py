@@ -21,8 +21,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
-from ..state import OPEN, SLIDING, Box, FloatArray, contact_force, wall_normals
-from ..store import atomic, files
+from ..state import OPEN, SLIDING, Box, FloatArray, wall_normals
+from ..store import atomic
 from . import network, style
 from .field import draw_field, root_norm
 
@@ -54,8 +54,8 @@ class Shown:
                 kind = type(result).__name__
                 raise TypeError(f"result: must be a Result or its dataset, not {kind} (open_result reads a file)")
             result = result.to_dataset()
-        if not {"position", "contact_status", "wall_disk"} <= set(result.variables) or "state" not in result.dims:
-            raise PictureError("result: the dataset holds no states of a packing")
+        if not {"position", "contact_force", "wall_force", "state_load_factor"} <= set(result.variables):
+            raise PictureError("result: the dataset holds no states of a packing (open_result reads older files)")
         count = result.sizes["state"]
         if not -count <= state < count:
             raise PictureError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
@@ -94,28 +94,12 @@ class Shown:
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
         return self.values("contact_disk"), self.values("contact_partner")
 
-    def pair_force(self, index: int | None = None) -> FloatArray:
-        """(m, 2) force on the first disk of each pair."""
-        position = self.values("position", index)
-        first, second = self.pairs
-        branch = self.box.separation(position[first], position[second])
-        normal = branch / np.linalg.norm(branch, axis=1, keepdims=True)
-        parts = (self.values(f"contact_{part}_force", index) for part in ("normal", "tangential"))
-        return contact_force(normal, *parts)
-
-    def wall_force(self, index: int | None = None) -> FloatArray:
-        """(w, 2) force of each wall on its disk."""
-        parts = (self.values(f"wall_{part}_force", index) for part in ("normal", "tangential"))
-        return contact_force(wall_normals(self.values("wall_index")), *parts)
-
     @cached_property
     def loads(self) -> list[tuple[int, FloatArray, float]]:
         """Disk, force and torque of each load in this state."""
         if not self.index:
             return []
-        factors = self.data["load_factor"]
-        factor = float(factors.values[self.index if "state" in factors.dims else self.index - 1])
-        applied = factor * self.values("applied_load")
+        applied = float(self.values("state_load_factor")) * self.values("applied_load")
         return [
             (int(disk), load[:2], float(load[2]))
             for disk, load in zip(self.values("loaded_disk"), applied, strict=True)
@@ -172,11 +156,11 @@ def forces(
         raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
     if largest is not None and not largest > 0.0:
         raise PictureError(f"largest = {largest}: must be positive")
-    pair, wall = shown.pair_force(), shown.wall_force()
+    pair, wall = (
+        shown.values(name) - (shown.values(name, 0) if added else 0.0) for name in ("contact_force", "wall_force")
+    )
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
-    if added:
-        pair, wall = pair - shown.pair_force(0), wall - shown.wall_force(0)
     point = np.concatenate(
         [
             network.pair_points(shown.position, shown.radius, *shown.pairs, box=shown.box),
@@ -262,9 +246,9 @@ def stress(
         raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
-    pair_force, wall_force = shown.pair_force(), shown.wall_force()
-    if added:
-        pair_force, wall_force = pair_force - shown.pair_force(0), wall_force - shown.wall_force(0)
+    pair_force, wall_force = (
+        shown.values(name) - (shown.values(name, 0) if added else 0.0) for name in ("contact_force", "wall_force")
+    )
     separation = shown.box.separation(shown.position[first], shown.position[second])
     carried = ContactForces(
         point=np.concatenate([shown.position[first], at_wall]),
@@ -382,33 +366,28 @@ def page(
     return figure
 
 
-def draw_file(
-    result: str | os.PathLike[str],
+def save(
+    result: HasDataset | xr.Dataset,
     output: str | os.PathLike[str],
     what: Sequence[str],
     *,
     state: int = -1,
     scale: Any = "sqrt",
+    inputs: Sequence[str | os.PathLike[str]] = (),
 ) -> Path:
-    """Write the :func:`page` of a stored result as ``.pdf``, ``.png`` or ``.svg``, whole or not at all.
+    """Write the :func:`page` of a result as ``.pdf``, ``.png`` or ``.svg``, whole or not at all; returns its path.
 
-    Raises
-    ------
-    granular_response.store.files.StoreError
-        If the result cannot be read.
-    PictureError
-        For another format, what :func:`page` refuses, and a place that cannot be written.
+    Raises PictureError for another format, for what :func:`page` refuses, and for a place that cannot be written or is
+    one of ``inputs``.
     """
     path = Path(output)
     if path.suffix not in (".pdf", ".png", ".svg"):
         raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
-    stored = files.read(result).get("")
-    if stored is None:
-        raise PictureError(f"{os.fspath(result)}: holds no states, must be a result of granular-response run")
+    drawn = style.render(page(result, what, state=state, scale=scale), path.suffix[1:])
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        atomic.check_output(path, [result])
-        atomic.write_bytes(path, style.render(page(stored, what, state=state, scale=scale), path.suffix[1:]))
+        atomic.check_output(path, inputs)
+        atomic.write_bytes(path, drawn)
     except OSError as error:
         raise PictureError(f"{path}: cannot be written: {error.strerror or error}") from error
     return path

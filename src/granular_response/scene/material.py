@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 from pydantic import Field
 
@@ -10,13 +11,19 @@ from .base import Description, Ratio, Stiffness
 
 
 class Contact(Description):
-    """Linear spring and dashpot along the normal, spring and dashpot with a Coulomb limit along the tangent.
+    """Spring and dashpot along the normal, spring and dashpot with a Coulomb limit along the tangent.
 
     Sec. III.A and III.B of the paper, with its values as defaults. Reduced units: stiffness in mean disk
     weights per mean radius. The damping coefficients are absolute: they do not depend on the masses of
     the two bodies, and ``damping_ratio`` 0.5 gives the paper's ``sqrt(k)``.
     """
 
+    law: Literal["linear", "hertz"] = Field(
+        default="linear",
+        description="linear: normal force in proportion to the overlap, as in the paper; hertz: normal force by the "
+        "power 3/2 of the overlap, with normal_stiffness as its stiffness at a normal force of one mean disk weight "
+        "between two mean disks, or a mean disk and the wall. The walls follow the same law.",
+    )
     normal_stiffness: Stiffness = Field(
         default=3000.0,
         description="Stiffness k_N of the normal spring, in mean disk weights per mean radius.",
@@ -72,6 +79,7 @@ class Wall(Description):
             return otherwise if own is None else own
 
         return Contact(
+            law=contact.law,
             normal_stiffness=either(self.normal_stiffness, 2.0 * contact.normal_stiffness),
             stiffness_ratio=either(self.stiffness_ratio, contact.stiffness_ratio),
             friction=self.friction,

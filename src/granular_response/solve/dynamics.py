@@ -18,7 +18,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..kernels.forces import SCRATCH, accelerations
-from ..kernels.integrators import INTEGRATORS
+from ..kernels.integrators import INTEGRATORS, Memory, advance
+from ..kernels.model import Model, Pairs, Schedule, Walls
 from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, Contacts, FloatArray, Reached, State, wall_normals
@@ -83,8 +84,10 @@ class Dynamics:
         self.angle0 = state.angle.copy()
         self.v = aligned(np.concatenate([state.velocity.T.ravel(), state.angular_velocity])[: n * freedoms])
         self.q = aligned_zeros(n * freedoms)
-        self.history = aligned_zeros(self.integrator.rows, n * freedoms + -n * freedoms % WIDTH)
-        self.predicted = aligned_zeros(n * freedoms)
+        rows = aligned_zeros(self.integrator.scheme.rows + 1, n * freedoms + -n * freedoms % WIDTH)
+        self.history = rows[:-1]
+        b, c = ([*self.history[1:], None, None])[:2]
+        self.rows = Memory(self.history[0], b, c, force=rows[-1], seen=aligned_zeros(n * freedoms))
         self.rim = aligned_zeros(n) if problem.rotations else None
         self._inverse_mass = aligned(problem.inverse_mass)
         self._list(state)
@@ -102,17 +105,21 @@ class Dynamics:
         if problem.wall_friction:
             self.wall_spring = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
         self.wall_normal = wall_normals(c.wall)
-        self.model = (
+        self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
             problem.load, problem.load_disk,
-            c.runs, c.separation[0], c.separation[1], c.reach, self.spring, aligned_zeros(SCRATCH), problem.pair_law,
-            c.wall_disk, self.wall_normal, c.wall_gap, self.wall_spring, problem.wall_law, problem.rule,
+            Pairs(
+                c.runs, c.separation[0], c.separation[1], c.reach, c.shape, self.spring, aligned_zeros(SCRATCH),
+                problem.pair_law,
+            ),
+            Walls(c.wall_disk, self.wall_normal, c.wall_gap, c.wall_shape, self.wall_spring, problem.wall_law),
+            problem.rule,
         )  # fmt: skip
 
     def _fill_history(self) -> None:
         self.history[:] = 0.0
         self._accelerations(self.history[0, : self.q.size])
-        self.integrator.start(self.q, self.v, self.history, self.time_step)
+        self.integrator.scheme.begin(self.history)
 
     def _accelerations(self, out: FloatArray) -> None:
         """Accelerations now; springs do not advance."""
@@ -133,10 +140,10 @@ class Dynamics:
         left = steps
         listed = False
         while left:
-            schedule = (self.time, *map(float, self.gravity), *map(float, self.load))
-            done = self.integrator.advance(
-                left, self.time_step, schedule, self.candidates.limit,
-                self.q, self.v, self.history, self.predicted, self.model,
+            schedule = Schedule(self.time, *map(float, self.gravity), *map(float, self.load))
+            done = advance(
+                self.integrator.scheme, left, self.time_step, schedule, self.candidates.limit,
+                self.q, self.v, self.rows, self.model,
             )  # fmt: skip
             self.steps += done
             self.time += done * self.time_step
@@ -166,7 +173,7 @@ class Dynamics:
     @property
     def memory(self) -> FloatArray:
         """(rows, dof) what the integrator keeps from step to step."""
-        return self.history[:-1, : self.q.size]  # the last row is scratch
+        return self.history[:, : self.q.size]
 
     @property
     def position(self) -> FloatArray:
@@ -216,8 +223,10 @@ class Dynamics:
         """Which listed contacts (pairs, then walls) are closed now."""
         c = self.candidates
         closed = np.empty(len(c.first) + len(c.wall_disk), dtype=bool)
-        radius, normal = self.problem.packing.radius, self.wall_normal
-        mark_closed(self.q, c.reference, radius, c.first, c.second, c.wall_disk, normal, c.wall_gap, closed)
+        mark_closed(
+            self.q, self.problem.n, c.separation[0], c.separation[1], c.reach, c.slot, c.first, c.second,
+            c.wall_disk, self.wall_normal, c.wall_gap, closed,
+        )  # fmt: skip
         return closed
 
     def contact_count(self, touching: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:

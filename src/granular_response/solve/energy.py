@@ -41,11 +41,7 @@ MORE, LESS = 10.0, 0.1
 
 def energy(system: StaticSystem, trial: Trial, external: FloatArray) -> float:
     """Elastic energy of the contacts minus the work of the external forces."""
-    c = trial.configuration
-    k, k_wall = system.problem.pair_law[0], system.problem.wall_law[0]
-    elastic = 0.5 * k * (np.maximum(c.pair_overlap, 0.0) ** 2).sum()
-    elastic += 0.5 * k_wall * (np.maximum(c.wall_overlap, 0.0) ** 2).sum()
-    return float(elastic - external @ c.q)
+    return float(system.elastic_energy(trial) - external @ trial.configuration.q)
 
 
 def minimise(problem: Problem, start: State, *, load_factor: float = 0.0) -> State:
@@ -82,7 +78,7 @@ class _Descent:
 
     def __init__(self, problem: Problem, start: State, load_factor: float) -> None:
         self.problem = problem
-        self.stiffness = problem.pair_law[0]
+        self.stiffness = problem.stiffness
         self.system = StaticSystem(problem, start)
         self.external = external_force(problem, load_factor)
         self.known = self.system.start(start)
@@ -197,7 +193,7 @@ def _down_from_saddle(system: StaticSystem, known, external, q, trial: Trial) ->
     direction = system.unstable_direction(trial)
     best = (q, trial)
     for sense in (1.0, -1.0):
-        length = SHORTEST_ESCAPE / system.problem.pair_law[0] * sense
+        length = SHORTEST_ESCAPE / system.problem.stiffness * sense
         while abs(length) < LONGEST_STEP:
             there = system.trial(known, q + length * direction)
             if sense * float((there.contact_force + external) @ direction) <= 0.0:

@@ -42,7 +42,7 @@ def external_force(problem: Problem, load_factor: float) -> FloatArray:
 
 def attainable(system: StaticSystem, q: FloatArray) -> float:
     """Unbalanced force to reach: ``TOLERANCE``, or what the rounding of displacements leaves if that is more."""
-    rounding = 4.0 * float(np.finfo(float).eps) * system.problem.pair_law[0]
+    rounding = 4.0 * float(np.finfo(float).eps) * system.problem.stiffness
     return max(TOLERANCE, rounding * float(np.abs(q).max(initial=0.0)))
 
 
@@ -138,8 +138,8 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
     normal = np.concatenate([state.pairs.normal_force, state.walls.normal_force])
     excess = np.concatenate(
         [
-            np.abs(state.pairs.tangential_force) - problem.pair_law[4] * state.pairs.normal_force,
-            np.abs(state.walls.tangential_force) - problem.wall_law[4] * state.walls.normal_force,
+            np.abs(state.pairs.tangential_force) - problem.pair_law.friction * state.pairs.normal_force,
+            np.abs(state.walls.tangential_force) - problem.wall_law.friction * state.walls.normal_force,
         ]
     )
     closed = np.concatenate([state.pairs.status, state.walls.status]) != OPEN

@@ -58,7 +58,7 @@ def solve_increment(
     if report.converged:
         work.increments += 1
         return trial
-    pair_mu, wall_mu = system.problem.pair_law[4], system.problem.wall_law[4]
+    pair_mu, wall_mu = system.problem.pair_law.friction, system.problem.wall_law.friction
     if not system.problem.rotations:
         return None
     here = system.trial(known, known.q)
@@ -96,7 +96,7 @@ def _minimise_with_limits(
     """Minimise the energy of an increment with fixed Coulomb limits; returns the last trial."""
     q = start
     trial = system.trial(known, q, limits)
-    shift = SHIFT * system.problem.pair_law[0]
+    shift = SHIFT * system.problem.stiffness
     for _ in range(maximum_iterations):
         r = trial.contact_force + external
         if float(np.abs(r).max()) < ROUGH:

@@ -34,13 +34,13 @@ def rest_start(problem: Problem) -> State:
     if half is None or not (packing.ordered and touching and problem.n > LARGE):
         return bare
     coarse = half.build()
-    softer = (len(coarse.row_count) / len(packing.row_count)) ** 2
+    part = len(coarse.row_count) / len(packing.row_count)
     smaller = replace(
         problem,
         scene=problem.scene.model_copy(update={"packing": half}),
         packing=coarse,
-        pair_law=(softer * problem.pair_law[0], *problem.pair_law[1:]),
-        wall_law=(softer * problem.wall_law[0], *problem.wall_law[1:]),
+        pair_law=problem.pair_law.softened(part),
+        wall_law=problem.wall_law.softened(part),
     )
     try:
         rest = minimise(smaller, rest_start(smaller))

@@ -12,11 +12,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.linear import CUT, LITERAL
-from ..kernels import neighbours
+from ..contact import CUT, LAWS, LITERAL, Law
+from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
-from ..scene import Packing, Scene, resolve_disk
-from ..state import OPEN, SLIDING, STICKING, Contacts, FloatArray, State
+from ..scene import Contact, Packing, Scene, resolve_disk
+from ..state import Contacts, FloatArray, State
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
@@ -24,7 +24,8 @@ SKIN = 0.6
 #: With less room than this left on the lattice, neighbours are searched instead.
 LEAST_LATTICE_LIMIT = 0.25
 
-Law = tuple[float, float, float, float, float, float]
+#: Reduced radius of two disks of mean radius, and of one at a wall.
+DISKS, AT_WALL = 0.5, 1.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -44,6 +45,8 @@ class Candidates:
     wall_disk: NDArray[np.int64]  #: (w,)
     wall: NDArray[np.int8]  #: (w,)
     wall_gap: FloatArray  #: (w,) reference gaps
+    shape: FloatArray | None  #: (slots,) what the law needs of the radii; None for a law that needs nothing
+    wall_shape: FloatArray | None  #: (w,)
     limit: float
 
     @property
@@ -76,21 +79,18 @@ class Problem:
         protocol = scene.protocol
         least = -np.inf if protocol.tensile_dashpot else 0.0
 
-        def law(m) -> Law:
-            return (
-                float(m.normal_stiffness),
-                float(m.normal_damping),
-                float(m.tangential_stiffness),
-                float(m.tangential_damping),
-                float(m.friction) if m.tangential_stiffness > 0 else 0.0,
-                least,
-            )
+        def law(m: Contact, reduced_radius: float) -> Law:
+            whole = LAWS[scene.contact.law].of(
+                m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping, m.friction,
+                least, reduced_radius,
+            )  # fmt: skip
+            return whole if m.friction > 0 and m.tangential_stiffness > 0 else whole.without_friction()
 
         return cls(
             scene=scene,
             packing=scene.packing.build() if packing is None else packing,
-            pair_law=law(scene.contact),
-            wall_law=law(scene.resolved_wall),
+            pair_law=law(scene.contact, DISKS),
+            wall_law=law(scene.resolved_wall, AT_WALL),
             rule=LITERAL if protocol.friction_law == "literal" else CUT,
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
@@ -104,12 +104,17 @@ class Problem:
         return f"Problem({self.n} disks, loads on disks {self.load_disk.tolist()}, scene={self.scene!r})"
 
     @property
+    def stiffness(self) -> float:
+        """Of the normal springs between disks, at a normal force of one mean disk weight: the scale of stiffnesses."""
+        return self.pair_law.normal_stiffness
+
+    @property
     def pair_friction(self) -> bool:
-        return self.pair_law[4] > 0.0
+        return self.pair_law.friction > 0.0
 
     @property
     def wall_friction(self) -> bool:
-        return self.wall_law[4] > 0.0
+        return self.wall_law.friction > 0.0
 
     @property
     def rotations(self) -> bool:
@@ -150,11 +155,9 @@ class Problem:
 
     def without_friction(self) -> Problem:
         """The same packing with smooth disks and walls."""
-
-        def smooth(law: Law) -> Law:
-            return (*law[:4], 0.0, law[5])
-
-        return replace(self, pair_law=smooth(self.pair_law), wall_law=smooth(self.wall_law))
+        return replace(
+            self, pair_law=self.pair_law.without_friction(), wall_law=self.wall_law.without_friction()
+        )
 
     def load_vector(self) -> FloatArray:
         """(dof,) generalised load at load factor 1."""
@@ -193,6 +196,11 @@ class Problem:
         i, j = neighbours.run_pairs(runs)
         reach = aligned_zeros(len(i))  # slots of no listed pair have none
         reach[slot] = radius[first] + radius[second]
+        shapes = self.pair_shapes(first, second)
+        shape = None
+        if shapes is not None:
+            shape = aligned_zeros(len(i))
+            shape[slot] = shapes
         wall_disk, wall = packing.box.near_walls(position, radius, margin)
         return Candidates(
             reference=position.copy(),
@@ -205,8 +213,19 @@ class Problem:
             wall_disk=wall_disk,
             wall=wall,
             wall_gap=packing.box.wall_gap(position[wall_disk], radius[wall_disk], wall),
+            shape=shape,
+            wall_shape=self.wall_shapes(wall_disk),
             limit=limit,
         )
+
+    def pair_shapes(self, first, second) -> FloatArray | None:
+        """(m,) what the contact law needs of the radii of pairs."""
+        radius = self.packing.radius
+        return self.pair_law.shapes(radius[first], radius[second])
+
+    def wall_shapes(self, disk) -> FloatArray | None:
+        """(w,) what the contact law needs of the radii of disks at walls."""
+        return self.wall_law.shapes(self.packing.radius[disk], None)
 
     def bare_state(self) -> State:
         """The unloaded initial packing: no displacement, no motion, no springs."""
@@ -250,8 +269,12 @@ class Problem:
         gap = self.packing.box.wall_gap(position[k], radius[k], state.walls.second)
         return replace(
             state,
-            pairs=static_contacts(i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_law),
-            walls=static_contacts(k, state.walls.second, -gap, state.walls.spring, self.wall_law),
+            pairs=static_contacts(
+                i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_shapes(i, j), self.pair_law
+            ),
+            walls=static_contacts(
+                k, state.walls.second, -gap, state.walls.spring, self.wall_shapes(k), self.wall_law
+            ),
         )
 
 
@@ -277,20 +300,14 @@ def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
     return springs
 
 
-def static_contacts(first, second, overlap, spring, law: Law) -> Contacts:
-    """Contacts with the spring parts of their forces (Sec. III.A without velocities).
-
-    A touching contact slides when its spring force has reached the Coulomb limit (to 1e-9 of it).
-    """
-    touch = overlap > 0
-    normal = np.where(touch, law[0] * overlap, 0.0)
-    spring = np.where(touch, spring, 0.0) if law[4] > 0 else np.zeros_like(overlap)
-    tangential = -law[2] * spring if law[4] > 0 else np.zeros_like(overlap)
-    sliding = touch & (law[4] > 0) & (np.abs(tangential) >= law[4] * normal * (1 - 1e-9))
-    status = np.where(touch, np.where(sliding, SLIDING, STICKING), OPEN).astype(np.int8)
+def static_contacts(first, second, overlap, spring, shape, law: Law) -> Contacts:
+    """Contacts with the spring parts of their forces (Sec. III.A without velocities)."""
+    out = statics.Response.empty(len(overlap))
+    statics.spring_forces(overlap, spring, shape, law, out)
     return Contacts(
-        np.asarray(first, np.int32), np.asarray(second, np.int32), overlap, normal, tangential, spring, status
-    )
+        np.asarray(first, np.int32), np.asarray(second, np.int32),
+        overlap, out.normal, out.tangential, out.spring, out.status,
+    )  # fmt: skip
 
 
 def _empty_contacts(first, second) -> Contacts:

@@ -79,6 +79,13 @@ class StaticSystem:
         self.gap0 = np.hypot(d[:, 0], d[:, 1]) - (radius[self.first] + radius[self.second])
         self.wall_gap0 = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
         self.wall_normals = wall_normals(self.wall)
+        self._pairs = statics.Pairs(
+            self.first, self.second, self.dx0, self.dz0, self.gap0, problem.pair_shapes(self.first, self.second),
+            problem.pair_law,
+        )  # fmt: skip
+        self._walls = statics.Walls(
+            self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law
+        )
         self.weight = problem.weight_vector()
         self._pattern()
         self._kept: tuple[np.ndarray, Factor] | None = None
@@ -109,38 +116,33 @@ class StaticSystem:
         ``limits`` fixes the Coulomb limits of pairs (m,) and walls (w,) in place of ``mu f_n``.
         """
         problem = self.problem
-        m, w = len(self.first), len(self.wall_disk)
         force = np.zeros(self.dof)
-
-        def buffers(size):
-            return [np.zeros(size) for _ in range(4)] + [np.zeros(size, np.int8)]
-
-        pair, wall = buffers(m), buffers(w)
-        g, wall_g = np.empty((m, 3, 3)), np.empty((w, 3, 3))
-        radius = problem.packing.radius
-        statics.pair_statics(
-            q, known.q, problem.n, self.first, self.second, self.dx0, self.dz0, self.gap0, radius,
-            known.pair_overlap, known.pair_spring if problem.pair_friction else None,
-            None if limits is None or not problem.pair_friction else limits[0], problem.pair_law,
-            *pair, force, g,
-        )  # fmt: skip
-        statics.wall_statics(
-            q, known.q, problem.n, self.wall_disk, self.wall_normals, self.wall_gap0, radius,
-            known.wall_overlap, known.wall_spring if problem.wall_friction else None,
-            None if limits is None or not problem.wall_friction else limits[1], problem.wall_law,
-            *wall, force, wall_g,
-        )  # fmt: skip
+        pair, wall = statics.Response.empty(len(self.first)), statics.Response.empty(len(self.wall_disk))
+        for response, contacts, overlap, spring, limit, friction, add in (
+            (
+                pair, self._pairs, known.pair_overlap, known.pair_spring, limits and limits[0],
+                problem.pair_friction, statics.pair_statics,
+            ),
+            (
+                wall, self._walls, known.wall_overlap, known.wall_spring, limits and limits[1],
+                problem.wall_friction, statics.wall_statics,
+            ),
+        ):  # fmt: skip
+            add(
+                q, known.q, problem.n, problem.packing.radius, contacts, contacts.shape,
+                overlap, spring if friction else None, limit if friction else None, response, force,
+            )  # fmt: skip
         return Trial(
-            configuration=Configuration(q, pair[3], wall[3], pair[0], wall[0]),
+            configuration=Configuration(q, pair.spring, wall.spring, pair.overlap, wall.overlap),
             contact_force=force,
-            pair_normal=pair[1],
-            pair_tangential=pair[2],
-            pair_status=pair[4],
-            wall_normal=wall[1],
-            wall_tangential=wall[2],
-            wall_status=wall[4],
-            pair_tangent=g,
-            wall_tangent=wall_g,
+            pair_normal=pair.normal,
+            pair_tangential=pair.tangential,
+            pair_status=pair.status,
+            wall_normal=wall.normal,
+            wall_tangential=wall.tangential,
+            wall_status=wall.status,
+            pair_tangent=pair.tangent,
+            wall_tangent=wall.tangent,
         )
 
     def _pattern(self) -> None:
@@ -197,6 +199,16 @@ class StaticSystem:
         data[self._diagonal] += shift
         return sp.csc_array((data, self._indices, self._indptr), shape=(self.dof, self.dof))
 
+    def elastic_energy(self, trial: Trial) -> float:
+        """Energy of the normal springs (mean disk weight times mean radius)."""
+        total = 0.0
+        c = trial.configuration
+        for overlap, contacts in ((c.pair_overlap, self._pairs), (c.wall_overlap, self._walls)):
+            energies = np.zeros(len(overlap))
+            statics.elastic_energies(overlap, contacts.shape, contacts.law, energies)
+            total += float(energies.sum())
+        return total
+
     def interleave(self, vector: FloatArray) -> FloatArray:
         """``[x | z | angle]`` to disk by disk, in the order of the tangent."""
         return vector.reshape(self.problem.freedoms, -1).T[self._order].ravel()
@@ -209,7 +221,7 @@ class StaticSystem:
 
     def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Factor:
         """LU of the tangent, a tiny regularisation included."""
-        k = self.problem.pair_law[0]
+        k = self.problem.stiffness
         matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
         self._kept = None  # two need not be in memory
         factor = self._storage.factor(matrix)
@@ -260,9 +272,10 @@ class StaticSystem:
         dx = self.dx0 + q[self.first] - q[self.second]
         dz = self.dz0 + q[n + self.first] - q[n + self.second]
         normal = np.stack([dx, dz], axis=1) / np.hypot(dx, dz)[:, None]
-        closed = np.where(trial.pair_normal > 0.0, self.problem.pair_law[0], 0.0)
+        stiffness = np.zeros(len(self.first))
+        statics.stiffnesses(trial.configuration.pair_overlap, self._pairs.shape, self._pairs.law, stiffness)
         g = np.zeros_like(trial.pair_tangent)
-        g[:, :2, :2] = -closed[:, None, None] * normal[:, :, None] * normal[:, None, :]
+        g[:, :2, :2] = -stiffness[:, None, None] * normal[:, :, None] * normal[:, None, :]
         return replace(trial, pair_tangent=g)
 
     def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
@@ -288,7 +301,7 @@ class StaticSystem:
         modes = self.symmetric_factor(trial, shift)[1]
         if modes == 0 or (SLIDING not in trial.pair_status and SLIDING not in trial.wall_status):
             return modes
-        origin = -1e-4 * self.problem.pair_law[0]
+        origin = -1e-4 * self.problem.stiffness
         factor = self.factorise(trial, shift - origin)
         values = eigs(
             self.tangent(trial, shift), k=4, sigma=origin, return_eigenvectors=False,
@@ -299,7 +312,7 @@ class StaticSystem:
 
     def unstable_direction(self, trial: Trial) -> FloatArray:
         """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1."""
-        k = self.problem.pair_law[0]
+        k = self.problem.stiffness
         # the nearer the origin of the search to the eigenvalue, the fewer solves; from below it finds the lowest
         for origin in (1e-6 * k, 1e-5 * k, 1e-4 * k, 1e-3 * k, 1e-2 * k):
             factor = self.definite_factor(trial, origin)

@@ -25,8 +25,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..kernels.integrators import INTEGRATORS
-from .problem import Law, Problem
+from ..contact import Law
+from ..kernels.integrators import INTEGRATORS, amplification
+from .problem import Problem
 
 #: Part of the limit that ``time_step: auto`` takes.
 SAFETY = 0.6
@@ -46,10 +47,9 @@ def oscillator_limit(integrator: str, stiffness: float, damping: float, spring: 
     eigenvalue of the amplification matrix exceeds 1 by more than 1e-4 (Gear's corrector is weakly unstable without
     damping, far below what matters in a packing).
     """
-    matrix = INTEGRATORS[integrator].amplification
 
     def stable(dt: float) -> bool:
-        step = matrix(stiffness * dt * dt, damping * dt, spring * dt * dt)
+        step = amplification(INTEGRATORS[integrator].scheme, stiffness * dt * dt, damping * dt, spring * dt * dt)
         return bool(np.abs(np.linalg.eigvals(step)).max() <= 1.0 + 1e-4)
 
     step = 1e-3 / max(np.sqrt(stiffness + spring), damping, 1e-300)
@@ -66,9 +66,25 @@ def oscillator_limit(integrator: str, stiffness: float, damping: float, spring: 
 Motion = tuple[float, float, float]
 
 
-def _at_wall(pair: Law, wall: Law, neighbours: int, walls: int) -> list[Motion]:
+#: Normal stiffness, normal damping, tangential stiffness, tangential damping.
+Constants = tuple[float, float, float, float]
+
+
+def _constants(law: Law, force: float) -> Constants:
+    """Of a law at normal forces up to ``force``."""
+    return law.stiffest(force), law.normal_damping, law.tangential_stiffness, law.tangential_damping
+
+
+def largest_force(problem: Problem) -> float:
+    """Estimate of the largest normal force of a contact: twice the weight of a column, for its fall, and the loads."""
+    columns = max(0.5 * problem.packing.width, 1.0)
+    loads = problem.scene.loads
+    return 2.0 * problem.n / columns + sum(float(np.hypot(*load.force)) for load in loads) + 1.0
+
+
+def _at_wall(pair: Constants, wall: Constants, neighbours: int, walls: int) -> list[Motion]:
     """Stiffest motions of a disk at one wall or two: coordinates (x, z, rotation / sqrt(2))."""
-    kn, nun, kt, nut = pair[:4]
+    kn, nun, kt, nut = pair
     along = np.array([[1.0, 0.0, -np.sqrt(2.0)], [0.0, 1.0, -np.sqrt(2.0)]])[:walls]
     inward = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])[:walls]
     around = np.diag([1.0, 1.0, 0.0]) * neighbours
@@ -88,11 +104,9 @@ def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion
 
     ``smallest`` : as if all disks had the smallest mass.
     """
-    frictionless = (0.0, 0.0)
-    pair, wall = problem.pair_law, problem.wall_law
-    pair = pair if problem.pair_friction else (*pair[:2], *frictionless, *pair[4:])
-    wall = wall if problem.wall_friction else (*wall[:2], *frictionless, *wall[4:])
-    kn, nun, kt, nut = pair[:4]
+    force = largest_force(problem)
+    pair, wall = _constants(problem.pair_law, force), _constants(problem.wall_law, force)
+    kn, nun, kt, nut = pair
     z = NEIGHBOURS
     motions: list[Motion] = [(z * kn, z * kt, z * (nun + nut)), (0.0, 4 * z * kt, 4 * z * nut)]
     motions += _at_wall(pair, wall, ON_FLOOR, 1) + _at_wall(pair, wall, IN_CORNER, 2)

@@ -1,25 +1,13 @@
-"""Figure groups, a folder for each; ``NAMES`` is their list.
+"""Figure groups, a folder for each; ``groups.json`` lists them, for the pipeline too.
 
 A folder holds ``parameters.py`` (the class ``Parameters``, the group's section of ``params.yaml``), ``simulate.py``
 (parameters to datasets), ``draw.py`` (datasets to figures), ``captions.py`` (what the figures show) and, where the
-paper claims something, ``claims.py`` (what is judged from its datasets).
+paper claims something, ``claims.py`` (what is judged from its datasets). What the list calls ``needs`` is what the
+simulations of a group read beside what those of every group do.
 """
 
-#: In the order in which they are drawn.
-NAMES = (
-    "theory",
-    "slab_comparison",
-    "frictionless_crossover",
-    "friction_linear_range",
-    "symmetry_breaking",
-    "stiffness_ratio_crossover",
-    "friction_fields",
-    "pile_dip",
-    "torque",
-    "polydisperse_averages",
-    "phase_diagram",
-    "sensitivity",
-    "superposition",
-    "numerics",
-    "stability",
-)
+import json
+from importlib import resources
+
+#: Names of the groups, in an order in which they can run.
+NAMES: tuple[str, ...] = tuple(json.loads(resources.files(__name__).joinpath("groups.json").read_text())["groups"])

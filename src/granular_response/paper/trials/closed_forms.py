@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from granular_response.kernels.statics import elastic_energies
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Dynamics, Problem
 from granular_response.state import State
@@ -36,9 +37,15 @@ def mechanical_energy(dynamics: Dynamics, gravity: float = 1.0) -> float:
     """Kinetic energy, elastic energy of normal and tangential springs, and that of the weight."""
     problem, state = dynamics.problem, dynamics.state()
     total = dynamics.kinetic_energy() * problem.n + gravity * float(problem.weight @ state.position[:, 1])
-    for contacts, law in ((state.pairs, problem.pair_law), (state.walls, problem.wall_law)):
-        total += 0.5 * law[0] * float((np.maximum(contacts.overlap, 0.0) ** 2).sum())
-        total += 0.5 * law[2] * float((contacts.spring[contacts.touching] ** 2).sum()) if law[4] > 0 else 0.0
+    pairs, walls = state.pairs, state.walls
+    for contacts, law, shape in (
+        (pairs, problem.pair_law, problem.pair_shapes(pairs.first, pairs.second)),
+        (walls, problem.wall_law, problem.wall_shapes(walls.first)),
+    ):
+        energies = np.zeros(len(contacts.overlap))
+        elastic_energies(contacts.overlap, shape, law, energies)
+        total += float(energies.sum())
+        total += 0.5 * law.tangential_stiffness * float((contacts.spring[contacts.touching] ** 2).sum())
     return total
 
 
@@ -72,7 +79,7 @@ def collision(scene: Scene, angle: float, spin: float, step: float, *, pair: boo
 def sliding_to_rolling(scene: Scene, speed: float, spin: float, step: float, time: float) -> tuple[FloatArray, ...]:
     """Time, velocity and rim speed of a disk set on the floor with ``speed`` and ``spin``, with gravity."""
     problem, state = free_disks(scene, np.array([(0.0, 1.0)]), np.array([(speed, 0.0)]), np.array([spin]))
-    down = state.position - [[0.0, 1.0 / problem.wall_law[0]]]
+    down = state.position - [[0.0, 1.0 / problem.wall_law.normal_stiffness]]
     dynamics = Dynamics(problem, replace(state, position=down), scene.protocol.integrator, step)
     dynamics.set_ramps()
     readings = []

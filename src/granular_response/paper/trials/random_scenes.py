@@ -209,7 +209,7 @@ def check(solution: Solution, state: State) -> Audit:
 
 def rounding_of(solution: Solution) -> float:
     """Force that a last digit of a position is worth: solvers know displacements, an audit only their sums."""
-    stiffest = max(solution.problem.pair_law[0], solution.problem.wall_law[0])
+    stiffest = max(solution.problem.pair_law.normal_stiffness, solution.problem.wall_law.normal_stiffness)
     return 16.0 * np.finfo(float).eps * stiffest * float(solution.problem.packing.position.max())
 
 

@@ -71,7 +71,7 @@ def kick(problem: Problem, state: State, seed: int, part: float = KICK) -> State
     """The state with random velocities and spins of the disks that bear anything, up to ``part`` of the unit above."""
     generator = np.random.default_rng(seed)
     overlap = float(np.mean(state.pairs.overlap[state.pairs.touching]))
-    size = part * overlap * np.sqrt(problem.pair_law[0]) * (contact_count(problem.n, state) >= 2)
+    size = part * overlap * np.sqrt(problem.stiffness) * (contact_count(problem.n, state) >= 2)
     return replace(
         state,
         velocity=size[:, None] * generator.uniform(-1.0, 1.0, state.velocity.shape),

@@ -39,7 +39,7 @@ class Band:
         """LU without row exchanges; they are made up for where a residual asks for them."""
         rows = np.zeros((self.n, 2 * self.half_width + 1))
         rows.ravel()[self._place] = matrix.data
-        band_lu.factorise(rows, self.half_width)
+        band_lu.factorise(rows.ravel(), len(rows), self.half_width)
         return BandLU(matrix, rows, self.half_width)
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
@@ -73,7 +73,7 @@ class BandLU:
         """(n,) the solution; by a factorisation with row exchanges when the residual is too large."""
         if self._exchanged is None:
             x = right.copy()
-            band_lu.solve(self._rows, self._half_width, x)
+            band_lu.solve(self._rows.ravel(), len(self._rows), self._half_width, x)
             error = np.abs(self._matrix @ x - right).max()
             if error <= ACCEPTED * np.abs(right).max():
                 return x

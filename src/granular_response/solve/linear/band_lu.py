@@ -90,10 +90,8 @@ def _eliminate_four(a, n, b, k):
 
 
 @kernel
-def factorise(a, b):
-    """Overwrite ``a`` with its factors L (unit diagonal, below) and U."""
-    n = a.shape[0]
-    flat = a.ravel()
+def factorise(flat, n, b):
+    """Overwrite the rows, one after the other in ``flat``, with the factors L (unit diagonal, below) and U."""
     k = 0
     while b >= 4 and k + 3 < n:
         _eliminate_four(flat, n, b, k)
@@ -119,10 +117,8 @@ def _product(a, row, x, start, size):
 
 
 @kernel
-def solve(a, b, x):
+def solve(flat, n, b, x):
     """Overwrite ``x`` (n,) with the solution of L U x = x."""
-    n = a.shape[0]
-    flat = a.ravel()
     for i in range(n):
         low = max(0, i - b)
         diagonal = (2 * b + 1) * i + b

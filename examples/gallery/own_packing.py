@@ -1,0 +1,51 @@
+"""
+A packing of your own
+=====================
+
+Any table of disks is a packing: columns x, z and radius, in one unit of length. Here, large and small disks at random
+places of a loose lattice, which fall into a disordered packing.
+"""
+
+import csv
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import granular_response as gr
+
+ROWS, COLUMNS = 10, 24
+
+radius = np.random.default_rng(7).choice([1.0, 1.3], (ROWS, COLUMNS))
+spacing = 2.8
+x = spacing * (np.arange(COLUMNS) + 0.5 + 0.5 * (np.arange(ROWS)[:, None] % 2))
+z = np.broadcast_to(spacing * (0.5 + 0.5 * np.sqrt(3.0) * np.arange(ROWS))[:, None], x.shape)
+
+folder = Path(tempfile.mkdtemp())
+with open(folder / "disks.csv", "w", newline="") as file:
+    writer = csv.writer(file)
+    writer.writerow(["x", "z", "radius"])
+    writer.writerows(np.column_stack([x.ravel(), z.ravel(), radius.ravel()]).tolist())
+
+# %%
+# The scene reads the table. A packing without order is settled fastest by Verlet's integrator with the longest step
+# that is stable.
+
+scene = gr.Scene.from_dict(
+    {
+        "packing": {"kind": "file", "path": "disks.csv", "width": spacing * (COLUMNS + 0.5)},
+        "contact": {"friction": 0.4},
+        "loads": [{"disk": "top-centre", "force": [0.0, -5.0]}],
+        "protocol": {"integrator": "verlet", "time_step": "auto", "stop_kinetic_energy": 1e-9},
+    },
+    folder=folder,
+)
+result = gr.solve(scene)
+print(result)
+
+# %%
+# The packing at rest, its disks coloured by their size, and the forces that the load adds: black where it presses the
+# disks together, red where it takes compression away.
+
+gr.plot.packing(result, state=0, values=result.to_dataset()["radius"], label="radius over mean radius")
+gr.plot.forces(result)

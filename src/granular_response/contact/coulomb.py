@@ -1,0 +1,59 @@
+"""The part of a contact along the tangent (Sec. III.A): a spring and a dashpot under the Coulomb limit.
+
+Arguments are floats, or the ``Lanes`` of several contacts; ``law`` is any law of :mod:`.law`.
+"""
+
+from __future__ import annotations
+
+from ..machine.lanes import magnitude, quotient_where, select
+from ..machine.machine_code import kernel
+
+#: How the Coulomb limit acts on the tangential spring.
+CUT, LITERAL = 0, 1
+
+
+@kernel
+def tangential_cut(spring, slip_velocity, force_normal, law, time_step):
+    """Spring plus dashpot cut to the Coulomb limit; returns force and new spring.
+
+    The limit is ``friction * |force_normal|`` with the dashpot's part included. Where it acts, the stored
+    spring becomes the one that gives the cut force, so that the contact sticks again from there.
+    """
+    trial = spring + slip_velocity * time_step
+    damping = law.tangential_damping * slip_velocity
+    force = -law.tangential_stiffness * trial - damping
+    limit = law.friction * magnitude(force_normal)
+    cut = select(force > limit, limit, force)
+    cut = select(cut < -limit, -limit, cut)
+    return cut, quotient_where(cut != force, -(cut + damping), law.tangential_stiffness, trial)
+
+
+@kernel
+def tangential_literal(spring, slip_velocity, force_normal, law, time_step):
+    """The paper's equation for the spring taken literally: it is frozen while k_T|s| exceeds mu |f_N|.
+
+    The force itself is not cut, and a frozen spring stays frozen on unloading too: kept to show that this
+    reading does not settle.
+    """
+    free = law.friction * magnitude(force_normal) - law.tangential_stiffness * magnitude(spring) > 0.0
+    new = spring + select(free, slip_velocity * time_step, 0.0)
+    return -law.tangential_stiffness * new - law.tangential_damping * slip_velocity, new
+
+
+@kernel
+def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
+    """Tangential force and new spring by ``rule``: CUT or LITERAL."""
+    if rule == LITERAL:
+        return tangential_literal(spring, slip_velocity, force_normal, law, time_step)
+    return tangential_cut(spring, slip_velocity, force_normal, law, time_step)
+
+
+@kernel
+def return_map(trial, limit, law):
+    """Force, spring and sense of sliding (0: sticks) for a spring stretched to ``trial`` under a Coulomb ``limit``."""
+    force = -law.tangential_stiffness * trial
+    if abs(force) <= limit:
+        return force, trial, 0.0
+    sense = 1.0 if force > 0.0 else -1.0
+    force = sense * limit
+    return force, -force / law.tangential_stiffness, sense

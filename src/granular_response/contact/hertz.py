@@ -1,0 +1,67 @@
+"""Normal force by the power 3/2 of the overlap, which Sec. III.B names for the paper's disks (H. Hertz, 1882).
+
+``f = K sqrt(R) overlap^(3/2)`` with the reduced radius ``R = R_i R_j / (R_i + R_j)``, at a wall the disk's own. ``K``
+follows from the stiffness ``k`` at a normal force of one mean disk weight: ``K sqrt(R) = (2 k / 3)^(3/2)`` there, with
+``R`` of two mean disks, or of one at a wall.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..machine.lanes import magnitude, root
+
+
+class Hertz(NamedTuple):
+    """Normal force by the power 3/2, the rest as in the linear law; see :mod:`.law`.
+
+    ``reduced_radius`` is that of the contacts for which ``normal_stiffness`` is given (mean radii).
+    """
+
+    normal_stiffness: float
+    normal_damping: float
+    tangential_stiffness: float
+    tangential_damping: float
+    friction: float
+    least_force: float
+    factor: float  #: K sqrt(reduced_radius)
+    reduced_radius: float
+
+    @classmethod
+    def of(
+        cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
+        friction: float, least_force: float, reduced_radius: float,
+    ) -> Hertz:  # fmt: skip
+        """The law from its constants (see :class:`.law.Law`)."""
+        return cls(
+            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
+            (normal_stiffness / 1.5) ** 1.5, reduced_radius,
+        )  # fmt: skip
+
+    # Open contacts, with a negative overlap, are asked too; what they answer is not used.
+    def elastic_force(self, overlap, shape):
+        return self.factor * shape * overlap * root(magnitude(overlap))
+
+    def stiffness(self, overlap, shape):
+        return 1.5 * self.factor * shape * root(magnitude(overlap))
+
+    def energy(self, overlap, shape):
+        return 0.4 * self.factor * shape * overlap * overlap * root(magnitude(overlap))
+
+    def shapes(self, first, second):
+        # 1 between the bodies for which the stiffness is given
+        reduced = first if second is None else first * second / (first + second)
+        return np.sqrt(reduced / self.reduced_radius)
+
+    def stiffest(self, force: float) -> float:
+        return self.normal_stiffness * max(force, 0.0) ** (1.0 / 3.0)
+
+    def softened(self, part: float) -> Hertz:
+        # sinking grows like (forces / factor)^(2/3) times the number of layers
+        factor = part**2.5 * self.factor
+        return self._replace(normal_stiffness=1.5 * factor ** (2.0 / 3.0), factor=factor)
+
+    def without_friction(self) -> Hertz:
+        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)

@@ -1,0 +1,87 @@
+"""What a contact law is: a named tuple of its constants, with methods for the part along the normal.
+
+Along the tangent all laws have the spring, the dashpot and the Coulomb limit of :mod:`.coulomb`, with the constants
+``tangential_stiffness``, ``tangential_damping`` and ``friction``. ``normal_stiffness`` is the stiffness at a normal
+force of one mean disk weight. ``least_force`` bounds the normal force of a closed contact from below: ``-inf`` lets
+the dashpot pull for a moment, as eq. (2) says; ``0`` cuts that off.
+
+Arguments are floats, or the ``Lanes`` of several contacts. ``shape`` is the number that a law needs of the two bodies,
+as its method ``shapes`` makes it, and None for a law that needs none; ``self`` is the law.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol, Self
+
+from numpy.typing import NDArray
+
+from ..machine.by_type import by_type
+from ..machine.lanes import select
+from ..machine.machine_code import kernel
+
+
+class Law(Protocol):
+    """One contact law."""
+
+    @property
+    def normal_stiffness(self) -> float: ...
+    @property
+    def normal_damping(self) -> float: ...
+    @property
+    def tangential_stiffness(self) -> float: ...
+    @property
+    def tangential_damping(self) -> float: ...
+    @property
+    def friction(self) -> float: ...
+    @property
+    def least_force(self) -> float: ...
+
+    @classmethod
+    def of(
+        cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
+        friction: float, least_force: float, reduced_radius: float,
+    ) -> Self:  # fmt: skip
+        """The law from its constants; ``reduced_radius`` is that of the contacts that have the stiffness."""
+        ...
+
+    def elastic_force(self, overlap, shape): ...
+    def stiffness(self, overlap, shape): ...
+    def energy(self, overlap, shape): ...
+
+    def shapes(self, first, second) -> NDArray | None:
+        """(m,) shapes of contacts of disks with the radii ``first`` and ``second`` (None: a wall)."""
+        ...
+
+    def stiffest(self, force: float) -> float:
+        """Largest normal stiffness at normal forces up to ``force``."""
+        ...
+
+    def softened(self, part: float) -> Self:
+        """The law with which a packing of ``part`` of the length sinks by the same lengths under gravity."""
+        ...
+
+    def without_friction(self) -> Self:
+        """The same law without its part along the tangent."""
+        ...
+
+
+@by_type
+def elastic_force(self, overlap, shape):
+    """Normal force of a closed contact at rest (mean disk weights)."""
+
+
+@by_type
+def stiffness(self, overlap, shape):
+    """Derivative of :func:`elastic_force` with respect to the overlap."""
+
+
+@by_type
+def energy(self, overlap, shape):
+    """Elastic energy of the normal part of a closed contact: the integral of :func:`elastic_force`."""
+
+
+@kernel
+def normal_force(overlap, shape, approach_velocity, law):
+    """Normal force in motion, eq. (2): spring plus dashpot; ``approach_velocity`` is v·n, positive in separation."""
+    force = elastic_force(law, overlap, shape) - law.normal_damping * approach_velocity
+    return select(force > law.least_force, force, law.least_force)

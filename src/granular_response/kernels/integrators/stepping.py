@@ -1,0 +1,229 @@
+"""The loop over time steps that all integrators share, and what a step does to an oscillator.
+
+The scheme of an integrator is a named tuple with two methods on scalars or lanes. ``predict(x, v, a, b, c, dt)`` gives
+``(x, v, a, b, seen)``: displacement, velocity and memory half-way through a step, and the velocity that the forces
+see. ``correct(x, v, a, b, c, a_new, dt)`` gives ``(x, v, a, b, c)`` at the end from the accelerations there.
+``a`` is the acceleration at the present time, ``b`` and ``c`` are memory of its own: it has ``rows`` rows with ``a``.
+``order`` is the global order of its positions on a smooth problem once its memory is right (Gear's start without
+higher derivatives costs it two orders). ``begin(history)`` fills (rows, dof) memory from its row 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...machine.by_type import by_type
+from ...machine.lanes import WIDTH, anywhere, magnitude, put, spread, take
+from ...machine.machine_code import kernel
+from ..forces import forces
+
+#: Steps between two looks at how far disks have moved.
+LOOK_EVERY = 8
+
+
+class Scheme(Protocol):
+    """What an integrator does; see the module."""
+
+    def predict(self, x, v, a, b, c, dt): ...
+    def correct(self, x, v, a, b, c, a_new, dt): ...
+    def begin(self, history: NDArray) -> None: ...
+
+    @property
+    def rows(self) -> int: ...
+
+
+@dataclass(frozen=True)
+class Integrator:
+    """One time integrator, and what it says of itself; ``order`` as in the module."""
+
+    name: str
+    title: str
+    order: int
+    reference: str
+    scheme: Scheme
+
+
+class Memory(NamedTuple):
+    """Rows (dof,) that an integrator keeps from step to step, and scratch for forces and the velocity that they see."""
+
+    a: NDArray[Any]
+    b: NDArray[Any] | None
+    c: NDArray[Any] | None
+    force: NDArray[Any]
+    seen: NDArray[Any]
+
+
+@by_type
+def predict(self, x, v, a, b, c, dt):
+    """First half of a step; see the module."""
+
+
+@by_type
+def correct(self, x, v, a, b, c, a_new, dt):
+    """Second half of a step; see the module."""
+
+
+@kernel(forceinline=True)
+def _read(row, k, like):
+    if row is None:
+        return like
+    return take(row, k, like)
+
+
+@kernel(forceinline=True)
+def _write(row, k, value):
+    if row is not None:
+        put(row, k, value)
+
+
+@kernel
+def _begin(integrator, q, v, a, b, c, seen, dt):
+    """Begin a step."""
+    for k in range(q.size):
+        x, v[k], a[k], y, seen[k] = predict(integrator, q[k], v[k], a[k], _read(b, k, 0.0), _read(c, k, 0.0), dt)
+        q[k] = x
+        _write(b, k, y)
+
+
+@kernel(forceinline=True)
+def _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt):
+    a_new = take(force, k, like) * take(inverse_mass, k, like)
+    return correct(
+        integrator, take(q, k, like), take(v, k, like), take(a, k, like), _read(b, k, like), _read(c, k, like),
+        a_new, dt,
+    )  # fmt: skip
+
+
+@kernel(forceinline=True)
+def _end_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt):
+    x, u, w, y, z = _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt)
+    put(q, k, x)
+    put(v, k, u)
+    put(a, k, w)
+    _write(b, k, y)
+    _write(c, k, z)
+
+
+@kernel(forceinline=True)
+def _end_and_begin_at(k, like, integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
+    x, u, w, y, z = _corrected(k, like, integrator, q, v, a, b, c, force, inverse_mass, dt)
+    _write(c, k, z)
+    x, u, w, y, s = predict(integrator, x, u, w, y, z, dt)
+    put(seen, k, s)
+    put(q, k, x)
+    put(v, k, u)
+    put(a, k, w)
+    _write(b, k, y)
+
+
+@kernel
+def _end(integrator, q, v, a, b, c, force, inverse_mass, dt):
+    """End a step."""
+    whole = q.size - q.size % WIDTH
+    for k in range(0, whole, WIDTH):
+        _end_at(k, spread(0.0), integrator, q, v, a, b, c, force, inverse_mass, dt)
+    for k in range(whole, q.size):
+        _end_at(k, 0.0, integrator, q, v, a, b, c, force, inverse_mass, dt)
+
+
+@kernel
+def end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt):
+    """End a step and begin the next while its numbers are at hand."""
+    whole = q.size - q.size % WIDTH
+    for k in range(0, whole, WIDTH):
+        _end_and_begin_at(k, spread(0.0), integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+    for k in range(whole, q.size):
+        _end_and_begin_at(k, 0.0, integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+
+
+@kernel(nogil=True)
+def advance(integrator, steps, dt, schedule, limit, q, v, memory, model):
+    """Take up to ``steps`` steps of ``dt``; returns how many were taken.
+
+    Fewer when a disk has moved so far that the candidate contacts must be listed again: ``limit`` is the displacement
+    that ends the validity of the list (``inf``: never checked). ``schedule`` : ``model.Schedule``; ``q``, ``v`` :
+    displacements and velocities; ``memory`` : :class:`Memory`; ``model`` : ``model.Model``.
+    """
+    a, b, c, force, seen = memory
+    n = model.n
+    inverse_mass = model.inverse_mass
+    begun = False
+    for step in range(steps):
+        if not begun:
+            if limit < np.inf and moved_beyond(q, v, n, limit, dt * LOOK_EVERY):
+                return step
+            _begin(integrator, q, v, a, b, c, seen, dt)
+        now = schedule.time + (step + 1) * dt
+        gravity = ramp(now, schedule.gravity_from, schedule.gravity_to, schedule.gravity_time)
+        load = ramp(now, schedule.load_from, schedule.load_to, schedule.load_time)
+        forces(q, seen, force, gravity, load, dt, model)
+        begun = goes_on(step + 1, steps, limit)
+        if begun:
+            end_and_begin(integrator, q, v, a, b, c, force, inverse_mass, seen, dt)
+        else:
+            _end(integrator, q, v, a, b, c, force, inverse_mass, dt)
+    return steps
+
+
+def amplification(integrator: Scheme, w2: float, c: float, spring_w2: float = 0.0) -> NDArray[np.float64]:
+    """(6, 6) matrix of one step of length 1 for ``x'' = -w2 x - spring_w2 s - c x'``.
+
+    The first spring follows the position, as overlaps do, and ``s`` is advanced by the predicted velocity, as the
+    tangential springs are. The step is stable while no eigenvalue exceeds 1. Memory that an integrator does not have
+    gives zero eigenvalues.
+    """
+
+    def step(x, s, v, a, b, d):
+        x, v, a, b, seen = integrator.predict(x, v, a, b, d, 1.0)
+        s = s + seen
+        x, v, a, b, d = integrator.correct(x, v, a, b, d, -w2 * x - spring_w2 * s - c * seen, 1.0)
+        return x, s, v, a, b, d
+
+    memory = np.eye(6)
+    memory[3 + integrator.rows :] = 0.0
+    return np.array([step(*unit) for unit in memory]).T
+
+
+@kernel
+def ramp(time, start, end, duration):
+    """Linear ramp from ``start`` at time 0 to ``end`` at ``duration``, constant after."""
+    if time >= duration:
+        return end
+    return start + (end - start) * (time / duration)
+
+
+@kernel
+def goes_on(step, steps, limit):
+    """Whether step number ``step`` follows at once: there is one, and no look at the disks comes before it."""
+    return step < steps and (step % LOOK_EVERY != 0 or not limit < math.inf)
+
+
+@kernel
+def _beyond(q, v, n, limit, horizon, start, end):
+    for i in range(start, end):
+        reach = math.sqrt(q[i] * q[i] + q[n + i] * q[n + i])
+        reach += horizon * math.sqrt(v[i] * v[i] + v[n + i] * v[n + i])
+        if reach > limit:
+            return True
+    return False
+
+
+@kernel
+def moved_beyond(q, v, n, limit, horizon):
+    """Whether a disk may be farther than ``limit`` from its reference position within ``horizon``.
+
+    Most disks are far from that, which sums of components show without a root.
+    """
+    whole = n - n % WIDTH
+    like = spread(0.0)
+    for k in range(0, whole, WIDTH):
+        reach = magnitude(take(q, k, like)) + magnitude(take(q, n + k, like))
+        speed = magnitude(take(v, k, like)) + magnitude(take(v, n + k, like))
+        if anywhere(reach + horizon * speed > limit) and _beyond(q, v, n, limit, horizon, k, k + WIDTH):
+            return True
+    return _beyond(q, v, n, limit, horizon, whole, n)

@@ -1,0 +1,5 @@
+"""What the figures of this group show: by number of the paper's figure, or by file of a further one."""
+
+CAPTIONS: dict[int | str, str] = {
+    "sensitivity": "How much each reading of the paper changes the floor response; the table below has the numbers.",
+}

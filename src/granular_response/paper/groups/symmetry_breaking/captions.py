@@ -1,0 +1,3 @@
+"""What the figures of this group show: by number of the paper's figure, or by file of a further one."""
+
+CAPTIONS: dict[int | str, str] = {}
