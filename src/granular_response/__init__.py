@@ -4,7 +4,8 @@ What stands in ``__all__`` is the public namespace: it keeps its names and meani
 first use. Everything below it may change from version to version.
 
 ``Scene`` says what is simulated, ``solve`` settles and loads it, and a ``Result`` holds what came of it: states,
-certificates, floor response, contacts, stress. ``plot`` draws results, ``open_result`` reads a stored one.
+certificates, floor response, contacts, stress. ``plot`` draws results, ``open_result`` reads a stored one. ``sweep``
+solves a scene with many values of its keys, ``find_event`` narrows down where something happens.
 
 >>> import granular_response as gr
 >>> result = gr.solve(gr.Scene().updated({"contact.friction": 0.2}))
@@ -21,18 +22,22 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from . import plot as plot
+    from .api.event import find_event as find_event
     from .api.result import Result as Result
     from .api.result import open_result as open_result
     from .api.result import solve as solve
+    from .api.sweep import sweep as sweep
     from .scene import Scene as Scene
 
 #: Where the public names are; those of "" are modules.
 _HOME = {
     "Result": "api.result",
     "Scene": "scene",
+    "find_event": "api.event",
     "open_result": "api.result",
     "plot": "",
     "solve": "api.result",
+    "sweep": "api.sweep",
 }
 
 # Import statements find the package solve as ever; the attribute of that name is the function. Loading a package
@@ -54,4 +59,4 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *_HOME})
 
 
-__all__ = ["Result", "Scene", "__version__", "open_result", "plot", "solve"]
+__all__ = ["Result", "Scene", "__version__", "find_event", "open_result", "plot", "solve", "sweep"]

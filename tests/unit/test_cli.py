@@ -21,8 +21,8 @@ import yaml
 from rich.console import Console
 
 from granular_response import __version__
+from granular_response.api import terminal
 from granular_response.cli import main as cli
-from granular_response.cli import terminal
 from granular_response.machine import floating_point
 from granular_response.paper import pipeline
 from granular_response.paper.pipeline import drawing, simulation

@@ -26,7 +26,7 @@ ALLOWED = {
     "plot": {"cycler", "matplotlib", "numpy", "xarray"},
     "store": {"gsd", "netCDF4", "numpy", "pyevtk", "rich", "xarray"},
     "sweeps": {"cloudpickle", "distributed", "numpy"},
-    "api": {"numpy", "xarray"},
+    "api": {"numpy", "rich", "xarray"},
     "paper": {"PIL", "jinja2", "matplotlib", "numpy", "pydantic", "scipy", "xarray"},
     "cli": {"rich", "typer"},
 }

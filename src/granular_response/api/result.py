@@ -234,11 +234,14 @@ def solve(
     granular_response.solve.NotSettled, DynamicsError, EquilibriumError, PathError
         For one that has no such states, each with one line that says what to change.
     """
+    return Result(solve_scene(described(scene), load_factors=load_factors, progress=progress))
+
+
+def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scene:
+    """A scene, or the one that mappings or a file describe; raises SceneError if they do not."""
     if isinstance(scene, (str, os.PathLike)):
-        scene = Scene.from_yaml(scene)
-    elif not isinstance(scene, Scene):
-        scene = Scene.from_dict(scene)
-    return Result(solve_scene(scene, load_factors=load_factors, progress=progress))
+        return Scene.from_yaml(scene)
+    return scene if isinstance(scene, Scene) else Scene.from_dict(scene)
 
 
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:

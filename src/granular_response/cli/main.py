@@ -109,9 +109,9 @@ def run(
     """
     import time
 
+    from ..api.terminal import TerminalProgress
     from ..scene import Scene
     from ..store import files as store
-    from .terminal import TerminalProgress
 
     started = time.perf_counter()
     described = Scene.from_yaml(scene)
@@ -157,8 +157,8 @@ def continue_(
     """
     import time
 
+    from ..api.terminal import TerminalProgress
     from ..store import files as store
-    from .terminal import TerminalProgress
 
     started = time.perf_counter()
     store.check_writable(output, [result])
@@ -208,8 +208,8 @@ def simulate(
 
     A run that was interrupted continues where it was.
     """
+    from ..api.terminal import TerminalProgress
     from ..paper.pipeline import simulation
-    from .terminal import TerminalProgress
 
     _loaded()
 

@@ -1,4 +1,4 @@
-"""Progress on a terminal: nothing for the first two seconds, nothing at all where nobody looks."""
+"""Progress on a terminal or in a notebook: nothing for the first two seconds, nothing at all where nobody looks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 class TerminalProgress:
     """A line with bar, elapsed time and time left on standard error: ``progress(done, total, what)``.
 
-    Each new ``what`` starts over. Silent unless standard error is a terminal, and for ``patience`` seconds.
+    Each new ``what`` starts over. Silent for ``patience`` seconds, and where standard error is neither a terminal nor
+    that of a notebook, which gets a line of text.
     """
 
     def __init__(self, console: Console | None = None, patience: float = 2.0) -> None:
@@ -23,6 +24,7 @@ class TerminalProgress:
         self._bars: Progress | None = None
         self._task: TaskID | None = None
         self._what: str | None = None
+        self._told: float | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -33,9 +35,21 @@ class TerminalProgress:
         if self._bars is not None:
             self._bars.stop()
             self._bars = None
+        if self._told is not None:
+            self._console.file.write("\n")
+            self._told = None
 
     def __call__(self, done: float, total: float, what: str = "") -> None:
-        if not self._console.is_terminal or time.monotonic() - self._started < self._patience:
+        now = time.monotonic()
+        if now - self._started < self._patience:
+            return
+        if self._console.is_jupyter:
+            if self._told is None or now - self._told > 0.5 or done == total:
+                elapsed = f"{now - self._started:.0f} s "
+                self._console.file.write(f"\r{what or 'working'}: {done:.4g} of {total:.4g}, {elapsed}")
+                self._told = now
+            return
+        if not self._console.is_terminal:
             return
         if self._bars is None:
             self._bars = Progress(

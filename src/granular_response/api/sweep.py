@@ -1,0 +1,222 @@
+"""One scene with many values of its keys, as one labelled dataset."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import itertools
+import os
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..scene import Scene
+from ..solve import SOLVE_ERRORS
+from ..sweeps.errors import SweepError
+from ..sweeps.tasks import Progress, map_tasks
+from .result import Result, described, solve
+from .terminal import TerminalProgress
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: What a measure may return.
+Measured = Any
+_POINT = "sweep_point"
+
+
+def floor_response(result: Result) -> xr.DataArray:
+    """The measure of a sweep that names none."""
+    return result.floor_response
+
+
+def sweep(
+    scene: Scene | Mapping[str, Any] | str | os.PathLike[str],
+    axes: Mapping[str, Iterable[Any]],
+    measure: Callable[[Result], Measured] = floor_response,
+    *,
+    load_factors: Sequence[float] | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    progress: Progress | bool = True,
+) -> xr.Dataset:
+    """Solve a scene with every combination of values of its keys, and measure each result.
+
+    Parameters
+    ----------
+    scene : what all have in common: a scene, nested mappings, or the path of a scene file.
+    axes : values by the path of a key: ``{"contact.friction": [0, 0.2], "packing.realization": range(20)}``. What each
+        means is said by ``granular-response keys``.
+    measure : called with each :class:`Result` where it was solved; returns a number, a ``DataArray``, a ``Dataset``, or
+        a mapping of names to numbers, arrays and ``DataArray``. A function of a notebook or a lambda will do.
+    load_factors : multipliers of the scene's loads at which states are kept; those of the scene if left out.
+    workers : local processes; all cores if left out, this process if 1.
+    scheduler : address of a Dask scheduler; ``DASK_SCHEDULER_ADDRESS`` is asked if left out.
+    checkpoint : folder that keeps what is measured, so that an interrupted sweep continues.
+    progress : a line on the terminal, or in a notebook; False for none, or a function that is called as
+        ``progress(done, total, what)``.
+
+    Returns
+    -------
+    One dimension for each key, in the order of ``axes``, then those of what was measured. A dimension has the last part
+    of its key as name (``friction``, ``realization``), or the whole with ``_`` where two keys end alike; its values as
+    coordinate, with the attribute ``key``; values that are neither numbers nor text are numbered, in the order given.
+    What has no coordinate of its own and another length in each result, such as the floor disks, is filled up with NaN.
+
+    A combination without equilibrium is NaN throughout; the variable ``error`` then has its message, empty for the
+    others, and a warning says how many there are.
+
+    Raises
+    ------
+    granular_response.scene.SceneError
+        For a key or a value that a scene does not allow, before anything is solved.
+    ValueError
+        For an axis that is empty or has a value twice.
+    granular_response.sweeps.errors.SweepError
+        If ``measure`` raises or returns something else, if no combination has an equilibrium, or if workers fail.
+    """
+    base = described(scene)
+    values = {key: list(given) for key, given in axes.items()}
+    for key, given in values.items():
+        if not given:
+            raise ValueError(f"axes: {key} has no values, must have one or more")
+        if len({repr(_plain(value)) for value in given}) < len(given):
+            raise ValueError(f"axes: {key} has a value twice")
+    scenes = [base.updated(dict(zip(values, point, strict=True))) for point in itertools.product(*values.values())]
+    task = functools.partial(_measured, measure=measure, load_factors=load_factors)
+    with contextlib.ExitStack() as stack:
+        if progress is True:
+            progress = stack.enter_context(TerminalProgress())
+        found = map_tasks(
+            task, scenes, workers=workers, scheduler=scheduler, checkpoint=checkpoint, progress=progress or None,
+            what="scenes",
+        )  # fmt: skip
+    return _gridded(values, found)
+
+
+def _measured(
+    scene: Scene, *, measure: Callable[[Result], Measured], load_factors: Sequence[float] | None
+) -> xr.Dataset | str:
+    """What is measured on a scene, or why it has no equilibrium."""
+    try:
+        result = solve(scene, load_factors=load_factors)
+    except SOLVE_ERRORS as error:
+        return " ".join(str(error).split())
+    return _dataset(measure(result))
+
+
+def _dataset(measured: Measured) -> xr.Dataset:
+    """What a measure returned as a dataset."""
+    import xarray as xr
+
+    if isinstance(measured, xr.Dataset):
+        return measured
+    if isinstance(measured, xr.DataArray):
+        return measured.to_dataset(name=measured.name or "measure")
+    if not isinstance(measured, Mapping):
+        measured = {"measure": measured}
+    variables = {}
+    for name, value in measured.items():
+        if isinstance(value, xr.DataArray):
+            variables[name] = value
+            continue
+        array = np.asarray(value)
+        if array.dtype.kind not in "biufcSU":
+            kind = type(value).__name__
+            raise TypeError(f"measure: {name} is a {kind}, must be a number, an array, a DataArray or a Dataset")
+        variables[name] = xr.DataArray(array, dims=[f"{name}_{k}" for k in range(array.ndim)])
+    return xr.Dataset(variables)
+
+
+def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str]) -> xr.Dataset:
+    """One dataset of those of all combinations, which are in the order of the product of ``values``."""
+    import xarray as xr
+
+    errors = [one if isinstance(one, str) else "" for one in found]
+    good = [(place, one) for place, one in enumerate(found) if not isinstance(one, str)]
+    if not good:
+        raise SweepError(f"none of {len(found)} combinations has an equilibrium, the first: {errors[0]}")
+    names = _names(values)
+    taken = {str(name) for _, one in good for name in (*one.variables, *one.dims)} & {*names.values(), "error", _POINT}
+    if taken:
+        raise SweepError(f"measure: {min(taken)} is the name of an axis, must be another one")
+    # what has no coordinate is numbered while results are put side by side, and so filled up where it is shorter
+    bare = {dim for _, one in good for dim in one.dims if dim not in one.coords}
+    numbered = []
+    for _, one in good:
+        plain = one.reset_coords([name for name in one.coords if name not in one.dims])
+        numbered.append(plain.assign_coords({dim: np.arange(one.sizes[dim]) for dim in bare & {*one.dims}}))
+    side_by_side = xr.concat(numbered, _POINT, data_vars="all", join="outer", combine_attrs="override")
+    coordinates = {str(name) for _, one in good for name in one.coords if name not in one.dims}
+
+    shape = tuple(len(given) for given in values.values())
+    place = np.array([place for place, _ in good])
+    variables: dict[str, Any] = {}
+    for name, variable in side_by_side.variables.items():
+        if name in bare:
+            continue
+        if _POINT not in variable.dims:
+            variables[str(name)] = variable
+            continue
+        variable = variable.transpose(_POINT, ...)
+        if name in coordinates and _same(variable.values):
+            variables[str(name)] = variable.isel({_POINT: 0})
+            continue
+        whole = _spread(variable.values, place, len(found))
+        dimensions = (*names.values(), *variable.dims[1:])
+        variables[str(name)] = (dimensions, whole.reshape(*shape, *whole.shape[1:]), variable.attrs)
+    for key, name in names.items():
+        variables[name] = (name, _coordinate(values[key]), {"key": key})
+    if any(errors):
+        failed = [error for error in errors if error]
+        said = {"long_name": "why there is no equilibrium"}
+        variables["error"] = (tuple(names.values()), np.array(errors).reshape(shape), said)
+        warnings.warn(
+            f"{len(failed)} of {len(found)} combinations have no equilibrium, see the variable error; the first: "
+            f"{failed[0]}",
+            stacklevel=3,
+        )
+    inside = [name for name in side_by_side.coords if name in variables]
+    gridded = xr.Dataset(variables, attrs=good[0][1].attrs)
+    return gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
+
+
+def _spread(measured: np.ndarray, place: np.ndarray, count: int) -> np.ndarray:
+    """(count, ...) what was measured at its place along the first axis, and NaN, or no text, at the others."""
+    if measured.dtype.kind == "O":  # truth values with gaps
+        measured = measured.astype(float)
+    if len(place) == count:
+        return measured
+    kind = measured.dtype if measured.dtype.kind in "fcSU" else np.dtype(float)
+    whole = np.full((count, *measured.shape[1:]), "" if kind.kind in "SU" else np.nan, kind)
+    whole[place] = measured
+    return whole
+
+
+def _same(measured: np.ndarray) -> bool:
+    """Whether all along the first axis are equal."""
+    return all(np.array_equal(one, measured[0], equal_nan=one.dtype.kind == "f") for one in measured[1:])
+
+
+def _names(values: Iterable[str]) -> dict[str, str]:
+    """The dimension of each key."""
+    keys = list(values)
+    last = [key.rpartition(".")[2] for key in keys]
+    return {key: end if last.count(end) == 1 else key.replace(".", "_") for key, end in zip(keys, last, strict=True)}
+
+
+def _coordinate(values: Sequence[Any]) -> np.ndarray:
+    """Values as a coordinate: numbers as numbers, text and numbers as text, others by their place."""
+    plain = [_plain(value) for value in values]
+    if all(type(value) is bool for value in plain) or all(type(value) in (int, float) for value in plain):
+        return np.array(plain)
+    if all(isinstance(value, (bool, int, float, str)) for value in plain):
+        return np.array([str(value) for value in plain])
+    return np.arange(len(plain))
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
