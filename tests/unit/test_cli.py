@@ -228,7 +228,7 @@ def test_run_by_another_method(tmp_path):
         (["run", "scene.yaml", "-o", "scene.yaml/result.nc"], ["cannot be written"]),
         (["show", "absent.nc"], ["absent.nc: no such file"]),
         (["show", "scene.yaml"], ["scene.yaml: is not a netCDF-4 file"]),
-        (["simulate", "nonsense"], ["nonsense: no such figure group to simulate"]),
+        (["simulate", "nonsense"], ["nonsense: no such figure group, must be one of"]),
         (["simulate", "theory"], ["params.yaml: cannot be read"]),
         (["draw", "nonsense"], ["nonsense: no such figure group to draw"]),
         (["draw", "theory"], ["data/theory.nc: no such file"]),
