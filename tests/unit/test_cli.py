@@ -230,7 +230,7 @@ def test_run_by_another_method(tmp_path):
         (["show", "scene.yaml"], ["scene.yaml: is not a netCDF-4 file"]),
         (["simulate", "nonsense"], ["nonsense: no such figure group, must be one of"]),
         (["simulate", "theory"], ["params.yaml: cannot be read"]),
-        (["draw", "nonsense"], ["nonsense: no such figure group to draw"]),
+        (["draw", "nonsense"], ["nonsense: no such figure group, must be one of"]),
         (["draw", "theory"], ["data/theory.nc: no such file"]),
         (["keys", "magic"], ["no key of a scene begins with magic", "protocol"]),
         (["keys", "--page", "scene.yaml"], ["scene.yaml", "keys: begin"]),
