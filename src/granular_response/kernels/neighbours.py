@@ -39,17 +39,20 @@ def _grid_pairs(x, z, radius, skin, column, row, columns, rows, order, start, fi
     return count
 
 
-def close_pairs(position, radius, skin):
+def close_pairs(position, radius, skin, period=None):
     """All pairs of disks whose gap is less than ``skin``.
 
     Parameters
     ----------
-    position : (n, 2) disk centres; ``radius`` : (n,); ``skin`` : largest gap listed.
+    position : (n, 2) disk centres; ``radius`` : (n,); ``skin`` : largest gap listed; ``period`` : of x, if any, wide
+        enough for no two disks to meet on both sides.
 
     Returns
     -------
     first, second : (m,) int32 with ``first < second``, sorted by ``(first, second)``.
     """
+    if period is not None:
+        return _periodic_pairs(position, radius, skin, period)
     x = np.ascontiguousarray(position[:, 0])
     z = np.ascontiguousarray(position[:, 1])
     cell = 2.0 * float(radius.max()) + skin
@@ -72,6 +75,20 @@ def close_pairs(position, radius, skin):
     first, second = first[:count], second[:count]
     by = np.argsort(first * len(radius) + second)
     return first[by].astype(np.int32), second[by].astype(np.int32)
+
+
+def _periodic_pairs(position, radius, skin, period):
+    """The same, with copies of the disks near one side beyond the other."""
+    n = len(radius)
+    x = position[:, 0] % period
+    copied = np.flatnonzero(x < 2.0 * float(radius.max()) + skin)
+    whole = np.stack([np.r_[x, x[copied] + period], np.r_[position[:, 1], position[copied, 1]]], axis=1)
+    first, second = close_pairs(whole, np.r_[radius, radius[copied]], skin)
+    kept = first < n  # two copies are near each other where the disks are
+    disk = np.r_[np.arange(n), copied]
+    pairs = np.sort(np.stack([first[kept], disk[second[kept]]], axis=1), axis=1)
+    pairs = np.unique(pairs, axis=0).astype(np.int32)
+    return np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
 
 
 def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_RUN, multiple=1):

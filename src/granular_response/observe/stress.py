@@ -69,11 +69,14 @@ def _contact_forces(state: State, pair_force: FloatArray, wall_force: FloatArray
     on_wall = state.box.on_wall(at_wall, walls.second)
     force = np.concatenate([pair_force, wall_force])
     carries = np.any(force != 0.0, axis=1)
-    return ContactForces(
-        point=np.concatenate([position[pairs.first], at_wall])[carries],
-        branch=np.concatenate([state.pair_separation(), at_wall - on_wall])[carries],
-        force=force[carries],
-    )
+    point = np.concatenate([position[pairs.first], at_wall])[carries]
+    branch = np.concatenate([state.pair_separation(), at_wall - on_wall])[carries]
+    force = force[carries]
+    if state.box.periodic:  # what lies beyond the sides counts too
+        shift = np.array([state.box.width, 0.0])
+        point = np.concatenate([point - shift, point, point + shift])
+        branch, force = np.tile(branch, (3, 1)), np.tile(force, (3, 1))
+    return ContactForces(point=point, branch=branch, force=force)
 
 
 def coarse_grained_stress(

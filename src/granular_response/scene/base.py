@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
@@ -84,3 +84,9 @@ Index = Annotated[
     allowed("must be a whole number, 0 or greater and less than 2^63"),
 ]
 Flag = Annotated[bool, Field(strict=True), allowed("must be true or false")]
+Sides = Annotated[
+    Literal["walls", "periodic"],
+    Field(
+        description="walls: walls at both sides; periodic: the packing goes on at one side where it ends at the other.",
+    ),
+]

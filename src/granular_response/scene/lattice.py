@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from .base import Description, Fraction, Index, allowed
+from .base import Description, Fraction, Index, Sides, allowed
 from .errors import Problem
 from .packing import Packing, exact_mean
 
@@ -22,6 +22,10 @@ LatticeConstant = Annotated[
     Annotated[float, Field(strict=True, gt=0, le=1000)] | Literal["touching-largest"],
     allowed(f"must be a number greater than 0, at most 1000, or {TOUCHING_LARGEST}"),
 ]
+
+
+#: Disks per row of the narrowest periodic slab.
+LEAST_PERIOD = 5
 
 
 class LatticePacking(Description):
@@ -47,6 +51,11 @@ class LatticePacking(Description):
         description="Number of the packing within an ensemble. Seed and realization fix the random numbers, "
         "the same for every polydispersity.",
     )
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the sides are periodic."""
+        return False
 
     def row_count(self) -> NDArray[np.int64]:
         """(rows,) number of disks in each row, from the bottom."""
@@ -93,6 +102,7 @@ class LatticePacking(Description):
             width=float(count[0] * a),
             left=left,
             lattice_constant=float(a),
+            periodic=self.periodic,
         )
 
     def _radius(self, n: int) -> NDArray[np.float64]:
@@ -102,26 +112,44 @@ class LatticePacking(Description):
 
 
 class SlabPacking(LatticePacking):
-    """A slab between two side walls; rows of n and n - 1 disks alternate, a long one at the bottom."""
+    """A slab between two side walls; rows of n and n - 1 disks alternate, a long one at the bottom.
+
+    With periodic sides all rows have n disks, and every second one is shifted by half a lattice constant.
+    """
 
     kind: Literal["slab"] = Field(
         default="slab",
-        description="Rows on a triangular lattice between side walls.",
+        description="Rows on a triangular lattice between side walls, or with periodic sides.",
     )
     layers: Rows = Field(default=15, description="Number of rows.")
     disks_per_row: RowLength = Field(
         default=61,
-        description="Disks in the bottom row and every second one above; the others have one less.",
+        description="Disks in the bottom row and every second one above; the others have one less, and as many with "
+        "periodic sides.",
     )
+    sides: Sides = "walls"
+
+    @model_validator(mode="after")
+    def _check_period(self) -> SlabPacking:
+        if self.periodic and self.disks_per_row < LEAST_PERIOD:
+            rule = f"must be at least {LEAST_PERIOD} with periodic sides, so that no disk meets another on both sides"
+            raise Problem(rule, key=("disks_per_row",), value=self.disks_per_row)
+        return self
+
+    @property
+    def periodic(self) -> bool:
+        return self.sides == "periodic"
 
     def row_count(self) -> NDArray[np.int64]:
+        if self.periodic:
+            return np.full(self.layers, self.disks_per_row)
         return self.disks_per_row - np.arange(self.layers) % 2
 
     def _left(self) -> NDArray[np.int64]:
         return np.arange(self.layers) % 2
 
     def half(self) -> SlabPacking | None:
-        if self.layers < 2:
+        if self.layers < 2 or self.periodic:
             return None
         return self.model_copy(update={"layers": self.layers // 2, "disks_per_row": (self.disks_per_row + 1) // 2})
 

@@ -70,7 +70,7 @@ def resolve_disk(
         For a disk or a row that the packing does not have; ``key`` is what the message calls the selector.
     """
     if selector == TOP_CENTRE:
-        return _top_centre(packing.radius, packing.width, np.asarray(position))
+        return _top_centre(packing.radius, packing.middle, np.asarray(position))
     try:
         return check_disk(selector, packing.n, packing.row_count)
     except Problem as problem:
@@ -106,9 +106,9 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
     return int(row_count[:row].sum()) + middle + selector.offset
 
 
-def _top_centre(radius: NDArray[np.float64], width: float, position: NDArray[np.float64]) -> int:
+def _top_centre(radius: NDArray[np.float64], middle: float, position: NDArray[np.float64]) -> int:
     x, z = position[:, 0], position[:, 1]
-    away = np.abs(x - 0.5 * width)
+    away = np.abs(x - middle)
     largest = float(radius.max())
     reach = 4.0 * largest
     while True:

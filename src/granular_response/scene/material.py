@@ -41,6 +41,11 @@ class Contact(Description):
     )
 
     @property
+    def rubs(self) -> bool:
+        """Whether there are forces along the tangent: friction, and a spring that carries it."""
+        return self.friction > 0 and self.stiffness_ratio > 0
+
+    @property
     def tangential_stiffness(self) -> float:
         """k_T."""
         return self.stiffness_ratio * self.normal_stiffness

@@ -31,10 +31,11 @@ class Packing:
     position: FloatArray  #: (n, 2) centres x, z
     radius: FloatArray  #: (n,) with mean 1
     row: IntArray  #: (n,) row in the lattice, 0 at the bottom; -1 for a packing from a file
-    width: float  #: distance of the side walls
+    width: float  #: distance of the side walls, or period
     #: (rows,) left end of each row of a lattice, in half lattice constants; None for disks that are numbered anyhow
     left: NDArray[np.int64] | None = None
     lattice_constant: float | None = None  #: distance of neighbours in the lattice; None from a file
+    periodic: bool = False  #: periodic sides in place of walls
 
     @property
     def n(self) -> int:
@@ -48,7 +49,18 @@ class Packing:
     @property
     def box(self) -> Box:
         """What bounds the disks."""
-        return Box(self.width)
+        return Box(self.width, self.periodic)
+
+    @property
+    def middle(self) -> float:
+        """The x nearest to which a load on top is: half-way between the walls, or the middle disk of the top row.
+
+        With periodic sides that is disk ``row_count[-1] // 2`` of the row.
+        """
+        if not self.periodic or self.left is None:
+            return 0.5 * self.width
+        count = self.row_count
+        return float(self.position[self.n - count[-1] + count[-1] // 2, 0])
 
     @property
     def ordered(self) -> bool:
@@ -74,8 +86,8 @@ class Packing:
     def neighbour_pairs(self) -> IntArray | None:
         """(m, 2) neighbours i < j in the lattice, ordered by i and then j; None without a lattice.
 
-        For each disk its neighbours to the right, up left and up right. Found from the row and the place in
-        it alone, so neither polydispersity nor rounding changes them.
+        For each disk its neighbours to the right, up left and up right, across periodic sides too. Found from the row
+        and the place in it alone, so neither polydispersity nor rounding changes them.
         """
         if self.left is None:
             return None
@@ -84,14 +96,15 @@ class Packing:
         column = np.arange(self.n) - start[self.row]
         # In half lattice constants the upper neighbours of h are at h - 1 and h + 1.
         left = self.left
-        has_right = column + 1 < count[self.row]
-        pairs = [_pairs(has_right, np.arange(self.n) + 1)]
+        length = count[self.row]
+        has_right = self.periodic | (column + 1 < length)
+        pairs = [_pairs(has_right, start[self.row] + (column + 1) % length)]
         above = np.minimum(self.row + 1, len(count) - 1)
         for side in (-1, 1):
             upper = (left[self.row] + 2 * column + side - left[above]) // 2
-            exists = (above > self.row) & (upper >= 0) & (upper < count[above])
-            pairs.append(_pairs(exists, start[above] + upper))
-        result = np.concatenate(pairs)
+            exists = (above > self.row) & (self.periodic | ((upper >= 0) & (upper < count[above])))
+            pairs.append(_pairs(exists, start[above] + upper % count[above]))
+        result = np.sort(np.concatenate(pairs), axis=1)
         return np.ascontiguousarray(result[np.lexsort((result[:, 1], result[:, 0]))], dtype=np.int32)
 
 

@@ -76,14 +76,26 @@ class Scene(Description):
 
     @model_validator(mode="after")
     def _check_torques(self) -> Scene:
-        if self.contact.friction == 0 and self.resolved_wall.friction == 0:
+        if not self.contact.rubs and not self.resolved_wall.rubs:
             for place, load in enumerate(self.loads):
                 if load.torque != 0:
                     raise Problem(
-                        "must be 0 without friction (contact.friction, wall.friction), which alone can balance it",
+                        "must be 0 without friction and tangential springs (contact and wall: friction, "
+                        "stiffness_ratio), which alone can balance it",
                         key=("loads", place, "torque"),
                         value=load.torque,
                     )
+        return self
+
+    @model_validator(mode="after")
+    def _check_sideways_loads(self) -> Scene:
+        sideways = sum(load.force[0] for load in self.loads)
+        if self.packing.periodic and not self.resolved_wall.rubs and sideways != 0:
+            raise Problem(
+                "forces along x must sum to 0 with periodic sides on a smooth floor, which hold nothing",
+                key=("loads",),
+                value=sideways,
+            )
         return self
 
     @model_validator(mode="after")

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
-from .base import Description, Positive, allowed
+from .base import Description, Positive, Sides, allowed
 from .errors import Problem, SceneError, describe, show
 from .packing import Packing, exact_mean
 
@@ -38,7 +38,10 @@ class FilePacking(Description):
     path: FileName = Field(
         description="CSV file with the columns x, z, radius. A relative path starts at the folder of the scene file."
     )
-    width: Positive = Field(description="Distance of the side walls, in the unit of length of the file.")
+    width: Positive = Field(
+        description="Distance of the side walls, or the period with periodic sides, in the unit of length of the file."
+    )
+    sides: Sides = "walls"
 
     # Not part of the description: where it was read, so that a worker process finds the table too.
     _folder: str | None = PrivateAttr(default=None)
@@ -63,6 +66,11 @@ class FilePacking(Description):
     def file(self) -> Path:
         """The table's place."""
         return Path(self._folder or ".", self.path)
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the sides are periodic."""
+        return self.sides == "periodic"
 
     def half(self) -> None:
         """See ``LatticePacking.half``: a table has no smaller one."""
@@ -99,6 +107,7 @@ class FilePacking(Description):
             radius=radius / mean,
             row=np.full(len(radius), -1, dtype=np.int32),
             width=float(self.width / mean),
+            periodic=self.periodic,
         )
 
     def _read(self) -> tuple[np.ndarray, list[int]]:

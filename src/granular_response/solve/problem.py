@@ -84,7 +84,7 @@ class Problem:
                 m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping, m.friction,
                 least, reduced_radius,
             )  # fmt: skip
-            return whole if m.friction > 0 and m.tangential_stiffness > 0 else whole.without_friction()
+            return whole if m.rubs else whole.without_friction()
 
         return cls(
             scene=scene,
@@ -189,7 +189,7 @@ class Problem:
             first, second = pairs[:, 0], pairs[:, 1]
             margin = 2.0 * limit
         else:
-            first, second = neighbours.close_pairs(position, radius, SKIN)
+            first, second = neighbours.close_pairs(position, radius, SKIN, packing.box.period)
             limit = 0.5 * SKIN
             margin = SKIN
         runs, slot = neighbours.make_runs(first, second, self.n, multiple=WIDTH)

@@ -214,9 +214,14 @@ class StaticSystem:
         return vector.reshape(self.problem.freedoms, -1).T[self._order].ravel()
 
     def deinterleave(self, vector: FloatArray) -> FloatArray:
-        """Disk by disk, in the order of the tangent, to ``[x | z | angle]``."""
+        """Disk by disk, in the order of the tangent, to ``[x | z | angle]``.
+
+        Nothing holds a packing with periodic sides on a smooth floor along x: as a whole it stays where it is.
+        """
         result = np.empty((self.problem.n, self.problem.freedoms))
         result[self._order] = vector.reshape(-1, self.problem.freedoms)
+        if self.problem.packing.periodic and not self.problem.wall_friction:
+            result[:, 0] -= result[:, 0].mean()
         return result.T.ravel()
 
     def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Factor:
@@ -283,12 +288,15 @@ class StaticSystem:
         return self._storage.definite_factor(_symmetric_part(self.tangent(trial, shift)))
 
     def meets_unlisted(self, q: FloatArray) -> bool:
-        """Whether some disks overlap that are not among the candidates: the packing has rearranged."""
-        n = self.problem.n
+        """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""
+        n, radius, box = self.problem.n, self.problem.packing.radius, self.problem.packing.box
         position = self.reference + q[: 2 * n].reshape(2, n).T
-        first, second = close_pairs(position, self.problem.packing.radius, 0.0)
+        first, second = close_pairs(position, radius, 0.0, box.period)
         listed = self.first * n + self.second
-        return bool(np.isin(first.astype(np.int64) * n + second, listed, invert=True).any())
+        if np.isin(first.astype(np.int64) * n + second, listed, invert=True).any():
+            return True
+        disk, wall = box.near_walls(position, radius, 0.0)
+        return bool(np.isin(disk * 3 + wall, self.wall_disk * 3 + self.wall, invert=True).any())
 
     def negative_modes(self, trial: Trial, shift: float = 1e-6) -> int:
         """Number of unstable directions of the tangent.

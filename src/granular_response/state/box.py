@@ -39,6 +39,11 @@ class Box:
     periodic: bool = False  #: periodic sides in place of walls
 
     @property
+    def period(self) -> float | None:
+        """Period of x; None between walls."""
+        return self.width if self.periodic else None
+
+    @property
     def walls(self) -> tuple[int, ...]:
         """The walls that there are."""
         return (FLOOR,) if self.periodic else (FLOOR, LEFT_WALL, RIGHT_WALL)

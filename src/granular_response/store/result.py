@@ -299,6 +299,9 @@ def to_labelled(solution: Solution) -> Labelled:
     rest, loaded = states[0], states[1:]
     disks = floor_disks(states, np.flatnonzero(packing.row == 0))
     origin = float(rest.position[problem.load_disk[0], 0]) if len(problem.load_disk) == 1 else 0.5 * packing.width
+    x = packing.box.separation(rest.position[disks], np.array([origin, 0.0]))[:, 0]
+    by = np.argsort(x, kind="stable")
+    disks, x = disks[by], x[by]
     at_rest = floor_force(rest, disks)
     forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
     applied = np.array([abs(f) * solution.total_force for f in solution.load_factors] or [np.nan])
@@ -334,9 +337,7 @@ def to_labelled(solution: Solution) -> Labelled:
         **_reached(states),
         **_crossings(loaded),
         "floor_disk": described(("floor_disk",), disks, "index of the floor disk"),
-        "x": described(
-            ("floor_disk",), rest.position[disks, 0] - origin, f"rest position from the loaded disk {LENGTH}"
-        ),
+        "x": described(("floor_disk",), x, f"rest position from the loaded disk {LENGTH}"),
         "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
     }
     methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}

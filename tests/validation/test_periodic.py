@@ -1,0 +1,115 @@
+"""Periodic sides: every place is like every other."""
+
+import numpy as np
+import pytest
+
+from granular_response.kernels.neighbours import close_pairs
+from granular_response.observe.floor import floor_disks, floor_force
+from granular_response.observe.stress import coarse_grained_stress, load_forces
+from granular_response.scene import Scene, SceneError
+from granular_response.solve import Problem, solve_scene
+from granular_response.store.result import to_labelled
+from granular_response.theory import lattice
+from granular_response.theory.lattice import Springs
+from granular_response.theory.slab import response_of_layers
+
+LAYERS, ROW = 7, 24
+
+
+def slab(disk, force=4.0, **changes) -> Scene:
+    # pressed together along x: where equal disks just touch, rounding decides which of their contacts are open
+    packing = {"kind": "slab", "layers": LAYERS, "disks_per_row": ROW, "sides": "periodic", "lattice_constant": 1.9995}
+    loads = [{"disk": disk, "force": [0.0, -force]}]
+    return Scene.from_dict({"packing": packing, "loads": loads}).updated(changes)
+
+
+def floor_response(scene: Scene) -> np.ndarray:
+    """Added floor forces in the order of the bottom row."""
+    solution = solve_scene(scene)
+    state = solution.loaded[-1]
+    assert state.reached.certificate.stable and state.reached.certificate.force_residual < 1e-9
+    disks = floor_disks([solution.rest], np.arange(ROW))
+    assert np.array_equal(np.sort(disks), np.arange(ROW))
+    rest, loaded = floor_force(solution.rest, np.arange(ROW)), floor_force(state, np.arange(ROW))
+    assert loaded.sum() - rest.sum() == pytest.approx(4.0, abs=1e-8)
+    return loaded - rest
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("law", ["linear", "hertz"])
+def test_the_response_is_the_same_one_wherever_the_load_is(friction, law):
+    top = (LAYERS - 1) * ROW
+    changes = {"contact.friction": friction, "contact.law": law}
+    first = floor_response(slab(top + 3, **changes))
+    assert first.max() > 0.2
+    for column in (0, 11, ROW - 1):
+        other = floor_response(slab(top + column, **changes))
+        assert np.roll(first, column - 3) == pytest.approx(other, abs=1e-10)
+
+
+def test_the_middle_disk_of_the_top_row_is_loaded():
+    for layers in (7, 8):
+        scene = Scene().updated({"packing": {"layers": layers, "disks_per_row": ROW, "sides": "periodic"}})
+        problem = Problem.from_scene(scene)
+        problem = problem.with_loads(problem.packing.position)
+        assert problem.load_disk.tolist() == [(layers - 1) * ROW + ROW // 2]
+        assert problem.packing.box.width == 2.0 * ROW and problem.n == layers * ROW
+
+
+def test_neighbours_across_the_sides():
+    """Six in the bulk, four at the floor and on top; the search finds those of the lattice."""
+    packing = slab("top-centre").packing.build()
+    pairs = packing.neighbour_pairs()
+    count = np.bincount(pairs.ravel(), minlength=packing.n).reshape(LAYERS, ROW)
+    assert (count[1:-1] == 6).all() and (count[[0, -1]] == 4).all()
+    shifted = packing.position + np.array([31.7, 0.0])  # positions are not wrapped
+    for position in (packing.position, shifted):
+        found = close_pairs(position, packing.radius, 0.1, packing.box.period)
+        assert np.array_equal(np.stack(found, axis=1), pairs)
+
+
+def test_a_disordered_packing_has_no_place_of_its_own():
+    """Disks listed from another place on fall into the same packing."""
+    changes = {"packing.polydispersity": 0.1, "packing.lattice_constant": "touching-largest", "loads": []}
+    problem = Problem.from_scene(slab("top-centre", **changes))
+    assert len(problem.bare_state().walls.first) == ROW
+    rest = solve_scene(slab("top-centre", **changes)).rest
+    assert rest.reached.certificate.stable
+    assert floor_force(rest, np.arange(problem.n)).sum() == pytest.approx(problem.n, rel=1e-9)
+
+
+def test_stress_beyond_a_side_is_that_at_the_other():
+    top = (LAYERS - 1) * ROW
+    solution = solve_scene(slab(top))
+    forces = load_forces(solution.rest, solution.loaded[-1])
+    z = np.linspace(2.0, 10.0, 5)
+    left, right = (np.stack([np.full(5, x), z], axis=1) for x in (0.5, 0.5 + 2.0 * ROW))
+    assert coarse_grained_stress(forces, left) == pytest.approx(coarse_grained_stress(forces, right), abs=1e-12)
+
+
+def test_what_a_periodic_slab_cannot_hold_is_refused():
+    with pytest.raises(SceneError, match="forces along x must sum to 0 with periodic sides on a smooth floor"):
+        slab("top-centre").updated({"loads": [{"disk": 3, "force": [1.0, -4.0]}]})
+    slab("top-centre").updated({"loads": [{"disk": 3, "force": [1.0, -4.0]}], "wall.friction": 0.3})
+    with pytest.raises(SceneError, match=r"packing\.disks_per_row = 4: must be at least 5 with periodic sides"):
+        slab("top-centre").updated({"packing.disks_per_row": 4})
+
+
+def distance_to_the_elastic_slab(sides: str, disks_per_row: int) -> float:
+    """Largest difference of the response of 15 pressed layers under a small force, per largest elastic response."""
+    packing = {"layers": 15, "disks_per_row": disks_per_row, "sides": sides, "lattice_constant": 1.9998}
+    changes = {"contact.friction": 1.0, "loads": [{"disk": "top-centre", "force": [0.0, -0.2]}]}
+    stored = to_labelled(solve_scene(Scene().updated({"packing": packing, **changes}))).dataset()
+    width = stored.attrs["width"]
+    inside = np.abs(stored["x"].values) < 0.5 * width - 1.5
+    x, response = stored["x"].values[inside], stored["floor_response"].values[inside]
+    moduli = lattice.moduli(Springs.uniform(1.0, 0.8), "free")
+    elastic = response_of_layers(x, layers=15, moduli=moduli, floor="smooth", width=width)
+    return float(np.abs(response - elastic).max() / elastic.max())
+
+
+def test_without_walls_the_elastic_slab_is_near():
+    """Smooth walls in the middle between two loads are mirrors, so the elastic slab is the same one."""
+    periodic, walls = distance_to_the_elastic_slab("periodic", 20), distance_to_the_elastic_slab("walls", 21)
+    assert periodic < 1e-3
+    assert walls > 20.0 * periodic
