@@ -53,7 +53,7 @@ def test_the_middle_disk_of_the_top_row_is_loaded():
         problem = Problem.from_scene(scene)
         problem = problem.with_loads(problem.packing.position)
         assert problem.load_disk.tolist() == [(layers - 1) * ROW + ROW // 2]
-        assert problem.packing.box.width == 2.0 * ROW and problem.n == layers * ROW
+        assert problem.packing.width == 2.0 * ROW and problem.n == layers * ROW
 
 
 def test_neighbours_across_the_sides():
@@ -83,7 +83,7 @@ def test_stress_beyond_a_side_is_that_at_the_other():
     solution = solve_scene(slab(top))
     forces = load_forces(solution.rest, solution.loaded[-1])
     z = np.linspace(2.0, 10.0, 5)
-    left, right = (np.stack([np.full(5, x), z], axis=1) for x in (0.5, 0.5 + 2.0 * ROW))
+    left, right = (np.stack([np.full(5, x), z], axis=1) for x in (0.5, 0.5 + solution.problem.packing.width))
     assert coarse_grained_stress(forces, left) == pytest.approx(coarse_grained_stress(forces, right), abs=1e-12)
 
 
