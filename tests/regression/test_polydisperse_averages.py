@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from granular_response.paper import ensembles
+from granular_response.paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED
 from granular_response.paper.groups.polydisperse_averages import draw as figures
 from granular_response.paper.groups.polydisperse_averages import simulate as study
 from granular_response.plot import style
@@ -70,7 +72,7 @@ def test_averages(datasets, num_regression) -> None:
 def test_mean_is_that_of_the_realizations_at_rest(datasets) -> None:
     data, averages = datasets["ensembles"], datasets["averages"]
     x = averages["x"].values
-    rows = study.smoothed(data, 1, 0, x, 3.0)
+    rows = ensembles.smoothed(data.isel(case=1), x, 3.0)[:, 0]
     assert len(rows) == 3
     np.testing.assert_allclose(averages["mean"].values[0, 1, 0], rows.mean(axis=0))
     np.testing.assert_allclose(averages["mean_of_few"].values[0, 1, 0], rows[:2].mean(axis=0))
@@ -81,7 +83,7 @@ def test_mean_is_that_of_the_realizations_at_rest(datasets) -> None:
 
 def test_every_realization_is_accounted_for(datasets) -> None:
     averages = datasets["averages"]
-    total = sum(averages[f"count_{name}"] for name in study.OUTCOMES)
+    total = sum(averages[f"count_{name}"] for name in ensembles.OUTCOMES)
     planned = datasets["ensembles"]["realizations"]
     for c in range(total.sizes["case"]):
         used = np.isfinite(averages["force"].values[c])
@@ -90,7 +92,7 @@ def test_every_realization_is_accounted_for(datasets) -> None:
 
 def test_states_are_certified_and_balance_the_load(datasets) -> None:
     data = datasets["ensembles"]
-    at_rest = data["outcome"].values == study.AT_REST
+    at_rest = data["outcome"].values == AT_REST
     assert at_rest.sum() >= 20
     assert np.nanmax(data["force_residual"].values[at_rest]) < 1e-9
     assert np.nanmax(data["coulomb_excess"].values[at_rest]) < 1e-9
@@ -125,13 +127,13 @@ def test_collapse_and_failure_are_reported() -> None:
         scene, (0.01, 5.0, 10.0), collapse_depth=1e-3, ramp_time=5.0, largest_rate=5.0, stop_kinetic_energy=1e-8
     )
     found = study.realize(task)
-    assert found.outcome.tolist() == [study.AT_REST, study.COLLAPSED, study.NOT_REACHED]
+    assert found.outcome.tolist() == [AT_REST, COLLAPSED, NOT_REACHED]
     assert np.isfinite(found.response[0]).all()
     assert np.isnan(found.response[1:]).all()
 
     scene = task.scene.updated({"protocol.maximum_steps": 100})
     failed = study.realize(replace(task, scene=scene, forces=(1.0, 2.0)))
-    assert failed.outcome.tolist() == [study.FAILED, study.NOT_REACHED]
+    assert failed.outcome.tolist() == [FAILED, NOT_REACHED]
     assert failed.message.startswith("gravity: ")
 
 
@@ -145,7 +147,9 @@ def test_figures(datasets) -> None:
         "packings",
     ]
     panel = drawn["fig19_disordered_response"].axes[1]  # with friction, largest disks touching
-    rows = study.smoothed(datasets["ensembles"], 2, 2, datasets["individual"]["x"].values, 3.0)
+    x = datasets["individual"]["x"].values
+    rows = ensembles.smoothed(datasets["ensembles"].isel(case=2), x, 3.0)[:, 2]
+    rows = rows[np.isfinite(rows[:, 0])]
     np.testing.assert_allclose(panel.lines[len(rows)].get_ydata(), rows.mean(axis=0))
     for figure in drawn.values():
         assert style.render(figure)

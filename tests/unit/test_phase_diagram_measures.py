@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from granular_response.paper.ensembles import AT_REST, COLLAPSED
 from granular_response.paper.groups.phase_diagram import draw as figures
 from granular_response.paper.groups.phase_diagram.parameters import Parameters
 from granular_response.paper.groups.phase_diagram.simulate import (
@@ -19,7 +20,7 @@ from granular_response.paper.groups.phase_diagram.simulate import (
     shape,
     simulate,
 )
-from granular_response.paper.groups.polydisperse_averages.simulate import AT_REST, COLLAPSED, linear_end
+from granular_response.paper.groups.polydisperse_averages.ensemble.averages import linear_end
 from granular_response.plot import style
 from granular_response.store import files as store
 

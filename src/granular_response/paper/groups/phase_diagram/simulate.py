@@ -32,16 +32,13 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
-from granular_response.observe.floor import smoothed_response
+from granular_response.paper.ensembles import smoothed
 from granular_response.paper.groups.phase_diagram.parameters import Parameters
 from granular_response.store import files as store
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import Progress
 
 FloatArray = NDArray[np.float64]
-
-#: Flag of a realization at rest in the ensembles.
-AT_REST = 0
 
 #: What a crossover is known to be.
 FOUND, BELOW, ABOVE = 0, 1, 2
@@ -199,14 +196,8 @@ def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, le
     one = source.isel(case=case, realization=slice(0, int(source["realizations"][case])))
     used = np.isfinite(one["force"].values)
     force = one["force"].values[used]
-    response = np.full((one.sizes["realization"], len(force), len(x)), np.nan)
-    for r in range(len(response)):
-        at = one["x"].values[r]
-        here = np.isfinite(at)
-        for k in np.flatnonzero(one["outcome"].values[r, used] == AT_REST):
-            values = one["floor_response"].values[r, k, here]
-            both = smoothed_response(np.concatenate([x, -x]), at[here], values, width)
-            response[r, k] = 0.5 * (both[: len(x)] + both[len(x) :])
+    both = smoothed(one.isel(step=used), np.concatenate([x, -x]), width)
+    response = 0.5 * (both[..., : len(x)] + both[..., len(x) :])
     return Ensemble(force, response, max(1, int(np.ceil(least_part * len(response)))))
 
 

@@ -6,20 +6,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from granular_response.observe.floor import smoothed_response
 from granular_response.observe.peaks import asymmetry, central_dip
 
 from ...claims.bootstrap import over_realizations
 from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading, missing
 from ...claims.words import Bounds
+from ...ensembles import smoothed
 from ..phase_diagram.claims import STARTS, title
 
 FloatArray = NDArray[np.float64]
 
 GROUP = "polydisperse_averages"
-
-#: Flag of a realization at rest.
-AT_REST = 0
 
 #: Where smoothed responses are compared (mean radii).
 GRID = np.arange(-30.0, 30.25, 0.5)
@@ -80,18 +77,6 @@ def shorter_range(data: Data, words: Bounds) -> Finding:
     )
 
 
-def _smoothed(case: xr.Dataset, width: float) -> FloatArray:
-    """(realizations, forces, GRID) smoothed responses; nan where a realization is not at rest."""
-    place = case["x"].transpose("realization", "slot").values
-    values = case["floor_response"].transpose("realization", "step", "slot").values
-    found = np.full((*values.shape[:2], GRID.size), np.nan)
-    for r, k in np.argwhere(case["outcome"].transpose("realization", "step").values == AT_REST):
-        here = np.isfinite(place[r]) & np.isfinite(values[r, k])
-        if here.sum() > 2:
-            found[r, k] = smoothed_response(GRID, place[r, here], values[r, k, here], width)
-    return found
-
-
 def _ensembles(data: Data) -> xr.Dataset:
     names = ("floor_response", "x", "outcome", "force", "polydispersity", "friction", "lattice_constant")
     return data.get(GROUP, "ensembles", *names)
@@ -115,7 +100,7 @@ def gradual(data: Data, words: Bounds) -> Finding:
             case = next(iter(_cases(study, delta, 1.0).values()))
         except NotMeasured:
             continue
-        responses = _smoothed(case, 6.0)
+        responses = smoothed(case, GRID, 6.0)
         name = f"polydispersity {delta:g}"
         with np.errstate(invalid="ignore"):
             full = np.isfinite(responses[..., 0]).mean(axis=0) >= 0.5
@@ -251,7 +236,7 @@ def resembles(data: Data, words: Bounds) -> Finding:
         one = study.isel(case=case)
         if not (float(one["polydispersity"]) > 0.0 and str(one["lattice_constant"].values) == STARTS[0]):
             continue
-        responses = _smoothed(one, 6.0)
+        responses = smoothed(one, GRID, 6.0)
         at_rest = np.isfinite(responses[..., 0])
         steps = np.flatnonzero(at_rest.mean(axis=0) >= 0.5)
         for name, k in (("smallest force", steps[:1]), ("largest force", steps[-1:])):

@@ -1,0 +1,31 @@
+"""Stored ensembles of disordered slabs (Sec. VI): what becomes of a realization, and its smoothed responses."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from granular_response.observe.floor import smoothed_response
+
+FloatArray = NDArray[np.float64]
+
+#: What becomes of a realization under a load; see ``groups.polydisperse_averages``.
+AT_REST, COLLAPSED, FAILED, NOT_REACHED = 0, 1, 2, 3
+OUTCOMES = ("at_rest", "collapsed", "failed", "not_reached")
+
+
+def smoothed(case: xr.Dataset, x: FloatArray, width: float) -> FloatArray:
+    """(realization, step, len(x)) responses of one case with Gaussian coarse graining; nan where not at rest.
+
+    ``case`` has ``x`` (realization, slot), ``floor_response`` (realization, step, slot) and ``outcome`` (realization,
+    step); lengths in mean radii, the result in 1/mean radius.
+    """
+    place = case["x"].transpose("realization", "slot").values
+    values = case["floor_response"].transpose("realization", "step", "slot").values
+    found = np.full((*values.shape[:2], len(x)), np.nan)
+    for r, k in np.argwhere(case["outcome"].transpose("realization", "step").values == AT_REST):
+        here = np.isfinite(place[r]) & np.isfinite(values[r, k])
+        if here.any():
+            found[r, k] = smoothed_response(x, place[r, here], values[r, k, here], width)
+    return found

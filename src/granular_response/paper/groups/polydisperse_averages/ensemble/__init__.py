@@ -1,0 +1,1 @@
+"""How an ensemble of polydisperse slabs is made and averaged."""
