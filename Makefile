@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 # The same order and width of floating-point operations on every x86 machine
-# (src/granular_response/floating_point.py, which the command line applies by itself).
+# (src/granular_response/machine/floating_point.py, which the command line applies by itself).
 export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 ifneq (,$(filter x86_64 amd64,$(shell uname -m)))
@@ -21,7 +21,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce figure test fuzz coverage lint benchmark lock clean
+.PHONY: help setup reproduce figure test fuzz coverage lint benchmark arena lock clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -65,6 +65,10 @@ lint: setup ## Run the linters and the type checker alone
 
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	"$(BIN)/dvc" repro benchmarks/dvc.yaml
+
+arena: setup ## Time a step beside other codes that are installed; says how to install those that are not
+	"$(BIN)/python" benchmarks/arena.py benchmarks/arena.json
+	"$(BIN)/python" benchmarks/document.py
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows
 	$(PYTHON) -m venv --clear "$(VENV)-lock"

@@ -51,6 +51,12 @@ TEXTS = {
         "disks, less above, 0.993 times its speed from the lattice to rest. A scene alone passes the goal that "
         "lock-step was built for, ten times LAMMPS, so it went.",
     ),
+    "arena": (
+        "Beside other codes",
+        "Slabs with friction 0.2 that have fallen into their contacts; same contact law and time step, one core each, "
+        "in turns in one run, least of several repeats. LAMMPS runs `pair_style gran/hooke/history`; LIGGGHTS runs "
+        "`gran model hooke/stiffness tangential history` on spheres held in the plane, which turn a bit more easily.",
+    ),
     "linear": (
         "Factorisations of the tangent stiffness",
         "Slabs at rest. With friction the tangent has three unknowns a disk and is factorised as L U; without, two: "
@@ -118,10 +124,12 @@ def factorisations(metrics: Metrics, key: str, title: str) -> dict[str, Any]:
     for run in metrics["runs"]:
         columns.setdefault(run["method"], run["method"])
         rows.setdefault(run["unknowns"], dict(run))[run["method"]] = run[key]
-    made = table(list(rows.values()), columns, title)
-    if metrics["skipped"]:
-        made["title"] += f" (skipped: {'; '.join(metrics['skipped'])})"
-    return made
+    return table(list(rows.values()), columns, skipped(title, metrics))
+
+
+def skipped(title: str, metrics: Metrics) -> str:
+    """The title with what was not there to be measured."""
+    return title + (f" (skipped: {'; '.join(metrics['skipped'])})" if metrics["skipped"] else "") + ":"
 
 
 def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
@@ -172,10 +180,16 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
                 "Where a step goes:",
             ),
         ]  # fmt: skip
+    if benchmark == "arena":
+        columns = {
+            "disks": "disks", "code": "code", "version": "version", "microseconds": "µs/step",
+            "times_ours": "times ours",
+        }  # fmt: skip
+        return [table(metrics["runs"], columns, skipped("Microseconds per step", metrics))]
     if benchmark == "linear":
         return [
-            factorisations(metrics, "factor_milliseconds", "Factorisation, ms:"),
-            factorisations(metrics, "solve_milliseconds", "Solution for one right-hand side, ms:"),
+            factorisations(metrics, "factor_milliseconds", "Factorisation, ms"),
+            factorisations(metrics, "solve_milliseconds", "Solution for one right-hand side, ms"),
         ]
     if benchmark == "skipping":
         columns = {"part": "part", "friction": "friction", "cost": "cost", "same_result": "bitwise the same"}

@@ -38,20 +38,22 @@ def executable() -> str | None:
     return shutil.which("lmp")
 
 
-def version() -> str | None:
-    """The version line of `lmp`, or None."""
-    if executable() is None:
+def version(command: str | None = None) -> str | None:
+    """The version line of `lmp`, or of the one at ``command``; None where there is none."""
+    command = command or executable()
+    if command is None:
         return None
-    text = subprocess.run([executable(), "-h"], capture_output=True, text=True).stdout
+    text = subprocess.run([command, "-h"], capture_output=True, text=True).stdout
     found = re.search(r"(LAMMPS|Large-scale)[^\n]*- *(\d+ \w+ \d+[^\n]*)", text)
     return found.group(2).strip() if found else "unknown"
 
 
-def _data(packing: Packing) -> str:
+def data(packing: Packing, types: int = 1) -> str:
+    """The disks as `read_data` takes them, all of the first of ``types`` types."""
     density = packing.mass / (4.0 / 3.0 * math.pi * packing.radius**3)
     top = float(packing.position[:, 1].max()) + 10.0
     lines = [
-        "slab", "", f"{packing.n} atoms", "1 atom types",
+        "slab", "", f"{packing.n} atoms", f"{types} atom types",
         f"0 {packing.width!r} xlo xhi", f"-1 {top!r} ylo yhi", "-0.5 0.5 zlo zhi", "", "Atoms", "",
     ]  # fmt: skip
     for i, ((x, z), radius) in enumerate(zip(packing.position, packing.radius, strict=True), 1):
@@ -94,25 +96,30 @@ compute heights bottom property/atom y
 """
 
 
-def _run(packing: Packing, friction: float, time_step: float, body: str) -> tuple[list[tuple[int, float]], Path]:
+def run(command: str, disks: str, script: str) -> tuple[list[tuple[int, float]], Path]:
+    """Steps and seconds of each `run` of a script, and the folder with what it wrote."""
     folder = Path(tempfile.mkdtemp())
-    (folder / "slab.data").write_text(_data(packing))
-    (folder / "in.slab").write_text(_script(friction, packing, time_step, body))
+    (folder / "slab.data").write_text(disks)
+    (folder / "in.slab").write_text(script)
     done = subprocess.run(
-        [executable(), "-in", "in.slab", "-screen", "none"], cwd=folder, capture_output=True, text=True
+        [command, "-in", "in.slab", "-screen", "none", "-log", "log"], cwd=folder, capture_output=True, text=True
     )
+    log = (folder / "log").read_text() if (folder / "log").exists() else ""
     if done.returncode:
-        errors = [line for line in (folder / "log.lammps").read_text().splitlines() if "ERROR" in line]
+        errors = [line for line in log.splitlines() if "ERROR" in line]
         shutil.rmtree(folder)
-        raise RuntimeError(f"lmp failed: {' '.join(errors) or done.stderr}")
-    log = (folder / "log.lammps").read_text()
+        raise RuntimeError(f"{command} failed: {' '.join(errors) or done.stderr}")
     loops = re.findall(r"Loop time of ([\d.eE+-]+) on \d+ procs for (\d+) steps", log)
     return [(int(steps), float(seconds)) for seconds, steps in loops], folder
 
 
-def step_time(packing: Packing, friction: float, settle: int, steps: int, time_step: float = 4e-4) -> float:
-    """Seconds per step after `settle` steps under gravity: the least of REPEATS."""
-    loops, folder = _run(packing, friction, time_step, "\n".join([f"run {settle}", *[f"run {steps}"] * REPEATS]))
+def step_time(
+    packing: Packing, friction: float, settle: int, steps: int, time_step: float = 4e-4, command: str | None = None,
+    repeats: int = REPEATS,
+) -> float:  # fmt: skip
+    """Seconds per step after `settle` steps under gravity: the least of ``repeats``."""
+    body = "\n".join([f"run {settle}", *[f"run {steps}"] * repeats])
+    loops, folder = run(command or executable(), data(packing), _script(friction, packing, time_step, body))
     shutil.rmtree(folder)
     return min(seconds / steps for steps, seconds in loops[1:])
 
@@ -135,7 +142,7 @@ fix push loaded addforce 0.0 v_push 0.0
 run {load_steps}
 write_dump bottom custom loaded.dump id y modify sort id format float %.17g
 """
-    loops, folder = _run(packing, friction, time_step, body)
+    loops, folder = run(executable(), data(packing), _script(friction, packing, time_step, body))
     radius = packing.radius[packing.row == 0]
     floor = [6000.0 * np.maximum(radius - _heights(folder / name), 0.0) for name in ("rest.dump", "loaded.dump")]
     shutil.rmtree(folder)

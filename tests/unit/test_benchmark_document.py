@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import importlib
+import json
 from pathlib import Path
 
 import numpy as np
@@ -91,3 +92,27 @@ def test_factorisations_of_one_slab_agree(script):
         rows = linear.measure(4, 17, friction, 1)
         assert {"band, ours", "band, LAPACK", "fronts, ours", "SuperLU"} <= {row["method"] for row in rows}
         assert all(row["relative_residual"] < 1e-10 for row in rows)
+
+
+def test_codes_that_are_not_installed_are_named(script, monkeypatch, tmp_path, capsys):
+    arena = script("arena")
+    monkeypatch.delenv("ARENA_LMP", raising=False)
+    for code in (arena.lammps, arena.liggghts):
+        monkeypatch.setattr(code, "executable", lambda: None)
+    monkeypatch.setattr(arena.kernel, "SLABS", [(4, 9, 100, 20)])
+    monkeypatch.setattr(arena, "DISKS", (34,))
+    arena.main(str(tmp_path / "arena.json"))
+    found = json.loads((tmp_path / "arena.json").read_text())
+    assert [(row["code"], row["disks"]) for row in found["runs"]] == [("granular_response", 34)]
+    assert found["runs"][0]["microseconds"] > 0.0
+    assert [text.partition(" (")[0] for text in found["skipped"]] == ["LAMMPS", "LAMMPS, newest", "LIGGGHTS"]
+    assert "apt-get install liggghts" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("code", ["lammps", "liggghts"])
+def test_other_codes_take_the_slab(script, code):
+    peer = script(code)
+    if peer.executable() is None:
+        pytest.skip(f"{code} is not installed")
+    packing = script("kernel").slab(4, 9, 0.2).packing
+    assert 0.0 < peer.step_time(packing, 0.2, 10, 20, 4e-4, peer.executable(), 1) < 1e-2
