@@ -21,7 +21,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce figure test fuzz coverage lint benchmark arena lock clean
+.PHONY: help setup reproduce quote figure test fuzz coverage lint benchmark arena lock clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -40,6 +40,13 @@ $(STAMP): requirements.lock pyproject.toml
 reproduce: setup ## Run what is not up to date: simulations, figures, claims, report
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro
+	@$(MAKE) --no-print-directory quote
+
+# Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand.
+quote: setup ## Renew the lines that README and documents quote from stored results and code (tests compare them)
+	"$(BIN)/granular-response" claims --list --readme README.md > /dev/null
+	"$(BIN)/granular-response" report --notes docs/reproduction-notes.md
+	"$(BIN)/granular-response" keys --page docs/scene-reference.md
 
 figure: setup ## Draw one figure group: make figure GROUP=pile_dip
 	@test -n "$(GROUP)" || { echo "make figure GROUP=name, one of:"; \

@@ -431,7 +431,7 @@ def test_the_readme_quotes_the_stored_table():
     text = (ROOT / "README.md").read_text()
     found = json.loads(stored.read_text())
     quoted = f"{table.sentence(found)}\n{table.firmness(found)}"
-    assert generated.replace(text, table.BLOCK, quoted) == text, "granular-response claims --readme README.md"
+    assert generated.replace(text, table.BLOCK, quoted) == text, "make quote"
 
 
 def test_the_stages_read_every_group_of_the_pipeline():

@@ -178,6 +178,8 @@ def test_stages_have_the_agreed_form(kind, group, definition):
         assert definition["outs"] == [{f"figures/{group}": {"cache": False}}]
         assert f"data/{group}.nc" in definition["deps"]
         assert "params" not in definition
+    else:  # nothing is written that is not declared: no file named beside the outputs
+        assert definition["cmd"] == f"granular-response {kind}"
 
 
 def test_what_is_derived_comes_after_the_data_that_it_reads():

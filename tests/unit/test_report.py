@@ -231,7 +231,7 @@ def test_the_notes_hold_the_stored_sensitivities():
         pytest.skip("data/sensitivity.nc is not there yet: dvc repro simulate@sensitivity")
     text = (ROOT / "docs" / "reproduction-notes.md").read_text()
     fresh = generated.replace(text, readings.BLOCK, readings.markdown(store.read(stored)))
-    assert fresh == text, "granular-response report --notes docs/reproduction-notes.md"
+    assert fresh == text, "make quote"
 
 
 def test_every_reading_of_the_table_is_a_variant_of_the_study():
