@@ -1,5 +1,6 @@
 """Exports, read back by other means than they were written with."""
 
+import base64
 import re
 import struct
 import subprocess
@@ -10,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+import granular_response as gr
 from granular_response.scene import Scene
 from granular_response.solve import solve_scene
 from granular_response.store import files as store
@@ -56,13 +58,13 @@ def read_gsd(path: Path) -> dict[int, dict[str, np.ndarray]]:
 def test_gsd(result, data, tmp_path):
     frames = read_gsd(export(result, tmp_path / "result.gsd"))
     assert sorted(frames) == [0, 1]
-    shift = None
     for index, state in enumerate(data["position"].values):
         frame = {**frames[0], **frames[index]}  # what does not change is stored once
         np.testing.assert_allclose(frame["particles/diameter"][:, 0], 2.0 * data["radius"], rtol=1e-6)
-        offset = frame["particles/position"][:, :2] - state
-        shift = offset[0] if shift is None else shift
-        np.testing.assert_allclose(offset, np.broadcast_to(shift, offset.shape), atol=1e-5)
+        position = frame["particles/position"]
+        np.testing.assert_allclose(position, np.column_stack([state, 0.0 * state[:, 0]]), atol=1e-5)
+        half = 0.5 * frame["configuration/box"].ravel()[:2]
+        assert (np.abs(position[:, :2]) <= half).all()  # as the format asks
         touching = data["contact_status"].values[index] != 0
         np.testing.assert_array_equal(
             frame["bonds/group"],
@@ -106,18 +108,16 @@ def test_xyz(result, data, tmp_path):
 
 
 def read_vtu(path: Path) -> dict[str, np.ndarray]:
-    """Arrays of a VTK unstructured grid with appended raw data: 8 bytes of length, then the values."""
-    head, raw = path.read_bytes().split(b'<AppendedData encoding="raw">', 1)
-    raw = raw[raw.index(b"_") + 1 :]
-    root = ElementTree.fromstring(head + b"</VTKFile>")
+    """Arrays of a VTK unstructured grid: in base64, 8 bytes of length, then the values."""
+    root = ElementTree.parse(path).getroot()
     assert (root.get("type"), root.get("header_type")) == ("UnstructuredGrid", "UInt64")
     kinds = {"Float64": "<f8", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1"}
     found = {}
     for array in root.iter("DataArray"):
-        place, kind = int(array.get("offset")), np.dtype(kinds[array.get("type")])
-        (size,) = struct.unpack_from("<Q", raw, place)
-        values = np.frombuffer(raw, kind, size // kind.itemsize, place + 8)
-        components = int(array.get("NumberOfComponents"))
+        raw = base64.b64decode(array.text)
+        assert struct.unpack_from("<Q", raw) == (len(raw) - 8,)
+        values = np.frombuffer(raw[8:], kinds[array.get("type")])
+        components = int(array.get("NumberOfComponents", 1))
         found[array.get("Name")] = values.reshape(-1, components) if components > 1 else values
     piece = root.find(".//Piece")
     assert (len(found["points"]), len(found["types"])) == (
@@ -161,7 +161,7 @@ def test_vtu(result, data, tmp_path, index):
 
 
 def test_errors_are_one_line(result, tmp_path):
-    with pytest.raises(ExportError, match=r"format '\.pdf' is unknown, must be \.gsd or \.vtu or \.xyz$"):
+    with pytest.raises(ExportError, match=r"format '\.pdf' is unknown, must be \.csv or .* or \.xyz$"):
         export(result, tmp_path / "result.pdf")
     with pytest.raises(ExportError, match=r"state = 2: must be from -2 to 1"):
         export(result, tmp_path / "result.vtu", state=2)
@@ -192,3 +192,32 @@ def test_on_the_command_line(result, tmp_path):
     assert wrong.returncode == 2
     assert wrong.stderr.count("\n") == 1
     assert "format '.abc' is unknown" in wrong.stderr
+
+
+def test_gsd_by_its_own_library(result, data, tmp_path):
+    import gsd.hoomd
+
+    with gsd.hoomd.open(str(export(result, tmp_path / "result.gsd")), "r") as file:
+        assert len(file) == data.sizes["state"]
+        np.testing.assert_allclose(file[1].particles.position[:, :2], data["position"][1], atol=1e-5)
+        assert float(file[1].log["load_factor"][0]) == 1.0
+        assert float(file[1].log["box_width"][0]) == data.attrs["width"]
+
+
+def test_a_series_for_paraview(result, data, tmp_path):
+    import meshio
+
+    series = export(result, tmp_path / "result.pvd")
+    entries = list(ElementTree.parse(series).getroot().iter("DataSet"))
+    assert [entry.get("timestep") for entry in entries] == ["0", "1"]
+    for index, entry in enumerate(entries):
+        mesh = meshio.read(tmp_path / entry.get("file"))
+        n = data.sizes["disk"]
+        np.testing.assert_array_equal(mesh.points[:n, :2], data["position"][index])
+        stress = mesh.point_data["added_stress_zz"][:n]
+        assert np.all(stress == 0.0) if index == 0 else stress.max() > 0.05
+        assert mesh.point_data["added_stress_xz"].shape == mesh.point_data["radius"].shape
+    opened, disk = gr.open_result(result), 9
+    x, z = data["position"].values[1][disk]
+    stress = opened.stress(x=[x - opened.origin], z=[z])
+    np.testing.assert_allclose(mesh.point_data["added_stress_zz"][disk], stress.values[0, 0, 1, 1], rtol=1e-9)

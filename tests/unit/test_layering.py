@@ -19,12 +19,12 @@ ALLOWED = {
     "machine": {"llvmlite", "numba", "numpy"},
     "contact": {"numba", "numpy"},
     "kernels": {"numba", "numpy"},
-    "scene": {"numpy", "pydantic", "pydantic_core", "yaml"},
+    "scene": {"gsd", "numpy", "pydantic", "pydantic_core", "yaml"},
     "solve": {"numpy", "scipy"},
     "observe": {"numpy", "scipy"},
     "theory": {"numpy", "scipy"},
     "plot": {"cycler", "matplotlib", "numpy", "xarray"},
-    "store": {"gsd", "netCDF4", "numpy", "pyevtk", "rich", "xarray"},
+    "store": {"gsd", "netCDF4", "numpy", "rich", "xarray"},
     "sweeps": {"cloudpickle", "distributed", "numpy"},
     "api": {"numpy", "rich", "xarray"},
     "paper": {"PIL", "jinja2", "matplotlib", "numpy", "pydantic", "scipy", "xarray"},
@@ -81,7 +81,7 @@ def test_a_part_imports_what_its_place_allows(part):
 
 def test_every_import_is_a_declared_dependency():
     declared = set(re.findall(r'^    "([A-Za-z0-9_-]+)[>=]', (ROOT / "pyproject.toml").read_text(), re.MULTILINE))
-    declared |= {"pydantic_core", "distributed", "gsd", "pyevtk"}  # part of pydantic; of the extras
+    declared |= {"pydantic_core", "distributed", "gsd"}  # part of pydantic; of the extras
     declared |= {"cycler", "yaml", "PIL"}  # part of matplotlib; the packages pyyaml and pillow
     used = {name for part in PARTS for name in outside_imports(part)}
     assert used <= {name.replace("-", "_") for name in declared}

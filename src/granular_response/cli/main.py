@@ -327,11 +327,11 @@ def keys(
 def export(
     result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="File to make: .gsd or .xyz (OVITO), .vtu (ParaView).")
+        Path, typer.Option("--output", "-o", help="File to make; its ending is the format.")
     ],
-    state: Annotated[int, typer.Option(help="State in a .vtu file: 0 at rest, -1 the last one.")] = -1,
+    state: Annotated[int, typer.Option(help="State in a file of one state: 0 at rest, -1 the last one.")] = -1,
 ) -> None:
-    """Write a result as a file for OVITO or ParaView."""
+    """Write a result for OVITO (.gsd, .xyz), ParaView (.pvd, .vtu), LAMMPS (.data, .dump), YADE (.txt) or as .csv."""
     from ..store import export as exporting
 
     typer.echo(str(exporting.export(result, output, state=state)))

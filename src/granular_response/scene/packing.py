@@ -36,6 +36,7 @@ class Packing:
     left: NDArray[np.int64] | None = None
     lattice_constant: float | None = None  #: distance of neighbours in the lattice; None from a file
     periodic: bool = False  #: periodic sides in place of walls
+    given_mass: FloatArray | None = None  #: (n,) with mean 1, where disks are not of one material
 
     @property
     def n(self) -> int:
@@ -69,7 +70,9 @@ class Packing:
 
     @cached_property
     def mass(self) -> FloatArray:
-        """(n,) masses, radius^2 over its mean: disks of one material, mean mass 1 (Sec. III.B)."""
+        """(n,) masses, radius^2 over its mean unless they are given: one material, mean mass 1 (Sec. III.B)."""
+        if self.given_mass is not None:
+            return self.given_mass
         squared = self.radius**2
         return squared / exact_mean(squared)
 

@@ -429,7 +429,8 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     rest = state_from(dataset, 0)
     scene = scene_of(dataset, folder=folder)
     problem = Problem.from_scene(scene).with_loads(rest.position)
-    if not np.array_equal(problem.packing.radius, dataset["radius"].values):
+    packed = problem.packing
+    if not all(np.array_equal(getattr(packed, name), dataset[name].values) for name in ("radius", "mass")):
         raise ResultError("the table of disks has changed since the result was made")
     loaded = [state_from(dataset, k) for k in range(1, dataset.sizes["state"])]
     if loaded and "crossing_start" in dataset:

@@ -1,0 +1,36 @@
+"""Tables of disks from elsewhere: one module for each format, each with ``read(path) -> Table``.
+
+What is read is what the file says, in its own units; ``scene.table`` makes a packing of it.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from .table import FormatError, Table
+
+#: Formats of files that hold disks, and the endings of names by which each is known.
+SUFFIXES = {
+    "csv": (".csv",),
+    "lammps-data": (".data", ".lmp"),
+    "lammps-dump": (".dump", ".lammpstrj"),
+    "yade": (".txt", ".spheres"),
+    "gsd": (".gsd",),
+}
+_MODULES = {name: name.replace("-", "_") for name in SUFFIXES} | {"csv": "csv_table", "gsd": "gsd_file"}
+
+
+def by_suffix(path: str | Path) -> str:
+    """The format that a name ends with; csv for any other ending."""
+    suffix = Path(path).suffix
+    return next((name for name, suffixes in SUFFIXES.items() if suffix in suffixes), "csv")
+
+
+def read(path: Path, file_format: str) -> Table:
+    """The disks in a file. Raises FormatError for what cannot be read, OSError, and UnicodeError for other text."""
+    table: Table = import_module(f".{_MODULES[file_format]}", __name__).read(path)
+    return table
+
+
+__all__ = ["SUFFIXES", "FormatError", "Table", "by_suffix", "read"]

@@ -1,0 +1,17 @@
+"""A CSV table of disks, in the columns that ``packing: {kind: file}`` reads; every digit is kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+
+def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
+    """The file as bytes."""
+    state = dataset.isel(state=-1)
+    columns = [*state["position"].values.T, state["radius"].values, state["mass"].values]
+    rows = [",".join(map(repr, values)) for values in np.column_stack(columns).tolist()]
+    head = [f"# width {float(dataset.attrs['width'])!r}, load factor {float(state['state_load_factor'])!r}"]
+    return {path: ("\n".join([*head, "x,z,radius,mass", *rows]) + "\n").encode("ascii")}

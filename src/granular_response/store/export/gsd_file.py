@@ -1,0 +1,55 @@
+"""GSD, the format of HOOMD, for OVITO: one frame for each state, contacts as bonds.
+
+Coordinates are (x, z, 0), measured from the lower left corner. The format puts the middle of its box at the origin, so
+the box is twice as wide and high as the packing and holds every disk in its upper right quarter; the log entries
+``origin`` and ``box_width`` say so.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ...state import OPEN
+from .frames import extent, frames, in_plane
+
+
+def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
+    """The file as bytes."""
+    import gsd.hoomd
+
+    with tempfile.TemporaryDirectory() as folder:  # the library writes to disk only
+        made = Path(folder, "export.gsd")
+        with gsd.hoomd.open(str(made), "w") as file:
+            width, height = extent(dataset)
+            for index, (factor, position, angle, force, count) in enumerate(frames(dataset)):
+                frame = gsd.hoomd.Frame()
+                frame.configuration.step = index
+                frame.configuration.dimensions = 2
+                frame.configuration.box = [2.0 * width, 2.0 * height, 0, 0, 0, 0]
+                frame.particles.N = len(position)
+                frame.particles.types = ["disk"]
+                frame.particles.position = in_plane(position)
+                frame.particles.diameter = 2.0 * dataset["radius"].values
+                frame.particles.mass = dataset["mass"].values
+                half = 0.5 * angle
+                frame.particles.orientation = np.column_stack([np.cos(half), 0 * half, 0 * half, np.sin(half)])
+                touching = dataset["contact_status"].values[index] != OPEN
+                pairs = np.column_stack([dataset["contact_disk"].values, dataset["contact_partner"].values])[touching]
+                frame.bonds.N = len(pairs)
+                frame.bonds.types = ["contact"]
+                frame.bonds.group = pairs
+                frame.log = {
+                    "origin": np.zeros(3),
+                    "box_width": np.array([width]),
+                    "load_factor": np.array([factor]),
+                    "particles/force_change": in_plane(force),
+                    "particles/coordination": count.astype(np.int32),
+                    "bonds/normal_force": dataset["contact_normal_force"].values[index][touching],
+                    "bonds/tangential_force": dataset["contact_tangential_force"].values[index][touching],
+                }
+                file.append(frame)
+        return {path: made.read_bytes()}
