@@ -36,8 +36,8 @@ class FilePacking(Description):
     """Disks from a file: CSV with the columns x, z and radius, or what another program wrote (``scene.formats``).
 
     Lengths are in any one unit. Every centre lies above the floor ``z = 0`` and between the side walls ``x = 0`` and
-    ``x = width``; periodic sides take any x. Lengths, the width too, are rescaled to a mean radius of 1, masses to a mean
-    of 1.
+    ``x = width``; periodic sides take any x. Lengths, the width too, are rescaled to a mean radius of 1, masses to a
+    mean of 1.
     """
 
     kind: Literal["file"] = Field(default="file", description="Disks from a file.")
