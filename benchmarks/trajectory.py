@@ -25,7 +25,7 @@ FALL_TIME, FALL_REFERENCE = 1.0, 3.125e-6
 
 def swing(integrator: str, step: float) -> float:
     """Error in amplitudes after 1.2 swings of a disk on the floor; the start is known to every derivative."""
-    packing = Packing(np.array([[500.0, 1.0 - 1.0 / 6000.0]]), np.ones(1), np.full(1, -1, np.int32), 1000.0, "file")
+    packing = Packing(np.array([[500.0, 1.0 - 1.0 / 6000.0]]), np.ones(1), np.full(1, -1, np.int32), 1000.0)
     scene = Scene.from_dict({"contact": {"friction": 0.0}, "wall": {"damping_ratio": DAMPING}, "loads": []})
     problem = Problem.from_scene(scene, packing)
     frequency = np.sqrt(6000.0)

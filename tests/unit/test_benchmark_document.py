@@ -116,3 +116,10 @@ def test_other_codes_take_the_slab(script, code):
         pytest.skip(f"{code} is not installed")
     packing = script("kernel").slab(4, 9, 0.2).packing
     assert 0.0 < peer.step_time(packing, 0.2, 10, 20, 4e-4, peer.executable(), 1) < 1e-2
+
+
+@pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
+def test_a_swing_has_the_stored_error(script, document, integrator):
+    trajectory = script("trajectory")
+    stored = document.pick(document.read()["trajectory"]["runs"], problem="swing", integrator=integrator)[0]
+    assert trajectory.swing(integrator, stored["time_step"]) == pytest.approx(stored["error"], rel=1e-4)
