@@ -17,6 +17,7 @@ from typing import Any
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
+from ..groups.contact_law import claims as contact_law
 from ..groups.friction_fields import claims as friction_fields
 from ..groups.friction_linear_range import claims as friction_linear_range
 from ..groups.frictionless_crossover import claims as frictionless_crossover
@@ -47,6 +48,7 @@ def _place(claim: Claim) -> tuple[int, int, str]:
 CLAIMS: tuple[Claim, ...] = tuple(
     sorted(
         (
+            *contact_law.CLAIMS,
             *friction_fields.CLAIMS,
             *friction_linear_range.CLAIMS,
             *frictionless_crossover.CLAIMS,

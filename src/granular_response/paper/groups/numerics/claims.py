@@ -210,13 +210,4 @@ CLAIMS = (
         (),
         GROUP,
     ),
-    Claim(
-        "N8",
-        "III.B",
-        "responses with the linear normal force against the 3/2 power, matched at the typical overlap",
-        "a linear force describes the disks quite well",
-        missing("responses with a normal force that grows as the overlap to the power 3/2"),
-        (),
-        GROUP,
-    ),
 )

@@ -1,0 +1,47 @@
+"""Claim N8: the linear law against the power 3/2 (Sec. III.B)."""
+
+from __future__ import annotations
+
+from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "contact_law"
+
+
+def linear_fit(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "responses", "difference", "friction", "force")
+    readings = []
+    for index, mu in enumerate(study["friction"].values.tolist()):
+        one = study["difference"].values[index]
+        readings.append(
+            Reading(
+                f"friction {mu:g}",
+                Condition(
+                    "largest difference of the responses, per largest response",
+                    Quantity.exact(float(one.max())),
+                    most=words["quite well"],
+                    words=("quite well",),
+                    unit="%",
+                ),
+            )
+        )
+    values = [reading.conditions[0].found.value for reading in readings]
+    return Finding(
+        f"responses by the two laws are at most {min(values):.1%} to {max(values):.1%} of the largest response apart",
+        readings,
+        "Matched where both give the mean normal force at rest; the paper's statement is about its measured contacts, "
+        "here it is asked of the response",
+    )
+
+
+CLAIMS = (
+    Claim(
+        "N8",
+        "III.B",
+        "responses with the linear normal force against the 3/2 power, matched at the typical overlap",
+        "a linear force describes the disks quite well",
+        linear_fit,
+        (),
+        GROUP,
+    ),
+)

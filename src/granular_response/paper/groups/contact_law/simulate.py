@@ -1,0 +1,123 @@
+"""The linear law against the power 3/2 (Sec. III.B): does a linear fit describe the response?
+
+The laws are matched at the slab's typical overlap: there, at that of the mean normal force between touching disks at
+rest under the linear law, both give the same force. ``responses`` holds the floor responses of both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.contact_law.parameters import Parameters
+from granular_response.paper.slab_response import LoadPath, Measures
+from granular_response.scene import Scene
+from granular_response.state import State
+from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.sweeps.tasks import Progress, map_tasks
+
+FloatArray = NDArray[np.float64]
+
+LAWS = ("linear", "hertz")
+
+
+@dataclass(frozen=True)
+class Task:
+    """Both laws at one friction."""
+
+    scene: Scene  #: linear, with one load of unit force
+    forces: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    x: FloatArray  #: (floor_disk,)
+    response: FloatArray  #: (law, force, floor_disk)
+    residual: FloatArray  #: (law, force) largest unbalanced force
+    opened: FloatArray  #: (law, force) contacts that the load opened in the central third
+    typical_force: float
+    stiffness: FloatArray  #: (law,) contact.normal_stiffness
+
+
+def matched_stiffness(stiffness: float, force: float) -> float:
+    """``contact.normal_stiffness`` of the 3/2 law with the overlap ``force / stiffness`` at ``force``.
+
+    With ``f = C xi^(3/2)`` that asks for ``C = stiffness^(3/2) / sqrt(force)``, and the tangent stiffness at a force of
+    one weight is ``3/2 C^(2/3)``.
+    """
+    return 1.5 * stiffness / force ** (1.0 / 3.0)
+
+
+def compute(task: Task) -> Outcome:
+    """Raises what the solvers raise."""
+    linear = LoadPath.of(task.scene)
+    force = typical_force(linear.rest)
+    stiffness = np.array([task.scene.contact.normal_stiffness, 0.0])
+    stiffness[1] = matched_stiffness(stiffness[0], force)
+    # contacts are stiffer under more force: the paper's time step is just too long for them
+    law = {"contact.law": "hertz", "contact.normal_stiffness": float(stiffness[1]), "protocol.time_step": "auto"}
+    power = LoadPath.of(task.scene.updated(law))
+    response, residual, opened = [], [], []
+    for path in (linear, power):
+        measures = Measures(path)
+        states = path.through(task.forces)
+        response.append([measures.response(state) for state in states])
+        residual.append([state.reached.certificate.force_residual for state in states])
+        opened.append([measures.opened(state) for state in states])
+    measures = Measures(linear)
+    return Outcome(measures.x, np.array(response), np.array(residual), np.array(opened), force, stiffness)
+
+
+def typical_force(rest: State) -> float:
+    """Mean normal force between touching disks."""
+    return float(rest.pairs.normal_force[rest.pairs.touching].mean())
+
+
+def simulate(
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
+) -> dict[str, xr.Dataset]:
+    """Dataset ``responses``."""
+    scenes = [parameters.base.updated({"contact.friction": mu}) for mu in parameters.friction]
+    outcomes = map_tasks(
+        compute, [Task(scene, parameters.forces) for scene in scenes], workers=workers, progress=progress
+    )
+    response = np.stack([o.response for o in outcomes])
+    largest = np.abs(response[:, 0]).max(axis=-1)
+    along = ("friction", "law", "force")
+    data = xr.Dataset(
+        {
+            "floor_response": variable((*along, "floor_disk"), response, "floor response per applied force"),
+            "difference": variable(
+                ("friction", "force"),
+                np.abs(response[:, 1] - response[:, 0]).max(axis=-1) / largest,
+                "largest difference of the responses by the two laws, per largest response by the linear one",
+            ),
+            "opened_contacts": variable(
+                along, np.stack([o.opened for o in outcomes]), "contacts of disks that the load opened, central third"
+            ),
+            "force_residual": variable(
+                along, np.stack([o.residual for o in outcomes]), f"largest unbalanced force on a disk {FORCE}"
+            ),
+            "typical_force": variable(
+                ("friction",),
+                np.array([o.typical_force for o in outcomes]),
+                f"mean normal force between disks at rest by the linear law {FORCE}",
+            ),
+            "normal_stiffness": variable(
+                ("friction", "law"),
+                np.stack([o.stiffness for o in outcomes]),
+                "contact.normal_stiffness: of the 3/2 law at a normal force of one mean disk weight",
+            ),
+        },
+        coords={
+            "friction": variable("friction", np.array(parameters.friction), "coefficient of friction between disks"),
+            "law": variable("law", list(LAWS), "contact law"),
+            "force": variable("force", np.array(parameters.forces), f"applied force {FORCE}"),
+            "x": variable("floor_disk", outcomes[0].x, f"rest position from the loaded disk, linear law {LENGTH}"),
+        },
+    )
+    return labelled({"responses": data}, parameters.base)

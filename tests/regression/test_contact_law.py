@@ -1,0 +1,39 @@
+"""The comparison of contact laws on a slab of 5 layers, from parameters through a file to a figure."""
+
+import numpy as np
+import pytest
+
+from granular_response.paper.groups.contact_law import draw, simulate
+from granular_response.paper.groups.contact_law.parameters import Parameters
+from granular_response.store import files as store
+
+PARAMETERS = {
+    "method": "auto",
+    "scene": {"packing": {"layers": 5, "disks_per_row": 15}},
+    "friction": [0.0, 1.0],
+    "forces": [0.5, 3.0],
+}
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("contact_law") / "group.nc"
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "contact_law"})
+    return store.read(path)
+
+
+def test_both_laws_are_at_rest_and_matched(datasets):
+    data = datasets["responses"]
+    assert float(data["force_residual"].max()) < 1e-9
+    force, (linear, power) = data["typical_force"].values, data["normal_stiffness"].values.T
+    overlap = force / linear
+    assert (power / 1.5) ** 1.5 * overlap**1.5 == pytest.approx(force, rel=1e-12)
+    assert (data["floor_response"].sum("floor_disk") > 0.9).all()
+    between = np.abs(data["floor_response"][:, 1] - data["floor_response"][:, 0]).max("floor_disk")
+    assert (between > 1e-3).all()  # the laws are not the same one
+
+
+def test_the_figure_has_a_panel_for_each_friction(datasets):
+    (figure,) = draw.draw(datasets).values()
+    assert len(figure.axes) == 2
+    assert {len(axes.lines) for axes in figure.axes} == {4}
