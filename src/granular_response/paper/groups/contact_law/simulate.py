@@ -66,7 +66,7 @@ def compute(task: Task) -> Outcome:
         measures = Measures(path)
         states = path.through(task.forces)
         response.append([measures.response(state) for state in states])
-        residual.append([state.reached.certificate.force_residual for state in states])
+        residual.append([state.certificate.force_residual for state in states])
         opened.append([measures.opened(state) for state in states])
     measures = Measures(linear)
     return Outcome(measures.x, np.array(response), np.array(residual), np.array(opened), force, stiffness)
