@@ -28,6 +28,7 @@ from ..groups.polydisperse_averages import claims as polydisperse_averages
 from ..groups.slab_comparison import claims as slab_comparison
 from ..groups.stiffness_ratio_crossover import claims as stiffness_ratio_crossover
 from ..groups.superposition import claims as superposition
+from ..groups.symmetry_breaking import claims as symmetry_breaking
 from ..groups.theory import claims as theory
 from ..groups.torque import claims as torque
 from . import preparations
@@ -59,6 +60,7 @@ CLAIMS: tuple[Claim, ...] = tuple(
             *slab_comparison.CLAIMS,
             *stiffness_ratio_crossover.CLAIMS,
             *superposition.CLAIMS,
+            *symmetry_breaking.CLAIMS,
             *theory.CLAIMS,
             *torque.CLAIMS,
         ),

@@ -1,4 +1,4 @@
-"""Claims F1 to F3, R1 to R9, A1, A2 and K4: ordered slabs with friction under growing forces (Secs. V.A to V.E)."""
+"""Claims F1 to F3, F11, R1 to R11 but R5a, A1, A2 and K4: ordered slabs with friction under growing forces (Sec. V)."""
 
 from __future__ import annotations
 
@@ -231,20 +231,6 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
     if not lost.size or lost[0] == 0:
         raise NotMeasured(f"data/{GROUP}.nc: large_forces holds no forces on both sides of the loss of symmetry")
     return runs, int(lost[0])
-
-
-def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
-    brackets = data.get(BREAKING, "brackets", "low", "high", "ramp_time", "time_step")
-    readings, texts = [], []
-    for low, high, ramp, step in zip(
-        *(brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step")), strict=True
-    ):
-        event = Quantity.bracket(low, high)
-        name = f"ramp of {ramp:g} sqrt(R/g), step {step:g}"
-        # the next force that the paper names is 95 mg, where its response has lost its symmetry
-        readings.append(Reading(name, Condition("loss of symmetry", event, 91.0, 95.0, unit="mg")))
-        texts.append(f"{event.text('mg')} ({name})")
-    return Finding(", ".join(texts), readings, "The paper does not say how long the force grows")
 
 
 def sharp(data: Data, words: Bounds) -> Finding:
@@ -561,15 +547,6 @@ CLAIMS = (
         third_peak_small,
         (16,),
         GROUP,
-    ),
-    Claim(
-        "R5a",
-        "V.E, Fig. 16b",
-        "friction 1: force at which the response to a ramp from rest loses its symmetry, for two ramps",
-        "when it exceeds 91 mg",
-        loss_of_symmetry,
-        (16,),
-        BREAKING,
     ),
     Claim(
         "R5b",

@@ -1,0 +1,35 @@
+"""Claim R5a: the force at which the response loses its symmetry (Sec. V.E)."""
+
+from __future__ import annotations
+
+from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "symmetry_breaking"
+
+
+def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
+    brackets = data.get(GROUP, "brackets", "low", "high", "ramp_time", "time_step")
+    readings, texts = [], []
+    for low, high, ramp, step in zip(
+        *(brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step")), strict=True
+    ):
+        event = Quantity.bracket(low, high)
+        name = f"ramp of {ramp:g} sqrt(R/g), step {step:g}"
+        # the next force that the paper names is 95 mg, where its response has lost its symmetry
+        readings.append(Reading(name, Condition("loss of symmetry", event, 91.0, 95.0, unit="mg")))
+        texts.append(f"{event.text('mg')} ({name})")
+    return Finding(", ".join(texts), readings, "The paper does not say how long the force grows")
+
+
+CLAIMS = (
+    Claim(
+        "R5a",
+        "V.E, Fig. 16b",
+        "friction 1: force at which the response to a ramp from rest loses its symmetry, for two ramps",
+        "when it exceeds 91 mg",
+        loss_of_symmetry,
+        (16,),
+        GROUP,
+    ),
+)
