@@ -67,6 +67,19 @@ def _examples(*lines: str) -> str:
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
 
+AllowUnsettled = Annotated[
+    bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not at rest.")
+]
+
+
+def _check_settled(output: Path, unsettled: str, allowed: bool) -> None:
+    """What is stored stays, but states that are still moving are no success unless they were asked for."""
+    if unsettled:
+        typer.echo(f"granular-response: {output}: {unsettled}", err=True)
+        if not allowed:
+            raise typer.Exit(1)
+
+
 def _print_version(asked: bool) -> None:
     if asked:
         print_version()
@@ -100,8 +113,9 @@ def run(
     output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
     method: Annotated[
         str | None,
-        typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path or minimise."),
+        typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path, stages or minimise."),
     ] = None,
+    allow_unsettled: AllowUnsettled = False,
 ) -> None:
     """Solve a scene and store the result.
 
@@ -133,6 +147,7 @@ def run(
         raise
     store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     typer.echo(f"{output}: {solution.problem.n} disks, {time.perf_counter() - started:.1f} s")
+    _check_settled(output, solution.unsettled, allow_unsettled)
 
 
 @app.command(
@@ -150,6 +165,7 @@ def continue_(
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
     folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
+    allow_unsettled: AllowUnsettled = False,
 ) -> None:
     """Take a result through further loads, up or down.
 
@@ -181,6 +197,7 @@ def continue_(
     store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     factors = ", ".join(f"{factor:g}" for factor in solution.load_factors)
     typer.echo(f"{output}: load factors {factors}, {time.perf_counter() - started:.1f} s")
+    _check_settled(output, solution.unsettled, allow_unsettled)
 
 
 @app.command(

@@ -215,7 +215,9 @@ class Dynamics:
             ),
             box=problem.packing.box,
             load_factor=self._now(self.load),
-            reached=Reached(method="dynamics", steps=self.steps, time=self.time, rebuilds=self.rebuilds),
+            reached=Reached(
+                method="dynamics", steps=self.steps, time_step=self.time_step, time=self.time, rebuilds=self.rebuilds
+            ),
         )
         return problem.with_static_forces(bare)
 

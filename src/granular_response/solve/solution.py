@@ -47,6 +47,17 @@ class Solution:
         return tuple(state.load_factor for state in self.loaded)
 
     @property
+    def unsettled(self) -> str:
+        """Which states are still moving, in one line; empty when all are at rest."""
+        steps = self.scene.protocol.maximum_steps
+        moving = [
+            f"load factor {state.load_factor:g}" if k else "gravity"
+            for k, state in enumerate([self.rest, *self.loaded])
+            if state.reached.settled is False
+        ]
+        return f"not at rest within protocol.maximum_steps = {steps}: {', '.join(moving)}" if moving else ""
+
+    @property
     def total_force(self) -> float:
         """Sum of the magnitudes of the applied forces at load factor 1."""
         return float(np.hypot(self.problem.load[:, 0], self.problem.load[:, 1]).sum())

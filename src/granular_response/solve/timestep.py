@@ -27,6 +27,7 @@ import numpy as np
 
 from ..contact import Law
 from ..kernels.integrators import INTEGRATORS, amplification
+from ..scene.protocol import PAPERS_TIME_STEP
 from .problem import Problem
 
 #: Part of the limit that ``time_step: auto`` takes.
@@ -130,7 +131,7 @@ def stability_limit(problem: Problem, integrator: str | None = None, *, smallest
 
 
 def resolve_time_step(problem: Problem) -> float:
-    """The scene's time step, or the safe one for ``auto``.
+    """The scene's time step, or the one that is taken where it gives none (see :func:`time_step_reason`).
 
     Raises
     ------
@@ -138,7 +139,9 @@ def resolve_time_step(problem: Problem) -> float:
         When the given step exceeds the limit.
     """
     step = problem.scene.protocol.time_step
-    if step == "auto":
+    if step is None and stability_limit(problem) >= PAPERS_TIME_STEP:
+        return PAPERS_TIME_STEP
+    if step is None or step == "auto":
         return SAFETY * stability_limit(problem, smallest=True)
     limit = stability_limit(problem)
     if step > limit:
@@ -147,3 +150,15 @@ def resolve_time_step(problem: Problem) -> float:
             f"must be at most {limit:.3g} for this scene, or auto"
         )
     return float(step)
+
+
+def time_step_reason(problem: Problem) -> str:
+    """Where the time step of a scene's dynamics comes from."""
+    step = problem.scene.protocol.time_step
+    if step == "auto":
+        return f"auto: {SAFETY:g} of the stability limit"
+    if step is not None:
+        return "protocol.time_step"
+    if stability_limit(problem) >= PAPERS_TIME_STEP:
+        return "the paper's"
+    return f"auto: {SAFETY:g} of the stability limit, as the paper's {PAPERS_TIME_STEP:g} is unstable for this scene"

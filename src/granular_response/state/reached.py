@@ -52,6 +52,7 @@ class Reached:
     certificate: Certificate | None = None
     settled: bool | None = None  #: whether dynamics came to rest; False when its steps ran out
     steps: int | None = None  #: time steps of the dynamics since it began
+    time_step: float | None = None  #: of the dynamics
     time: float | None = None  #: since the last ramp began
     rebuilds: int | None = None  #: times that candidate contacts were listed again
     kinetic_energy: float | None = None

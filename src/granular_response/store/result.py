@@ -21,6 +21,7 @@ from ..scene import Packing, Scene
 from ..solve.choice import load_method, rest_method
 from ..solve.problem import Problem
 from ..solve.solution import Solution
+from ..solve.timestep import time_step_reason
 from ..state import Box, Certificate, Contacts, Crossing, Reached, State, box, status
 from .labelled import Labelled, Values
 
@@ -169,6 +170,7 @@ _REACHED = {
     "method": "method that found the state",
     "settled": "whether dynamics came to rest",
     "steps": "time steps of the dynamics since it began",
+    "time_step": "time step of the dynamics in sqrt(radius/g)",
     "time": "time since the last ramp began in sqrt(radius/g)",
     "rebuilds": "times that candidate contacts were listed again",
     "kinetic_energy": "kinetic energy per disk before the static finish in mean weight times mean radius",
@@ -340,6 +342,7 @@ def to_labelled(solution: Solution) -> Labelled:
         "x": described(("floor_disk",), x, f"rest position from the loaded disk {LENGTH}"),
         "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
     }
+    moved = any(state.reached.time_step is not None for state in states)
     methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
     reasons = {
         "rest": solution.rest_choice.reason,
@@ -355,6 +358,7 @@ def to_labelled(solution: Solution) -> Labelled:
         "sides": "periodic" if packing.box.periodic else "walls",
         "method": json.dumps(methods),
         "method_reason": json.dumps(reasons),
+        **({"time_step": time_step_reason(problem)} if moved else {}),
         "stable": _verdict([s.certificate.stable for s in states]),
         "settled": _verdict([s.reached.settled is not False for s in states]),
         "units": UNITS,

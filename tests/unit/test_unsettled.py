@@ -1,0 +1,68 @@
+"""States that are still moving say so, and which load they have reached."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from small_scenes import scene
+from test_cli import call
+
+from granular_response.solve import solve_scene
+from granular_response.solve.timestep import resolve_time_step
+from granular_response.store.result import solution_from, to_dataset
+
+LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
+
+
+def cut_short(**changes):
+    return scene(
+        loads=LOAD, protocol__static_finish=False, protocol__method="dynamics", protocol__maximum_steps=1000, **changes
+    )
+
+
+def test_a_ramp_that_is_cut_short_carries_the_load_it_has_reached():
+    """1,000 steps of 5e-4 are a fortieth of the ramp of 20; the result used to say load factor 1."""
+    solution = solve_scene(cut_short(protocol__time_step=5e-4))
+    assert solution.load_factors == (pytest.approx(0.025, abs=1e-6),)
+    assert solution.loaded[0].reached.settled is False
+    assert solution.unsettled == "not at rest within protocol.maximum_steps = 1000: gravity, load factor 0.025"
+    data = to_dataset(solution)
+    assert data.attrs["settled"] == "no" and data.attrs["stable"] == "not determined"
+    assert float(data["total_force"]) == pytest.approx(0.05, abs=1e-5)
+    again = solution_from(data)
+    assert again.unsettled == solution.unsettled
+    assert solve_scene(scene(loads=LOAD)).unsettled == ""
+
+
+def test_run_says_so_and_fails_unless_asked(tmp_path):
+    (tmp_path / "scene.yaml").write_text(cut_short(protocol__time_step=5e-4).to_yaml())
+    finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
+    moving = "not at rest within protocol.maximum_steps = 1000: gravity, load factor 0.025"
+    said = f"granular-response: result.nc: {moving}\n"
+    assert (finished.returncode, finished.stderr) == (1, said)
+    with xr.open_dataset(tmp_path / "result.nc") as stored:  # nothing is lost
+        assert stored.attrs["settled"] == "no"
+    finished = call("run", "scene.yaml", "-o", "result.nc", "--allow-unsettled", folder=tmp_path)
+    assert (finished.returncode, finished.stderr) == (0, said)
+
+
+@pytest.mark.parametrize(
+    ("changes", "step", "reason"),
+    [
+        ({}, 5e-4, "the paper's"),
+        ({"contact__normal_stiffness": 1e5}, None, "auto: 0.6 of the stability limit, as"),
+        ({"protocol__time_step": 4e-4}, 4e-4, "protocol.time_step"),
+        ({"protocol__time_step": "auto"}, None, "auto: 0.6"),
+    ],
+    ids=["paper", "stiff", "given", "auto"],
+)
+def test_a_time_step_that_is_left_out_is_one_that_works_and_the_result_says_which(changes, step, reason):
+    stiff = scene(**changes)
+    solution = solve_scene(stiff)
+    taken = resolve_time_step(solution.problem)
+    assert taken == step if step else 0.0 < taken < 1e-3
+    data = to_dataset(solution)
+    assert data.attrs["time_step"].startswith(reason)
+    assert float(data["reached_time_step"][0]) == taken
+    if step is None and not stiff.protocol.time_step:
+        assert taken < 5e-4
+        assert np.isfinite(data["floor_force"].values).all()
