@@ -23,7 +23,7 @@ from granular_response.observe import stress as coarse
 from granular_response.observe.difference import force_misalignment, pair_force_difference
 from granular_response.observe.network import contact_centre
 from granular_response.observe.profile import ROW_SPACING, force_profile, row_depth
-from granular_response.paper.datasets import labelled
+from granular_response.paper.datasets import labelled, stress_components
 from granular_response.paper.groups.friction_fields.parameters import Parameters
 from granular_response.paper.slab_response import LoadPath
 from granular_response.scene import Packing, Scene
@@ -262,10 +262,7 @@ def _stress_dataset(
     dims = ("friction", "z", "x")
     of = "of the added forces per applied force, in 1/mean radius, compression positive"
     data = {name: variable(("friction",), np.array(values[name]), text) for name, text in _SCALARS.items()}
-    for a, first in enumerate("xz"):
-        for b, second in enumerate("xz"):
-            text = f"stress component, force along {first}, branch along {second}, {of}"
-            data[f"stress_{first}{second}"] = variable(dims, fields[..., a, b], text)
+    data |= stress_components(dims, fields, of)
     data["stress_zz_lattice"] = variable(("z", "x"), elastic, f"stress component zz of the harmonic lattice {of}")
     data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}")
     data["force"] = variable((), force, f"applied force {FORCE}")

@@ -21,7 +21,7 @@ from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.observe.network import contact_centre, mirror_disks
 from granular_response.observe.peaks import central_dip
 from granular_response.observe.teardrop import open_region
-from granular_response.paper.datasets import labelled
+from granular_response.paper.datasets import labelled, stress_components
 from granular_response.paper.groups.pile_dip.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, minimise
@@ -195,12 +195,7 @@ def _stress_dataset(packing: Packing, states: Sequence[State], w: float, spacing
     line = fields(coarse.grid_points(x + half, np.array([height])))[:, 0, :, 1, 1]
     dims = ("case", "z", "x")
     dips = [central_dip(x, profile) for profile in line]
-    data = {}
-    for a, first in enumerate("xz"):
-        for b, second in enumerate("xz"):
-            text = f"stress component, force along {first}, branch along {second}, in weights per mean radius"
-            data[f"stress_{first}{second}"] = variable(dims, grid[..., a, b], text)
-    data |= {
+    data = stress_components(dims, grid, "in weights per mean radius") | {
         "profile_zz": variable(
             ("case", "x"), line, "vertical stress at the height of the dip, in weights per mean radius"
         ),

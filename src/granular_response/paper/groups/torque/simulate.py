@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from granular_response.observe import stress as coarse
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.network import contact_centre
-from granular_response.paper.datasets import labelled
+from granular_response.paper.datasets import labelled, stress_components
 from granular_response.paper.groups.torque.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, loaded_states
@@ -101,14 +101,8 @@ def _stress_dataset(packing: Packing, rest: State, loaded: Sequence[State], w: f
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
     points = coarse.grid_points(x, z)
     fields = np.stack([coarse.coarse_grained_stress(coarse.load_forces(rest, s), points, w) for s in loaded])
-    data = {}
-    for a, first in enumerate("xz"):
-        for b, second in enumerate("xz"):
-            text = (
-                f"stress component of the added forces, force along {first}, branch along {second}, "
-                "in weights per mean radius, compression positive"
-            )
-            data[f"stress_{first}{second}"] = variable(("torque", "z", "x"), fields[..., a, b], text)
+    unit = "in weights per mean radius, compression positive"
+    data = stress_components(("torque", "z", "x"), fields, unit, " of the added forces")
     data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}")
     return xr.Dataset(
         data,
