@@ -3,14 +3,17 @@
 import ast
 import functools
 import re
+import sys
 from pathlib import Path
 
 import pytest
 import yaml
 
+from granular_response.paper import groups, pipeline
 from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import simulation
+from granular_response.paper.pipeline import drawing, simulation
 from granular_response.scene import SceneError
+from granular_response.store import files as store
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
@@ -248,3 +251,29 @@ def test_dvc_reads_the_pipeline():
     repo = pytest.importorskip("dvc.repo")
     names = {stage.addressing for stage in repo.Repo(ROOT).index.stages}
     assert {f"{kind}@{group}" for kind in ("simulate", "draw") for group in NAMES} <= names
+
+
+def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
+    """docs/extending.md, file by file."""
+    page = (ROOT / "docs" / "extending.md").read_text()
+    section = page[page.index("## A figure group") : page.index("## A packing")]
+    (yaml_block,) = re.findall(r"```yaml\n(.*?)```", section, re.S)
+    folder = tmp_path / "groups" / "example"
+    folder.mkdir(parents=True)
+    for file, block in re.findall(r"`(\w+\.py)`(?:(?!```).)*?```python\n(.*?)```", section, re.S):
+        (folder / file).write_text(block)
+    (folder / "__init__.py").touch()
+    assert {path.name for path in folder.iterdir()} >= {"parameters.py", "simulate.py", "draw.py", "captions.py"}
+    (tmp_path / "params.yaml").write_text("common: {method: auto}\n" + yaml_block)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(groups, "__path__", [*groups.__path__, str(tmp_path / "groups")])
+    monkeypatch.setattr(pipeline, "NAMES", (*NAMES, "example"))
+    try:
+        assert simulation.simulate("example", workers=1) == Path("data/example.nc")
+        assert Path("figures/example/example.png") in drawing.draw("example")
+        assert set(pipeline.group_member("example", "captions", "CAPTIONS")) == {"example"}
+    finally:
+        for name in [name for name in sys.modules if name.startswith("granular_response.paper.groups.example")]:
+            del sys.modules[name]
+    response = store.read("data/example.nc")["response"]["floor_response"].values
+    assert response.shape == (2, 13) and abs(response.sum(axis=1) - 1.0).max() < 0.2
