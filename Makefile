@@ -21,7 +21,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure test fuzz coverage lint benchmark arena lock clean
+.PHONY: help setup reproduce quote figure test fuzz coverage lint docs benchmark arena lock clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -70,6 +70,9 @@ lint: setup ## Run the linters and the type checker alone
 	"$(BIN)/mypy"
 	"$(BIN)/lint-imports"
 
+docs: setup ## Build the documentation site into docs/_build/html, running every example of the gallery
+	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
+
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	"$(BIN)/dvc" repro benchmarks/dvc.yaml
 
@@ -79,12 +82,12 @@ arena: setup ## Time a step beside other codes that are installed; says how to i
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows
 	$(PYTHON) -m venv --clear "$(VENV)-lock"
-	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[dask,export,pipeline,test]"
+	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[dask,docs,export,pipeline,test]"
 	{ sed -n '/^#/p' requirements.lock; \
 	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock
 	rm -rf "$(VENV)-lock"
 
 clean: ## Remove .venv, caches and datasets; the DVC cache and the figures stay
-	rm -rf .venv .venv-lock .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint
+	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

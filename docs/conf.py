@@ -32,7 +32,6 @@ exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 3
 
-autodoc_default_options = {"members": True, "show-inheritance": False}
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
@@ -47,6 +46,7 @@ sphinx_gallery_conf = {
     "within_subsection_order": "ExampleTitleSortKey",
     "download_all_examples": False,
     "remove_config_comments": True,
+    "run_stale_examples": True,  # an example is stale when the package has changed, too
     "min_reported_time": 1e9,
     "show_memory": False,
     "show_signature": False,
@@ -68,4 +68,4 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": [],
 }
-html_sidebars = {"gallery/*": []}
+html_sidebars: dict[str, list[str]] = {"**": []}

@@ -332,10 +332,11 @@ def page(
     *,
     state: int = -1,
     scale: Scale = "sqrt",
+    figure: Figure | None = None,
 ) -> Figure:
     """One figure with a picture for each of ``what``, in this order: names of the functions of this module.
 
-    ``scale`` is that of :func:`forces`. The figure is none of pyplot's; ``style.render`` makes a file of it.
+    ``scale`` is that of :func:`forces`; ``figure`` is drawn into, or a new one of pyplot's.
 
     Raises PictureError for another name, and what the pictures raise.
     """
@@ -351,8 +352,10 @@ def page(
         wide = style.DOUBLE / columns
         heights = [0.36 * wide if name == "response" else _aspect(shown) * wide + 0.25 for name in what]
         in_row = [max(heights[k * columns : (k + 1) * columns]) + 0.12 for k in range(rows)]
-        figure, panels = style.figure(rows, columns, width="double", height=sum(in_row), height_ratios=in_row)
+        figure = _new_figure(sum(in_row)) if figure is None else figure
+        figure.set_size_inches(style.DOUBLE, sum(in_row))
         figure.set_layout_engine("compressed")
+        panels = figure.subplots(rows, columns, squeeze=False, height_ratios=in_row)
         for k, axes in enumerate(panels.ravel()):
             if k >= len(what):
                 axes.set_axis_off()
@@ -383,7 +386,7 @@ def save(
     path = Path(output)
     if path.suffix not in (".pdf", ".png", ".svg"):
         raise PictureError(f"{path}: format {path.suffix!r} is unknown, must be .pdf, .png or .svg")
-    drawn = style.render(page(result, what, state=state, scale=scale), path.suffix[1:])
+    drawn = style.render(page(result, what, state=state, scale=scale, figure=Figure()), path.suffix[1:])
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         atomic.check_output(path, inputs)
@@ -406,10 +409,14 @@ def _axes(ax: Axes | None, aspect: float) -> Axes:
     """The given axes, or those of a new figure as high as ``aspect`` times its width."""
     if ax is not None:
         return ax
+    return _new_figure(max(1.4, aspect * style.DOUBLE + 0.35)).subplots()
+
+
+def _new_figure(height: float) -> Figure:
+    """A figure that notebooks show and ``pyplot.show`` opens, ``height`` inches high."""
     import matplotlib.pyplot as plt  # here, so that figures without a display never touch it
 
-    figure = plt.figure(figsize=(style.DOUBLE, max(1.4, aspect * style.DOUBLE + 0.35)), layout="constrained")
-    return figure.subplots()
+    return plt.figure(figsize=(style.DOUBLE, height), layout="constrained")
 
 
 def _aspect(shown: Shown) -> float:

@@ -1,0 +1,46 @@
+"""
+Loading and unloading
+=====================
+
+With friction, the way back is another one: at half the load the response under the load is smaller after the full load
+than before it, because contacts that opened and slid do not return. The load programme says which way to go.
+"""
+
+import matplotlib.pyplot as plt
+
+import granular_response as gr
+
+LAYERS, DISKS, FORCE = 9, 31, 8.0
+STEPS = [0.25, 0.5, 0.75, 1.0, 0.75, 0.5, 0.25, 0.0, 0.25, 0.5, 0.75, 1.0]
+
+scene = gr.Scene().updated(
+    {
+        "packing.layers": LAYERS,
+        "packing.disks_per_row": DISKS,
+        "loads.0.force": [0.0, -FORCE],
+        "protocol.load_factors": STEPS,
+    }
+)
+result = gr.solve(scene)
+print(result)
+
+# %%
+# What the load adds to the force on the floor below it, along the programme.
+
+data = result.to_dataset()
+centre = abs(data["x"].values).argmin()
+added = (data["floor_force"] - data["floor_force_rest"]).isel(floor_disk=centre).values
+
+figure, ax = plt.subplots(figsize=(5, 3.4), layout="constrained")
+force = FORCE * data["load_factor"].values
+turn, back = 4, 8
+ax.plot([0.0, *force[:turn]], [0.0, *added[:turn]], "o-", label="loading")
+ax.plot(force[turn - 1 : back], added[turn - 1 : back], "s--", label="unloading")
+ax.plot(force[back - 1 :], added[back - 1 :], "^:", label="loading again")
+ax.set(xlabel="force on the top, in disk weights", ylabel="added floor force at x = 0")
+ax.legend()
+
+# %%
+# Without load, these contacts still slide or have opened.
+
+gr.plot.contacts(result, state=back)
