@@ -1,0 +1,69 @@
+"""A contact law and an integrator as somebody else would add them (docs/extending.md)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from granular_response.kernels.integrators import Integrator
+
+
+class Cubic(NamedTuple):
+    """Normal force by the third power of the overlap."""
+
+    normal_stiffness: float
+    normal_damping: float
+    tangential_stiffness: float
+    tangential_damping: float
+    friction: float
+    least_force: float
+    factor: float
+
+    @classmethod
+    def of(
+        cls, normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
+        reduced_radius,
+    ):  # fmt: skip
+        # stiffness 3 c xi^2 where c xi^3 = 1
+        return cls(
+            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
+            (normal_stiffness / 3.0) ** 3,
+        )  # fmt: skip
+
+    def elastic_force(self, overlap, shape):
+        return self.factor * overlap * overlap * overlap
+
+    def stiffness(self, overlap, shape):
+        return 3.0 * self.factor * overlap * overlap
+
+    def energy(self, overlap, shape):
+        return 0.25 * self.factor * overlap * overlap * overlap * overlap
+
+    def shapes(self, first, second):
+        return None
+
+    def stiffest(self, force):
+        return self.normal_stiffness * max(force, 0.0) ** (2.0 / 3.0)
+
+    def softened(self, part):
+        return self._replace(factor=part**4 * self.factor)
+
+    def without_friction(self):
+        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)
+
+
+class Leapfrog(NamedTuple):
+    """Symplectic Euler: velocities first, then displacements with them."""
+
+    rows: int = 1
+
+    def predict(self, x, v, a, b, c, dt):
+        return x + (v + a * dt) * dt, v, a, b, v + a * dt
+
+    def correct(self, x, v, a, b, c, a_new, dt):
+        return x, v + a * dt, a_new, b, c
+
+    def begin(self, history):
+        pass
+
+
+RECORD = Integrator(name="leapfrog", title="symplectic Euler", order=1, reference="none", scheme=Leapfrog())
