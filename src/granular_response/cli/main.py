@@ -9,7 +9,7 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,6 +18,9 @@ from ..machine import floating_point
 
 # Before anything loads numpy: the stages of the pipeline give the same digits on every x86 machine.
 floating_point.pin()
+
+if TYPE_CHECKING:
+    from ..solve import Solution
 
 PAPER = (
     "C. Goldenberg and I. Goldhirsch, Effects of Friction and Disorder on the Quasi-Static Response of "
@@ -67,17 +70,23 @@ def _examples(*lines: str) -> str:
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
 
+#: Part of a load, left out of balance, from which on a response is said to be rounded off.
+ROUNDED = 1e-3
+
 AllowUnsettled = Annotated[
     bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not at rest.")
 ]
 
 
-def _check_settled(output: Path, unsettled: str, allowed: bool) -> None:
+def _check_solution(output: Path, solution: Solution, allow_unsettled: bool) -> None:
     """What is stored stays, but states that are still moving are no success unless they were asked for."""
-    if unsettled:
-        typer.echo(f"granular-response: {output}: {unsettled}", err=True)
-        if not allowed:
+    if solution.unsettled:
+        typer.echo(f"granular-response: {output}: {solution.unsettled}", err=True)
+        if not allow_unsettled:
             raise typer.Exit(1)
+    elif solution.rounding > ROUNDED:
+        said = f"forces out of balance are {solution.rounding:.1g} of the smallest load: the response is rounded off"
+        typer.echo(f"granular-response: {output}: {said}; take larger loads", err=True)
 
 
 def _print_version(asked: bool) -> None:
@@ -147,7 +156,7 @@ def run(
         raise
     store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     typer.echo(f"{output}: {solution.problem.n} disks, {time.perf_counter() - started:.1f} s")
-    _check_settled(output, solution.unsettled, allow_unsettled)
+    _check_solution(output, solution, allow_unsettled)
 
 
 @app.command(
@@ -197,7 +206,7 @@ def continue_(
     store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     factors = ", ".join(f"{factor:g}" for factor in solution.load_factors)
     typer.echo(f"{output}: load factors {factors}, {time.perf_counter() - started:.1f} s")
-    _check_settled(output, solution.unsettled, allow_unsettled)
+    _check_solution(output, solution, allow_unsettled)
 
 
 @app.command(
@@ -343,9 +352,7 @@ def keys(
 )
 def export(
     result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="File to make; its ending is the format.")
-    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="File to make; its ending is the format.")],
     state: Annotated[int, typer.Option(help="State in a file of one state: 0 at rest, -1 the last one.")] = -1,
 ) -> None:
     """Write a result for OVITO (.gsd, .xyz), ParaView (.pvd, .vtu), LAMMPS (.data, .dump), YADE (.txt) or as .csv."""

@@ -18,7 +18,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..kernels.forces import SCRATCH, accelerations
-from ..kernels.integrators import INTEGRATORS, Memory, advance
+from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls
 from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
@@ -33,6 +33,8 @@ ROLLING_CHECKS, MOST_ROLLERS = 10, 0.1
 SLOW_ROLLING = 1e3
 #: Vertical force on a part of the packing that nothing bears, below which it floats (mean disk weights).
 BALANCED = 1e-9
+#: Way of a disk between two looks at displacements at which its motion counts as blown up (mean radii).
+LONGEST_STRIDE = 5.0
 #: Gap above everything else at which a disk that its load pulls up is lost (mean radii).
 LIFTED = 5.0
 #: Time over which the envelope of the kinetic energy is taken.
@@ -93,10 +95,10 @@ class Dynamics:
         self._list(state)
         self._fill_history()
 
-    def _list(self, state: State) -> None:
+    def _list(self, state: State, stride: float = 0.0) -> None:
         """List candidates around a state's positions and take over its springs."""
         problem = self.problem
-        self.candidates: Candidates = problem.list_candidates(state.position)
+        self.candidates: Candidates = problem.list_candidates(state.position, stride=stride)
         c = self.candidates
         self.spring = self.wall_spring = None
         if problem.pair_friction:
@@ -149,26 +151,37 @@ class Dynamics:
             self.time += done * self.time_step
             left -= done
             if left:
-                if done == 0 and listed:  # faster than any list can follow
-                    raise DynamicsError(self._blow_up())
-                self._relist()
+                self._relist(self._stride() if done == 0 and listed else 0.0)
                 listed = True
 
-    def _relist(self) -> None:
-        """List candidates again around the present positions, keeping every spring."""
+    def _stride(self) -> float:
+        """How far the fastest disk gets until displacements are looked at again, and half as much more."""
+        speed = float(np.hypot(*self.v[: 2 * self.problem.n].reshape(2, -1)).max())
+        stride = 1.5 * speed * self.time_step * LOOK_EVERY
+        if not stride < LONGEST_STRIDE:
+            raise DynamicsError(self._blow_up())
+        return stride
+
+    def _relist(self, stride: float = 0.0) -> None:
+        """List candidates again around the present positions, keeping every spring, for displacements up to ``stride``.
+
+        Usual lists do for any motion but long steps of fast disks.
+        """
         if not np.isfinite(self.q).all():
             raise DynamicsError(self._blow_up())
         state = self.state()
         self.angle0 = self.angle
-        self._list(state)
+        self._list(state, stride)
         self.q[:] = 0.0
         self.rebuilds += 1
 
     def _blow_up(self) -> str:
-        return (
-            f"the motion blew up after {self.steps} steps with time_step {self.time_step:g}; "
-            "take a smaller protocol.time_step"
-        )
+        load = float(np.abs(self.load[1] * self.problem.load[:, :2]).max(initial=0.0))
+        if load > self.problem.stiffness:
+            cure = f"the largest load, {load:.3g} disk weights, is more than the contacts bear: take a smaller one"
+        else:
+            cure = "take a smaller protocol.time_step"
+        return f"the motion blew up after {self.steps} steps with time_step {self.time_step:g}; {cure}"
 
     @property
     def memory(self) -> FloatArray:

@@ -16,6 +16,8 @@ from .system import Configuration, StaticSystem, Trial
 
 #: Largest force or torque left on any disk, in units of a mean disk weight.
 TOLERANCE = 1e-10
+#: Friction below which Newton's method may not find which contacts slide.
+LEAST_FRICTION = 1e-4
 #: Most factorisations of a Newton solution.
 NEWTON_ITERATIONS = 30
 #: A Newton step moves no disk farther than this (mean radii).
@@ -182,6 +184,17 @@ def check_overlaps(problem: Problem, state: State) -> None:
             )
 
 
+def _cure(problem: Problem) -> str:
+    """What helps where Newton's method does not converge."""
+    for name, friction in (("contact", problem.pair_law.friction), ("wall", problem.wall_law.friction)):
+        if 0.0 < friction < LEAST_FRICTION:
+            return (
+                f"{name}.friction = {friction:g} is so small that contacts slide to and fro at no force: "
+                f"take 0, or at least {LEAST_FRICTION:g}"
+            )
+    return "relax it further first"
+
+
 def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_ITERATIONS) -> State:
     """Bring a nearly settled state to rest by Newton iterations (Sec. III.C), with its certificate.
 
@@ -199,7 +212,7 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_I
     if not report.converged:
         raise EquilibriumError(
             f"no static equilibrium within {report.iterations} Newton iterations of the state "
-            f"(largest unbalanced force {report.residual:.1e}); relax it further first"
+            f"(largest unbalanced force {report.residual:.1e}); {_cure(problem)}"
         )
     solved = system.state(trial, factor)
     certificate = certify(problem, solved, modes=system.negative_modes(trial))

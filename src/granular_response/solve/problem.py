@@ -155,9 +155,7 @@ class Problem:
 
     def without_friction(self) -> Problem:
         """The same packing with smooth disks and walls."""
-        return replace(
-            self, pair_law=self.pair_law.without_friction(), wall_law=self.wall_law.without_friction()
-        )
+        return replace(self, pair_law=self.pair_law.without_friction(), wall_law=self.wall_law.without_friction())
 
     def load_vector(self) -> FloatArray:
         """(dof,) generalised load at load factor 1."""
@@ -171,11 +169,12 @@ class Problem:
         total[1] = -self.weight
         return total.ravel()
 
-    def list_candidates(self, position: FloatArray, *, search: bool = False) -> Candidates:
+    def list_candidates(self, position: FloatArray, *, search: bool = False, stride: float = 0.0) -> Candidates:
         """List candidate contacts at ``position`` (n, 2).
 
         As long as every disk is near its lattice site, the neighbours on the lattice are the only ones that can
-        touch, and nothing is searched. ``search=True`` forces the search.
+        touch, and nothing is searched. ``search=True`` forces the search. The list holds for displacements of at
+        least ``stride``.
         """
         packing, radius = self.packing, self.packing.radius
         pairs = None if search else self.lattice_pairs
@@ -185,13 +184,13 @@ class Problem:
             room = np.sqrt(3.0) * packing.lattice_constant - 2.0 * float(radius.max())
             shift = np.linalg.norm(position - packing.position, axis=1)
             limit = 0.5 * room - float(shift.max())
-        if pairs is not None and limit > LEAST_LATTICE_LIMIT:
+        if pairs is not None and limit > max(LEAST_LATTICE_LIMIT, stride):
             first, second = pairs[:, 0], pairs[:, 1]
             margin = 2.0 * limit
         else:
-            first, second = neighbours.close_pairs(position, radius, SKIN, packing.box.period)
-            limit = 0.5 * SKIN
-            margin = SKIN
+            margin = max(SKIN, 2.0 * stride)
+            first, second = neighbours.close_pairs(position, radius, margin, packing.box.period)
+            limit = 0.5 * margin
         runs, slot = neighbours.make_runs(first, second, self.n, multiple=WIDTH)
         i, j = neighbours.run_pairs(runs)
         reach = aligned_zeros(len(i))  # slots of no listed pair have none
@@ -272,9 +271,7 @@ class Problem:
             pairs=static_contacts(
                 i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_shapes(i, j), self.pair_law
             ),
-            walls=static_contacts(
-                k, state.walls.second, -gap, state.walls.spring, self.wall_shapes(k), self.wall_law
-            ),
+            walls=static_contacts(k, state.walls.second, -gap, state.walls.spring, self.wall_shapes(k), self.wall_law),
         )
 
 

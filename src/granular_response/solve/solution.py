@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..contact import Linear
 from ..scene import Scene, SceneError
 from ..state import Crossing, State
 from .choice import Choice, finishes_statically, load_method, rest_method, stop_energy
@@ -21,6 +22,9 @@ from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory
 from .stages import climb
 from .timestep import resolve_time_step
+
+#: Load that the contacts of one disk bear at most without an overlap of a radius, over the stiffness of one.
+MOST_BORNE = 4.0
 
 #: Called as ``progress(done, total, what)``.
 Progress = Callable[[float, float, str], None]
@@ -45,6 +49,13 @@ class Solution:
     def load_factors(self) -> tuple[float, ...]:
         """Multipliers of the scene's loads that the loaded states have reached."""
         return tuple(state.load_factor for state in self.loaded)
+
+    @property
+    def rounding(self) -> float:
+        """Largest force out of balance over the smallest load: the part of a response that is no more than rounding."""
+        loads = [abs(factor) * self.total_force for factor in self.load_factors if factor]
+        states = (self.rest, *self.loaded)
+        return max(s.certificate.force_residual for s in states) / min(loads) if loads and min(loads) > 0.0 else 0.0
 
     @property
     def unsettled(self) -> str:
@@ -82,6 +93,7 @@ def solve_scene(
     factors = load_programme(scene.protocol.load_factors if load_factors is None else load_factors)
     check_memory(scene)
     problem = Problem.from_scene(scene)
+    _check_loads(problem.with_loads(problem.packing.position), factors)
     rest = rest_state(problem, progress=progress)
     problem = problem.with_loads(rest.position)
     rest_choice = rest_method(problem)
@@ -92,6 +104,19 @@ def solve_scene(
     for state in (rest, *states):
         check_overlaps(problem, state)
     return Solution(scene, problem, rest, tuple(states), rest_choice, choice)
+
+
+def _check_loads(problem: Problem, factors: Sequence[float]) -> None:
+    """Refuse, before the packing settles, what no packing can bear; disks of loads have been found by now."""
+    if not isinstance(problem.pair_law, Linear):
+        return
+    most = MOST_BORNE * max(problem.stiffness, problem.wall_law.normal_stiffness)
+    for k, force in enumerate(np.hypot(problem.load[:, 0], problem.load[:, 1]) * np.abs(factors).max()):
+        if force > most:
+            raise SceneError(
+                f"loads[{k}].force: {force:.3g} disk weights at the largest load factor, must be at most {most:.3g}, "
+                "under which contacts of this stiffness overlap by a radius"
+            )
 
 
 def continue_solution(

@@ -22,6 +22,9 @@ from .problem import Problem
 #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
 REGULARISATION = 1e-10
 
+#: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
+DENSE = 12
+
 
 @dataclass(frozen=True)
 class Configuration:
@@ -309,6 +312,8 @@ class StaticSystem:
         modes = self.symmetric_factor(trial, shift)[1]
         if modes == 0 or (SLIDING not in trial.pair_status and SLIDING not in trial.wall_status):
             return modes
+        if self.dof <= DENSE:
+            return int((np.linalg.eigvals(self.tangent(trial, shift).toarray()).real < 0).sum())
         origin = -1e-4 * self.problem.stiffness
         factor = self.factorise(trial, shift - origin)
         values = eigs(
@@ -320,6 +325,9 @@ class StaticSystem:
 
     def unstable_direction(self, trial: Trial) -> FloatArray:
         """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1."""
+        if self.dof <= DENSE:
+            _, every = np.linalg.eigh(_symmetric_part(self.tangent(trial)).toarray())
+            return self._of_largest_one(every[:, 0])
         k = self.problem.stiffness
         # the nearer the origin of the search to the eigenvalue, the fewer solves; from below it finds the lowest
         for origin in (1e-6 * k, 1e-5 * k, 1e-4 * k, 1e-3 * k, 1e-2 * k):
@@ -333,7 +341,10 @@ class StaticSystem:
             v0=np.random.default_rng(0).standard_normal(self.dof),
             OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
         )  # fmt: skip
-        vector = self.deinterleave(vectors[:, 0])
+        return self._of_largest_one(vectors[:, 0])
+
+    def _of_largest_one(self, vector: FloatArray) -> FloatArray:
+        vector = self.deinterleave(vector)
         return vector / vector[np.argmax(np.abs(vector))]
 
 

@@ -1,0 +1,115 @@
+"""Scenes at the edge of what can be solved: an answer, or the line that says what is wrong with the scene."""
+
+import numpy as np
+import pytest
+from small_scenes import free_disks, scene
+from test_cli import call
+
+from granular_response.scene import Scene, SceneError
+from granular_response.solve import (
+    Dynamics,
+    DynamicsError,
+    EquilibriumError,
+    NotSettled,
+    finish,
+    rest_state,
+    solve_scene,
+)
+from granular_response.solve import solution as solving
+from granular_response.solve.problem import Problem
+from granular_response.solve.system import DENSE, StaticSystem
+
+DOWN = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("force", [[0.0, -1.0], [0.0, -15.0], [0.3, -1.0]])
+def test_a_single_disk(friction, force):
+    one = Scene.from_dict(
+        {
+            "packing": {"kind": "pile", "layers": 1},
+            "contact": {"friction": friction},
+            "wall": {"friction": friction},
+            "loads": [{"disk": 0, "force": force}],
+        }
+    )
+    solution = solve_scene(one)
+    for state, weight in zip((solution.rest, *solution.loaded), (1.0, 1.0 - force[1]), strict=True):
+        assert state.wall_force()[:, 1].sum() == pytest.approx(weight, abs=1e-9)
+        assert state.certificate.stable and state.certificate.force_residual < 1e-9
+
+
+def test_unstable_directions_of_a_small_packing_are_counted_densely():
+    """A sliding contact makes the tangent unsymmetric; too few unknowns for the iteration that large ones take."""
+    problem, state = free_disks([[10.0, 1.0 - 1e-3]], contact__friction=0.2, wall__friction=0.2)
+    state = problem.with_static_forces(state)
+    system = StaticSystem(problem, state)
+    assert system.dof <= DENSE
+    known = system.start(state)
+    pushed = known.q + np.array([1e-2, 0.0, 0.0])
+    trial = system.trial(known, pushed)
+    assert trial.wall_status.tolist() == [2]
+    tangent = system.tangent(trial, 1e-6).toarray()
+    # softened, so that the symmetric part is not positive and eigenvalues are asked for
+    assert system.negative_modes(trial, -1.0) == int((np.linalg.eigvals(tangent - np.eye(3)).real < 0).sum()) > 0
+    assert np.abs(system.unstable_direction(trial)).max() == 1.0
+
+
+def test_fast_disks_in_long_steps_are_followed_and_not_taken_for_a_blow_up():
+    """Soft disks without damping on a wide lattice bounce for ever: true, and what it says."""
+    bouncing = Scene.from_dict(
+        {
+            "packing": {"kind": "pile", "layers": 2, "lattice_constant": 2.5},
+            "contact": {"normal_stiffness": 30.0, "damping_ratio": 0.0, "friction": 0.0},
+            "protocol": {"time_step": "auto", "method": "dynamics", "maximum_steps": 5000},
+            "loads": [],
+        }
+    )
+    problem = Problem.from_scene(bouncing)
+    dynamics = Dynamics(problem, problem.bare_state(), "verlet", solving.resolve_time_step(problem))
+    dynamics.advance(5000)
+    height = 2.0 + 1.25 * np.sqrt(3.0)
+    assert dynamics.position[:, 1].max() < 1.2 * height  # energy is kept: nothing rises far above where it began
+    with pytest.raises(NotSettled, match="did not come to rest under gravity"):
+        rest_state(problem)
+
+
+def test_a_load_that_no_contact_bears_is_refused_before_anything_settles(monkeypatch):
+    monkeypatch.setattr(solving, "rest_state", lambda *_, **__: pytest.fail("settled first"))
+    with pytest.raises(SceneError, match=r"^loads\[0\].force: 1e\+300 disk weights .* must be at most 2.4e\+04"):
+        solve_scene(scene(loads=[{"disk": "top-centre", "force": [0.0, -1e300]}]))
+    with pytest.raises(SceneError, match=r"^loads\[0\].force: 3e\+04 disk weights"):
+        solve_scene(scene(loads=DOWN), load_factors=[0.1, -3e4, 0.0])
+
+
+def test_motion_that_a_load_drives_apart_does_not_ask_for_a_smaller_step():
+    problem, state = free_disks([[500.0, 500.0]], loads=[{"disk": 0, "force": [1e300, 0.0]}])
+    dynamics = Dynamics(problem.with_loads(state.position), state)
+    dynamics.set_ramps(load=(1.0, 1.0, 0.0))
+    with pytest.raises(DynamicsError, match=r"the largest load, 1e\+300 disk weights, is more than the contacts bear"):
+        dynamics.advance(100)
+
+
+def test_a_disk_that_a_table_does_not_have_is_found_before_it_settles(tmp_path, monkeypatch):
+    (tmp_path / "disks.csv").write_text("x,z,radius\n1,1,1\n3,1,1\n")
+    monkeypatch.setattr(solving, "rest_state", lambda *_, **__: pytest.fail("settled first"))
+    table = {"kind": "file", "path": "disks.csv", "width": 4.0}
+    beyond = Scene.from_dict({"packing": table, "loads": [{"disk": 2, "force": [0.0, -1.0]}]}, folder=tmp_path)
+    with pytest.raises(SceneError, match="must be from 0 to 1, the packing has 2 disks"):
+        solve_scene(beyond)
+
+
+@pytest.mark.parametrize(("where", "friction"), [("contact", 1e-8), ("wall", 1e-7)])
+def test_a_friction_that_newton_cannot_follow_is_named(where, friction):
+    problem, state = free_disks([[10.0, 3.0]], **{"contact__friction": 0.0, f"{where}__friction": friction})
+    with pytest.raises(EquilibriumError, match=rf"{where}.friction = 1e-0[78] is so small .* at least 0.0001"):
+        finish(problem, state)
+
+
+def test_a_response_that_is_rounding_says_so(tmp_path):
+    for force, said in (("1.0e-12", True), ("1.0", False)):
+        loads = f"loads: [{{disk: top-centre, force: [0.0, -{force}]}}]\n"
+        (tmp_path / "scene.yaml").write_text("packing: {kind: slab, layers: 4, disks_per_row: 7}\n" + loads)
+        finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
+        assert finished.returncode == 0
+        assert ("the response is rounded off; take larger loads" in finished.stderr) is said
