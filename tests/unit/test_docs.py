@@ -29,6 +29,12 @@ def test_named_modules_and_links_exist(page):
     assert not missing
 
 
+def test_every_page_is_on_the_site():
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    listed = {line for block in re.findall(r"```{toctree}\n(.*?)```", index, re.DOTALL) for line in block.split()}
+    assert {page.stem for page in (ROOT / "docs").glob("*.md")} - {"index"} <= listed
+
+
 def table_of_imports() -> dict[str, set[str]]:
     """What docs/architecture.md allows each part to import; "any part" means all of them."""
     rows = re.findall(r"^\| (`.*?) \| .*? \| (.*?) \|$", (ROOT / "docs" / "architecture.md").read_text(), re.MULTILINE)

@@ -8,6 +8,8 @@ import matplotlib
 import matplotlib.pyplot as plt
 import pytest
 
+import granular_response as gr
+
 matplotlib.use("Agg")
 
 
@@ -81,3 +83,22 @@ def test_an_example_is_short_and_has_a_title(script):
     title = re.match(r'"""\n(.+)\n(=+)\n\n', text)
     assert title and len(title[1]) == len(title[2])
     assert len(text.splitlines()) <= 70
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/tutorial.md"])
+def test_the_python_of_the_pages_runs(page, figures, tmp_path, monkeypatch):
+    """Smaller than it stands there; what is drawn with xarray from a file of the page's commands is left out."""
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
+    (block,) = [text for text in blocks if "import granular_response as gr" in text]
+    small = {"packing": {"kind": "slab", "layers": 3, "disks_per_row": 7}, "loads": [{"disk": 16, "force": [0, -1]}]}
+    whole = gr.solve
+
+    def solve(scene, **options):
+        assert isinstance(scene, gr.Scene)
+        return whole(small, **options)
+
+    monkeypatch.setattr(gr, "solve", solve)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    exec(compile(block, page, "exec"), {})
+    assert figures() and list(tmp_path.glob("*.p*"))
