@@ -87,6 +87,33 @@ def test_every_import_is_a_declared_dependency():
     assert used <= {name.replace("-", "_") for name in declared}
 
 
+def names_used(path: Path) -> set[str]:
+    """Dotted names in a file, such as os.environ.update."""
+    nodes = ast.walk(ast.parse(path.read_text()))
+    return {ast.unparse(node) for node in nodes if isinstance(node, (ast.Attribute, ast.Subscript))} | {
+        f"{ast.unparse(target.value)} is set"
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, (ast.Assign, ast.Delete))
+        for target in node.targets
+        if isinstance(target, ast.Subscript)
+    }
+
+
+def test_only_the_entry_point_writes_the_environment():
+    writing = {f"os.environ.{verb}" for verb in ("setdefault", "update", "pop", "clear")}
+    writing |= {"os.environ is set", "os.putenv", "os.unsetenv"}
+    found = {str(path.relative_to(PACKAGE)) for path in PACKAGE.rglob("*.py") if writing & names_used(path)}
+    assert found == {"machine/floating_point.py"}
+    pinning = {str(p.relative_to(PACKAGE)) for p in PACKAGE.rglob("*.py") if "floating_point.pin" in names_used(p)}
+    assert pinning == {"cli/main.py"}
+
+
+def test_pickles_go_to_workers_only():
+    """A pickle runs code when it is read: none is ever read from a file."""
+    found = {str(p.relative_to(PACKAGE)) for p in PACKAGE.rglob("*.py") if re.search(r"import .*pickle", p.read_text())}
+    assert found == {"sweeps/worker.py"}
+
+
 def test_the_command_line_loads_nothing_heavy():
     script = (
         "import sys, granular_response.cli.main;"

@@ -16,11 +16,13 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
+from granular_response.solve import Problem
 from granular_response.sweeps import cluster as dask_tasks
 from granular_response.sweeps import processes
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
+from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import map_tasks
 
 
@@ -123,6 +125,33 @@ def leave(item):
 def test_a_task_that_exits_is_named():
     with pytest.raises(SweepError, match=r"failed: SystemExit: no [12]"):
         map_tasks(leave, [1, 2], workers=2)
+
+
+def warned(item):
+    warnings.warn("the same of every item", UserWarning, stacklevel=1)
+    return item
+
+
+def test_a_warning_of_the_workers_is_said_once():
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[1]); from test_tasks import map_tasks, warned\n"
+        "if __name__ == '__main__': map_tasks(warned, range(6), workers=2)"
+    )
+    command = [sys.executable, "-c", script, Path(__file__).parent]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert run.stderr.count("UserWarning: the same of every item") == 1
+
+
+def test_a_memory_that_cannot_be_written_is_told_by_the_workers(tmp_path):
+    (tmp_path / "rest").write_text("a file")
+    with using(rest_states=tmp_path / "rest"), pytest.warns(MemoryWarning, match="nothing more is kept there"):
+        found = map_tasks(settled, [3, 4], workers=2)
+    assert found == [map_tasks(settled, [layers], workers=1)[0] for layers in (3, 4)]
+
+
+def settled(layers):
+    scene = Scene().updated({"packing.layers": layers, "packing.disks_per_row": 5, "contact.friction": 0.0})
+    return rest_state(Problem.from_scene(scene)).position.tolist()
 
 
 class Ajar:
@@ -489,9 +518,14 @@ def test_a_scheduler_without_workers_is_reported_and_then_waited_for(scheduler, 
     assert said == [f"the Dask scheduler at {address} has no workers: waiting for one"]
 
 
-def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd):
+def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd, monkeypatch):
     process, address = scheduler
-    threading.Timer(1.0, process.kill).start()
+
+    def kill(finished, client, address):
+        process.kill()
+        return finished.get()
+
+    monkeypatch.setattr(dask_tasks, "_next", kill)
     with pytest.raises(SweepError) as caught:
         map_tasks(slow_first, range(3), scheduler=address)
     assert str(caught.value) == f"the Dask scheduler at {address} was lost, with 3 of 3 tasks to do"

@@ -51,11 +51,12 @@ def over_dask(
                     outcome = future.result()  # waits once more if it was lost with its worker
                 except KilledWorker:
                     raise failed(index, items, "killed its worker process several times") from None
-                except (CancelledError, OSError):
-                    raise SweepError(
-                        f"the Dask scheduler at {address} was lost, with {len(futures) + 1} of {len(items)} tasks to do"
-                    ) from None
                 except Exception as error:
+                    if isinstance(error, CancelledError) or client.status != "running":
+                        raise SweepError(
+                            f"the Dask scheduler at {address} was lost, with {len(futures) + 1} of {len(items)} tasks "
+                            "to do"
+                        ) from None
                     raise raised(index, items, error) from error
                 future.release()  # what the cluster still had to hold it would compute again after a death
                 compared = compared or _compare_settings(client)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from granular_response.paper.pipeline import GroupError, data_path, figures_folder, group_member
@@ -19,7 +18,6 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     granular_response.store.StoreError
         If its datasets cannot be read.
     """
-    os.environ.setdefault("MPLBACKEND", "Agg")
     function = group_member(group, "draw", "draw")
     path = data or data_path(group)
     datasets = store.read(path)
