@@ -412,6 +412,10 @@ def test_stored_table_and_metrics_agree(tmp_path):
     (tmp_path / "claims.json").write_text('{"counts": {}, "table": []}')
     with pytest.raises(table.ClaimsError, match="is not a table of claims"):
         table.read(tmp_path / "claims.json")
+    for partial in ({**stored, "counts": {}}, {**stored, "table": [{"id": "P1"}]}, {**stored, "table": 3}):
+        (tmp_path / "claims.json").write_text(json.dumps(partial))
+        with pytest.raises(table.ClaimsError, match="is not a whole table of claims"):
+            table.read(tmp_path / "claims.json")
 
 
 def test_the_counts_in_words(good):

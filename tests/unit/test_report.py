@@ -289,6 +289,19 @@ def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
     assert "\n" not in str(caught.value)
 
 
+def test_a_table_that_lacks_a_part_is_one_line(root, tmp_path):
+    whole = json.loads((root / "figures" / "claims.json").read_text())
+    (tmp_path / "figures").mkdir()
+    row = whole["table"][0]
+    partial = [{**whole, "table": [{k: v for k, v in row.items() if k != key}]} for key in ("group", "id")]
+    partial += [{**whole, "table": 3}, {**whole, "verdict_kinds": [{}]}, {**whole, "counts": {}}]
+    for found in partial:
+        (tmp_path / "figures" / "claims.json").write_text(json.dumps(found))
+        with pytest.raises(report.ReportError, match=r"claims\.json: is not a whole table of claims") as caught:
+            report.page(tmp_path)
+        assert "\n" not in str(caught.value)
+
+
 def test_benchmark_metrics_become_tables(root):
     (kernel,) = benchmarks.collect(root / "benchmarks")
     (table,) = kernel.tables

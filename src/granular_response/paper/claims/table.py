@@ -259,7 +259,18 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
         ) from None
     if not isinstance(found, dict) or not set(found) >= KEYS:
         raise ClaimsError(f"{path}: is not a table of claims")
+    try:
+        sentence(found), firmness(found)
+        whole = all(set(row) >= _LISTED for row in found["table"])
+    except (AttributeError, KeyError, TypeError, ValueError):
+        whole = False
+    if not whole:
+        raise ClaimsError(f"{path}: is not a whole table of claims; make it with granular-response claims")
     return found
+
+
+#: What is listed of each claim.
+_LISTED = {"id", "verdict", "ours", "reason", "interval_kind"}
 
 
 def sentence(found: dict[str, Any]) -> str:

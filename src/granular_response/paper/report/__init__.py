@@ -90,26 +90,27 @@ def page(root: Path) -> str:
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     template = environment.from_string(_resource("page.html.j2"))
-    return (
-        template.render(
-            version=__version__,
-            claims=claims,
-            verdicts=[(k["verdict"], k["verdict"].replace(" ", "_")) for k in claims["verdict_kinds"]],
-            numbered=shown.numbered,
-            further=shown.further,
-            states=_json_in_html(states) if states else None,
-            explored=states is not None
-            and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
-            readings=tried,
-            benchmarks=benchmarks.collect(root / "benchmarks"),
-            goals=benchmarks.goals(root / "benchmarks"),
-            groups=groups,
-            versions=_versions(root / "requirements.lock"),
-            style=_resource("style.css"),
-            script=_resource("explorer.js"),
-        )
-        + "\n"
-    )
+    values = {
+        "version": __version__,
+        "claims": claims,
+        "verdicts": [(k["verdict"], k["verdict"].replace(" ", "_")) for k in claims["verdict_kinds"]],
+        "numbered": shown.numbered,
+        "further": shown.further,
+        "states": _json_in_html(states) if states else None,
+        "explored": states is not None
+        and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
+        "readings": tried,
+        "benchmarks": benchmarks.collect(root / "benchmarks"),
+        "goals": benchmarks.goals(root / "benchmarks"),
+        "groups": groups,
+        "versions": _versions(root / "requirements.lock"),
+        "style": _resource("style.css"),
+        "script": _resource("explorer.js"),
+    }
+    try:
+        return template.render(values) + "\n"
+    except jinja2.UndefinedError as error:
+        raise ReportError(f"{root / 'figures' / 'claims.json'}: is not a whole table of claims: {error}") from None
 
 
 #: What the digits and the pictures come from.
@@ -123,12 +124,16 @@ def _claims(path: Path) -> dict[str, Any]:
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         known = isinstance(found, dict) and set(found) >= _CLAIMS
+        known = known and all("group" in row for row in found["table"])
+        known = known and all("verdict" in kind for kind in found["verdict_kinds"])
     except FileNotFoundError:
         raise ReportError(f"{path}: no such file, make it with granular-response claims") from None
+    except TypeError:
+        known = False
     except (OSError, ValueError) as error:
         raise ReportError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
     if not known:
-        raise ReportError(f"{path}: is not a table of claims")
+        raise ReportError(f"{path}: is not a whole table of claims")
     return found
 
 
