@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from granular_response.machine.machine_code import SOURCES
+
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 PACKAGE = SOURCE / "granular_response"
@@ -130,3 +132,36 @@ def test_only_scenes_ask_for_the_kind_of_a_packing():
     paths = [path for path in (SOURCE / "granular_response").rglob("*.py") if path.parent.name != "scene"]
     assert len(paths) > 100
     assert [path.name for path in paths if asks.search(path.read_text())] == []
+
+
+def sources() -> dict[str, str]:
+    """Text of every module, by its place in the package."""
+    return {path.relative_to(PACKAGE).as_posix(): path.read_text() for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def test_only_contact_laws_know_their_constants_by_place():
+    """Everybody else asks a law by name."""
+    asks = re.compile(r"(?<![_\w])law\[|\.law\[|_law\[")
+    assert {name for name, text in sources().items() if asks.search(text)} == set()
+
+
+def test_the_environment_is_changed_by_the_entry_point_alone():
+    changes = re.compile(r"os\.environ(\[[^\]]+\] =|\.(setdefault|update|pop)\()|os\.putenv")
+    found = {name for name, text in sources().items() if changes.search(text)}
+    assert found == {"machine/floating_point.py"}  # ``pin``, which the command line calls
+    callers = {name for name, text in sources().items() if "floating_point.pin()" in text}
+    assert callers == {"cli/main.py"}
+
+
+def test_importing_deletes_nothing():
+    removes = re.compile(r"\b(unlink|rmtree|os\.remove)\(")
+    for name, text in sources().items():
+        module = ast.parse(text)
+        outside = [n for n in module.body if not isinstance(n, (ast.FunctionDef, ast.ClassDef))]
+        assert not removes.search("\n".join(ast.unparse(node) for node in outside)), name
+
+
+def test_compiled_modules_are_among_the_sources_that_name_the_machine_code():
+    compiled = {name for name, text in sources().items() if re.search(r"^@kernel|^@by_type", text, re.MULTILINE)}
+    assert len(compiled) > 8
+    assert {name for name in compiled if not name.startswith(SOURCES)} == set()
