@@ -145,14 +145,6 @@ def test_only_contact_laws_know_their_constants_by_place():
     assert {name for name, text in sources().items() if asks.search(text)} == set()
 
 
-def test_the_environment_is_changed_by_the_entry_point_alone():
-    changes = re.compile(r"os\.environ(\[[^\]]+\] =|\.(setdefault|update|pop)\()|os\.putenv")
-    found = {name for name, text in sources().items() if changes.search(text)}
-    assert found == {"machine/floating_point.py"}  # ``pin``, which the command line calls
-    callers = {name for name, text in sources().items() if "floating_point.pin()" in text}
-    assert callers == {"cli/main.py"}
-
-
 def test_importing_deletes_nothing():
     removes = re.compile(r"\b(unlink|rmtree|os\.remove)\(")
     for name, text in sources().items():
