@@ -21,7 +21,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure test fuzz coverage lint docs benchmark arena lock clean
+.PHONY: help setup reproduce quote figure test fuzz coverage lint docs package matrix benchmark arena lock clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -72,6 +72,12 @@ lint: setup ## Run the linters and the type checker alone
 
 docs: setup ## Build the documentation site into docs/_build/html, running every example of the gallery
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
+
+package: setup ## Build sdist and wheel, and try the wheel in a fresh environment
+	.ci/package "$(BIN)/python" "$(PYTHON)"
+
+matrix: setup ## The same for each of Python 3.11 to 3.13 that there is
+	.ci/package "$(BIN)/python" python3.11 python3.12 python3.13
 
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	"$(BIN)/dvc" repro benchmarks/dvc.yaml

@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -99,6 +100,20 @@ def test_cite_agrees_with_the_citation_file():
         assert all(author["family-names"] in text for author in reference["authors"])
         assert citation["title"] in text
         assert __version__ in text
+
+
+def test_codemeta_says_what_the_package_and_its_citation_say():
+    described = json.loads((ROOT / "codemeta.json").read_text())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert described["version"] == __version__
+    assert described["license"].endswith(project["license"]) and citation["license"] == project["license"]
+    for name in ("name", "description", "keywords"):
+        assert described[name] == project[name]
+    publication, reference = described["referencePublication"], citation["references"][0]
+    assert (publication["name"], publication["url"]) == (reference["title"], reference["url"])
+    names = [(one["givenName"], one["familyName"]) for one in publication["author"]]
+    assert names == [(one["given-names"], one["family-names"]) for one in reference["authors"]]
 
 
 def test_run_and_show(tmp_path):
