@@ -4,7 +4,7 @@ import pytest
 
 from granular_response.scene import Contact, Load, Scene, SceneError, SlabPacking
 
-CONTACT_KEYS = "normal_stiffness, stiffness_ratio, friction, damping_ratio"
+CONTACT_KEYS = "law, normal_stiffness, stiffness_ratio, friction, damping_ratio"
 SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol"
 RATIO = "must be a number from 0 to 1e6"
 DISK = "must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"
@@ -38,7 +38,7 @@ MALFORMED = {
         "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time)"
     ),
     "packing: {kind: file, path: a.csv, width: 1.0, layers: 3}": (
-        "packing.layers = 3: unknown key (allowed: kind, path, width)"
+        "packing.layers = 3: unknown key (allowed: kind, path, format, width, sides)"
     ),
     # Wrong types and values out of range.
     "contact: 3": f"contact = 3: must be a mapping with keys among {CONTACT_KEYS}",
@@ -78,8 +78,7 @@ MALFORMED = {
         "packing.lattice_constant = 'touching': must be a number greater than 0, at most 1000, or touching-largest"
     ),
     "packing: {kind: slab, seed: -1}": ("packing.seed = -1: must be a whole number, 0 or greater and less than 2^63"),
-    "packing: {kind: file, path: a.csv}": "packing.width: missing, must be given",
-    "packing: {kind: file, path: '', width: 1.0}": "packing.path = '': must be the path of a CSV file",
+    "packing: {kind: file, path: '', width: 1.0}": "packing.path = '': must be the path of a file",
     # Loads.
     "loads: {disk: 0, force: [0, -1]}": (
         "loads = {'disk': 0, 'force': [0, -1]}: must be a list of loads, [] for gravity alone"
@@ -101,7 +100,9 @@ MALFORMED = {
         "loads[0].disk.offset = 31: must be from -29 to 30, row 1 has 60 disks"
     ),
     # Protocol and preparation.
-    "protocol: {method: newton}": ("protocol.method = 'newton': must be auto or dynamics or path or minimise"),
+    "protocol: {method: newton}": (
+        "protocol.method = 'newton': must be auto or dynamics or path or stages or minimise"
+    ),
     "protocol: {integrator: verlett}": (
         "protocol.integrator = 'verlett': must be beeman or verlet or gear, did you mean verlet?"
     ),
