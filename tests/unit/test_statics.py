@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
+from granular_response.contact import LAWS
 from granular_response.solve import Dynamics, Problem
 from granular_response.solve.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
@@ -13,16 +14,17 @@ from granular_response.state import OPEN, SLIDING, STICKING
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
 
 
-def problem_with(friction: str) -> Problem:
+def problem_with(friction: str, law: str = "linear") -> Problem:
     pair, wall = FRICTION[friction]
-    return Problem.from_scene(scene(contact__friction=pair, wall__friction=wall))
+    return Problem.from_scene(scene(contact__law=law, contact__friction=pair, wall__friction=wall))
 
 
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("friction", FRICTION)
-def test_forces_agree_with_dynamics_at_rest(friction):
+def test_forces_agree_with_dynamics_at_rest(friction, law):
     """A shaken packing with springs below the Coulomb limit, no velocities: two codes, one force."""
-    problem = problem_with(friction)
-    state = shaken(problem, spring=1e-5)
+    problem = problem_with(friction, law)
+    state = shaken(problem, spring=1e-6)
     system = StaticSystem(problem, state)
     known = system.start(state)
     dynamics = Dynamics(problem, state)
@@ -37,8 +39,9 @@ def test_forces_agree_with_dynamics_at_rest(friction):
     assert trial.wall_tangential == pytest.approx(state.walls.tangential_force, abs=1e-11)
 
 
-def test_sliding_forces_agree_with_dynamics_at_rest():
-    problem = problem_with("both")
+@pytest.mark.parametrize("law", LAWS)
+def test_sliding_forces_agree_with_dynamics_at_rest(law):
+    problem = problem_with("both", law)
     state = shaken(problem, spring=5e-3)
     system = StaticSystem(problem, state)
     known = system.start(state)
@@ -67,10 +70,11 @@ def numerical_tangent(system, known, q, limits=None, h=1e-7):
     return np.array(columns).T
 
 
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("friction", FRICTION)
 @pytest.mark.parametrize("step", [1e-6, 3e-3], ids=["sticking", "sliding"])
-def test_tangent_is_the_derivative(friction, step):
-    problem = problem_with(friction)
+def test_tangent_is_the_derivative(friction, step, law):
+    problem = problem_with(friction, law)
     # pressed so hard that no contact opens or closes within the increment
     state = shaken(problem, seed=4, size=1e-4, spring=1e-5)
     system = StaticSystem(problem, state)
@@ -100,8 +104,9 @@ def test_tangent_is_the_derivative(friction, step):
     assert np.abs(difference[rows]).max() < 2e-3
 
 
-def test_tangent_with_fixed_limits_is_the_derivative_and_symmetric_but_for_the_turn():
-    problem = problem_with("both")
+@pytest.mark.parametrize("law", LAWS)
+def test_tangent_with_fixed_limits_is_the_derivative_and_symmetric_but_for_the_turn(law):
+    problem = problem_with("both", law)
     state = shaken(problem, seed=4, size=1e-4, spring=1e-5)
     system = StaticSystem(problem, state)
     known = system.start(state)

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
+from granular_response.contact import LAWS
+from granular_response.paper.trials.closed_forms import collision, mechanical_energy
 from granular_response.solve import Dynamics, NotSettled, Problem, Stop, relax, solve_scene
 
 
@@ -30,19 +32,26 @@ def test_frictional_wall_gives_no_energy_at_any_incidence(friction, damping_rati
             assert dynamics.kinetic_energy() <= before * (1.0 + 1e-4)
 
 
-def mechanical_energy(dynamics: Dynamics) -> float:
-    """Kinetic, gravitational and elastic energy."""
-    problem, state = dynamics.problem, dynamics.state()
-    total = dynamics.kinetic_energy() * problem.n + float(problem.weight @ state.position[:, 1])
-    for contacts, law in ((state.pairs, problem.pair_law), (state.walls, problem.wall_law)):
-        total += 0.5 * law.normal_stiffness * float((np.maximum(contacts.overlap, 0.0) ** 2).sum())
-        total += 0.5 * law.tangential_stiffness * float((contacts.spring**2).sum())
-    return total
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("damping_ratio", [0.0, 0.5])
+@pytest.mark.parametrize("pair", [False, True], ids=["floor", "pair"])
+def test_no_collision_gives_energy_under_any_law(pair, damping_ratio, law):
+    for friction in (0.2, 1.0):
+        changes = {"contact__friction": friction, "contact__damping_ratio": damping_ratio, "contact__law": law}
+        one = scene(**changes, wall__friction=friction, wall__damping_ratio=damping_ratio)
+        for angle in (2.0, 15.0, 45.0, 80.0, 90.0):
+            for spin in (-2.0, 0.0, 2.0):
+                left = collision(one, angle, spin, 1e-4, pair=pair)
+                assert 0.0 < left <= 1.0 + 1e-4
+                if damping_ratio and angle == 90.0:
+                    assert left < 0.9
 
 
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("friction", [0.0, 0.3])
-def test_a_falling_packing_loses_energy_all_the_time(friction):
-    problem = Problem.from_scene(scene(contact__friction=friction, wall__friction=friction))
+def test_a_falling_packing_loses_energy_all_the_time(friction, law):
+    changes = {"contact__friction": friction, "wall__friction": friction, "contact__law": law}
+    problem = Problem.from_scene(scene(**changes))
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", 1e-4)
     energy = [mechanical_energy(dynamics)]
     for _ in range(100):
@@ -52,8 +61,10 @@ def test_a_falling_packing_loses_energy_all_the_time(friction):
     assert energy[0] - energy[-1] > 1e-3
 
 
-def test_undamped_frictionless_packing_keeps_its_energy():
-    problem = Problem.from_scene(scene(contact__friction=0.0, contact__damping_ratio=0.0, wall__damping_ratio=0.0))
+@pytest.mark.parametrize("law", LAWS)
+def test_undamped_frictionless_packing_keeps_its_energy(law):
+    undamped = {"contact__friction": 0.0, "contact__damping_ratio": 0.0, "wall__damping_ratio": 0.0}
+    problem = Problem.from_scene(scene(**undamped, contact__law=law))
     start = problem.bare_state()
     drift = []
     for step in (4e-4, 1e-4):
