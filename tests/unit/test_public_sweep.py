@@ -93,13 +93,13 @@ def test_a_combination_without_equilibrium_is_missing_and_says_why():
     def measured(result):
         return {"largest": result.floor_response.max(), "settled": True, "name": "x"}
 
-    with pytest.warns(UserWarning, match=r"1 of 2 combinations have no equilibrium, see the variable error; .*blew up"):
+    with pytest.warns(UserWarning, match=r"1 of 2 combinations have no equilibrium, see the variable error; .*lifts"):
         found = gr.sweep(SCENE, {"loads": up}, measured, workers=1, progress=False)
     assert found["largest"].isnull().values.tolist() == [False, True]
     assert found["settled"].values[0] == 1.0 and np.isnan(found["settled"].values[1])
     assert found["name"].values.tolist() == ["x", ""]
-    assert found["error"].values[0] == "" and "blew up" in found["error"].values[1]
-    with pytest.raises(SweepError, match=r"none of 1 combinations has an equilibrium, the first: .*blew up"):
+    assert found["error"].values[0] == "" and "lifts disk" in found["error"].values[1]
+    with pytest.raises(SweepError, match=r"none of 1 combinations has an equilibrium, the first: .*lifts disk"):
         gr.sweep(SCENE, {"loads": up[1:]}, workers=1, progress=False)
 
 
