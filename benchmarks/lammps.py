@@ -1,23 +1,32 @@
 """The same slab in LAMMPS, where `lmp` is installed (Debian: `apt-get install lammps`).
 
-The contact law is that of `core.law` (matched on a two-disk collision): `gran/hooke/history` takes damping per
-effective mass, so a pair's `gamma` is twice and a wall's once the square root of the stiffness; `dampflag` must
-be 1. Units are the reduced ones.
+The linear law (matched on a two-disk collision): `gran/hooke/history` takes damping per effective mass, so a pair's
+`gamma` is twice and a wall's once the square root of the stiffness; `dampflag` must be 1. Units are the reduced ones.
+
+The 3/2 law is `granular` with `hertz` and `linear_history`: its normal forces are ours to rounding, for unequal disks
+and walls too. `damping velocity` makes the dashpots absolute; the tangential one is given over the normal one. The arm
+of its torque ends at the middle of the overlap, ours at the rim.
+
+    python benchmarks/lammps.py FRICTION LATTICE_CONSTANT OUT.json     what tests/data stores for the 3/2 law
 """
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from granular_response.scene import Packing
+from granular_response.contact import Law
+from granular_response.scene import Packing, Scene
+from granular_response.solve import Problem
 
 #: Timed runs after the settling.
 REPEATS = 8
@@ -31,6 +40,8 @@ class Run:
     seconds: float
     floor_rest: np.ndarray
     floor: np.ndarray
+    energy_rest: float  #: Kinetic energy per disk, without that of rotation.
+    energy: float
 
 
 def executable() -> str | None:
@@ -61,14 +72,35 @@ def data(packing: Packing, types: int = 1) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _script(friction: float, packing: Packing, time_step: float, body: str) -> str:
+def _linear(friction: float) -> tuple[str, str]:
+    """The linear law between disks, and at walls."""
     k, kt = 3000.0, 2400.0
     if friction:
-        style = f"gran/hooke/history {k} {kt} {2 * k**0.5!r} {2 * kt**0.5!r} {friction} 1"
+        style = f"pair_style gran/hooke/history {k} {kt} {2 * k**0.5!r} {2 * kt**0.5!r} {friction} 1"
     else:
-        style = f"gran/hooke {k} 0.0 {2 * k**0.5!r} 0.0 0.0 0"
-    wall = f"{2 * k} {2 * kt} {(2 * k) ** 0.5!r} {(2 * kt) ** 0.5!r} 0 1"
+        style = f"pair_style gran/hooke {k} 0.0 {2 * k**0.5!r} 0.0 0.0 0"
     kind = "hooke/history" if friction else "hooke"
+    return f"{style}\npair_coeff * *", f"{kind} {2 * k} {2 * kt} {(2 * k) ** 0.5!r} {(2 * kt) ** 0.5!r} 0 1"
+
+
+def _hertz(friction: float) -> tuple[str, str]:
+    """The 3/2 law between disks, and at walls; the constants are those of the scene's laws."""
+    problem = Problem.from_scene(Scene().updated({"contact.law": "hertz", "contact.friction": friction}))
+
+    def model(law: Law) -> str:
+        constant = law.factor / math.sqrt(law.reduced_radius)
+        part = law.tangential_damping / law.normal_damping
+        kind = "linear_history" if law.friction else "linear_nohistory"
+        stiffness = f"{law.tangential_stiffness!r} " if law.friction else ""
+        tangential = f"{kind} {stiffness}{part!r} {law.friction!r}"
+        return f"hertz {constant!r} {law.normal_damping!r} tangential {tangential} damping velocity"
+
+    pair, wall = model(problem.pair_law), model(problem.wall_law)
+    return f"pair_style granular\npair_coeff * * {pair}", f"granular {wall}"
+
+
+def _script(friction: float, packing: Packing, time_step: float, body: str, law: str = "linear") -> str:
+    pair, wall = _hertz(friction) if law == "hertz" else _linear(friction)
     bottom = int((packing.row == 0).sum())
     return f"""
 units si
@@ -78,16 +110,15 @@ newton off
 comm_modify vel yes
 atom_style sphere
 read_data slab.data
-pair_style {style}
-pair_coeff * *
+{pair}
 neighbor 0.3 bin
 neigh_modify delay 0 every 1 check yes
 timestep {time_step!r}
 group bottom id 1:{bottom}
 fix move all nve/sphere disc
 fix weight all gravity 1.0 vector 0 -1 0
-fix floor all wall/gran {kind} {wall} yplane 0.0 NULL
-fix sides all wall/gran {kind} {wall} xplane 0.0 {packing.width!r}
+fix floor all wall/gran {wall} yplane 0.0 NULL
+fix sides all wall/gran {wall} xplane 0.0 {packing.width!r}
 fix plane all enforce2d
 thermo_modify norm no
 thermo 100000
@@ -126,12 +157,13 @@ def step_time(
 
 def response(
     packing: Packing, friction: float, disk: int, force: float, ramp: float, rest_steps: int, load_steps: int,
-    time_step: float = 5e-4,
+    time_step: float = 5e-4, law: str = "linear",
 ) -> Run:  # fmt: skip
     """Floor forces at rest and under a vertical load on one disk, ramped linearly over `ramp`."""
     ramp_steps = round(ramp / time_step)
     body = f"""
 run {rest_steps}
+print "energy $(ke/atoms:%.3e)"
 write_dump bottom custom rest.dump id y modify sort id format float %.17g
 velocity all set 0 0 0
 set group all omega 0 0 0
@@ -140,15 +172,53 @@ group loaded id {disk + 1}
 variable push equal -{force!r}*(step<{ramp_steps})*step/{ramp_steps}-{force!r}*(step>={ramp_steps})
 fix push loaded addforce 0.0 v_push 0.0
 run {load_steps}
+print "energy $(ke/atoms:%.3e)"
 write_dump bottom custom loaded.dump id y modify sort id format float %.17g
 """
-    loops, folder = run(executable(), data(packing), _script(friction, packing, time_step, body))
+    loops, folder = run(executable(), data(packing), _script(friction, packing, time_step, body, law))
     radius = packing.radius[packing.row == 0]
-    floor = [6000.0 * np.maximum(radius - _heights(folder / name), 0.0) for name in ("rest.dump", "loaded.dump")]
+    overlap = [np.maximum(radius - _heights(folder / name), 0.0) for name in ("rest.dump", "loaded.dump")]
+    floor = [4000.0**1.5 * xi**1.5 if law == "hertz" else 6000.0 * xi for xi in overlap]
+    log = (folder / "log").read_text()
+    energy = re.findall(r"^energy ([\d.eE+-]+)", log, re.MULTILINE)
     shutil.rmtree(folder)
-    return Run(sum(s for s, _ in loops), sum(t for _, t in loops), floor[0], floor[1])
+    return Run(
+        sum(s for s, _ in loops), sum(t for _, t in loops), floor[0], floor[1], float(energy[0]), float(energy[1])
+    )
 
 
 def _heights(path: Path) -> np.ndarray:
     rows = path.read_text().split("ITEM: ATOMS id y", 1)[1].split()
     return np.array(rows, float).reshape(-1, 2)[:, 1]
+
+
+def profile(friction: float, lattice_constant: float) -> dict:
+    """What tests/data stores for the 3/2 law: floor forces of the paper's slab before and under a force of 4 on top.
+
+    ``lattice_constant`` below 2 presses the disks of a row together.
+    """
+    packing = Scene().updated({"packing.lattice_constant": lattice_constant}).packing.build()
+    force, steps, time_step = 4.0, 120_000, 5e-4
+    disk = int(np.flatnonzero(packing.row == packing.row.max())[30])
+    run = response(packing, friction, disk, force, 20.0, steps, steps, time_step, law="hertz")
+    pair, wall = _hertz(friction)
+    return {
+        "code": f"LAMMPS {version()}",
+        "pair": pair,
+        "wall": f"fix wall/gran {wall}",
+        "friction": friction,
+        "lattice_constant": lattice_constant,
+        "force": force,
+        "ramp_time": 20.0,
+        "time_step": time_step,
+        "steps": [steps, steps],
+        "kinetic_energy_per_disk": [run.energy_rest, run.energy],
+        "floor_force_gravity": run.floor_rest.tolist(),
+        "floor_force_loaded": run.floor.tolist(),
+        "response": ((run.floor - run.floor_rest) / force).tolist(),
+    }
+
+
+if __name__ == "__main__":
+    friction, lattice_constant, output = sys.argv[1:]
+    Path(output).write_text(json.dumps(profile(float(friction), float(lattice_constant)), indent=1) + "\n")

@@ -12,12 +12,15 @@ FLOOR_DISKS = np.arange(61)
 
 
 @cache
-def slab(friction: float, force: float, method: str = "auto") -> Solution:
+def slab(
+    friction: float, force: float, method: str = "auto", law: str = "linear", lattice_constant: float = 2.0
+) -> Solution:
     """The paper's slab (15 rows of 61 and 60) under a force on the middle of its top row."""
     return solve_scene(
         Scene.from_dict(
             {
-                "contact": {"friction": friction},
+                "packing": {"kind": "slab", "lattice_constant": lattice_constant},
+                "contact": {"friction": friction, "law": law},
                 "loads": [{"disk": "top-centre", "force": [0.0, -force]}],
                 "protocol": {"method": method},
             }

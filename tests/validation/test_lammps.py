@@ -59,3 +59,24 @@ def test_stopping_at_the_papers_kinetic_energy_is_less_exact():
     early = np.abs(np.array(data["tol_1e-13"]["response"]) - data["tol_1e-22"]["response"]).max()
     finished = np.abs(response(slab(0.0, 4.0)) - data["tol_1e-22"]["response"]).max()
     assert finished < 1e-3 * early
+
+
+#: The same with the 3/2 law. Without friction the slab as it stands has equilibria of nearly the same energy, and each
+#: code falls into another: its rows are pressed together.
+HERTZ_LIMITS = {("0", "auto"): 1e-7, ("0.2", "dynamics"): 5e-5, ("0.2", "path"): 5e-5, ("1", "dynamics"): 5e-5}
+
+
+@pytest.mark.parametrize(("friction", "method"), HERTZ_LIMITS)
+def test_the_three_halves_law_agrees_with_lammps(friction, method):
+    expected = json.loads((DATA / f"lammps_hertz_mu{friction}_F4.json").read_text())
+    assert max(expected["kinetic_energy_per_disk"]) < 1e-18
+    solution = slab(float(friction), 4.0, method, "hertz", expected["lattice_constant"])
+    assert response(solution) == pytest.approx(
+        np.array(expected["response"]), abs=HERTZ_LIMITS[friction, method], rel=0
+    )
+    rest = floor_force(solution.rest, FLOOR_DISKS)
+    limit = 2e-2 if float(friction) else 1e-5
+    assert rest == pytest.approx(np.array(expected["floor_force_gravity"]), abs=limit, rel=0)
+    # the linear law is another one
+    linear = response(slab(float(friction), 4.0, method, "linear", expected["lattice_constant"]))
+    assert np.abs(linear - expected["response"]).max() > 1e-3

@@ -1,0 +1,74 @@
+"""The 3/2 law in every way to an equilibrium, in `continue` and in exports."""
+
+import numpy as np
+import pytest
+
+from granular_response.observe.floor import floor_force
+from granular_response.scene import Scene
+from granular_response.solve import Solution, solve_scene
+from granular_response.solve.solution import continue_solution
+from granular_response.store import files as store
+from granular_response.store.export import export
+from granular_response.store.result import solution_from, to_dataset
+
+FLOOR = np.arange(9)
+
+
+def solved(friction: float, method: str, factors=(1.0,)) -> Solution:
+    # pressed together along x: without friction there is one equilibrium then
+    packing = {"kind": "slab", "layers": 5, "disks_per_row": 9, "lattice_constant": 1.999}
+    return solve_scene(
+        Scene.from_dict(
+            {
+                "packing": packing,
+                "contact": {"law": "hertz", "friction": friction},
+                "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
+                "protocol": {"method": method, "load_factors": list(factors)},
+            }
+        )
+    )
+
+
+def by_hand(solution: Solution) -> None:
+    """Every normal force is K sqrt(R) xi^(3/2) of the positions, and each disk is in equilibrium."""
+    for state in (solution.rest, *solution.loaded):
+        certificate = state.reached.certificate
+        assert certificate.force_residual < 1e-9 and certificate.coulomb_excess < 1e-9
+        assert certificate.negative_modes == 0 and certificate.smallest_normal_force > 0
+        first, second = state.pairs.first, state.pairs.second
+        xi = 2.0 - np.hypot(*(state.position[first] - state.position[second]).T)
+        force = 2000.0**1.5 * np.maximum(xi, 0.0) ** 1.5
+        assert state.pairs.normal_force == pytest.approx(force, abs=1e-9)
+        floor = 4000.0**1.5 * np.maximum(1.0 - state.position[:9, 1], 0.0) ** 1.5
+        assert floor_force(state, FLOOR) == pytest.approx(floor, abs=1e-9)
+    n = solution.problem.n
+    loaded = n + solution.load_factors[-1] * solution.total_force
+    assert floor_force(solution.rest, FLOOR).sum() == pytest.approx(n, abs=1e-8)
+    assert floor_force(solution.loaded[-1], FLOOR).sum() == pytest.approx(loaded, abs=1e-8)
+
+
+@pytest.mark.parametrize(("friction", "limit"), [(0.0, 1e-9), (0.4, 2e-3)])
+def test_every_method_finds_the_same_equilibrium(friction, limit):
+    """With friction the path is the limit of a slow ramp."""
+    methods = ("dynamics", "path", "stages", "auto") if friction else ("dynamics", "path", "auto")
+    solutions = [solved(friction, method) for method in methods]
+    for solution in solutions:
+        by_hand(solution)
+        floor = floor_force(solution.loaded[-1], FLOOR)
+        assert floor == pytest.approx(floor_force(solutions[0].loaded[-1], FLOOR), abs=limit)
+    if not friction:
+        assert solutions[-1].loaded[-1].reached.method == "minimise"
+
+
+def test_continued_and_exported(tmp_path):
+    """From a file on to another load, as far as in one go; every contact force is in the export."""
+    first, whole = solved(0.4, "path"), solved(0.4, "path", (1.0, 2.0))
+    store.write(tmp_path / "first.nc", to_dataset(first))
+    kept = solution_from(store.read(tmp_path / "first.nc")[""])
+    assert kept.problem.pair_law == first.problem.pair_law
+    further = continue_solution(kept, [2.0])
+    by_hand(further)
+    assert further.loaded[-1].position == pytest.approx(whole.loaded[-1].position, abs=1e-12)
+    store.write(tmp_path / "further.nc", to_dataset(further))
+    for name in ("state.vtu", "state.xyz"):
+        assert export(tmp_path / "further.nc", tmp_path / name).stat().st_size > 1000
