@@ -19,6 +19,7 @@ SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("*.py"))
 SMALL = {"LAYERS": 5, "DISKS": 9}
 #: What each script has at its top, smaller.
 REDUCED = {
+    "crossover": {**SMALL, "LOW": 0.05, "HIGH": 8.0},
     "elastic_slab": SMALL,
     "first_response": SMALL,
     "growing_load": {**SMALL, "FORCES": [0.5, 1.0, 1.5, 2.0]},
@@ -26,6 +27,7 @@ REDUCED = {
     "own_packing": {"ROWS": 3, "COLUMNS": 6},
     "periodic_slab": {"LAYERS": 3, "DISKS": 8},
     "stress_map": SMALL,
+    "sweep": {"LAYERS": 3, "DISKS": 7, "REALIZATIONS": 2},
     "to_ovito": SMALL,
 }
 
