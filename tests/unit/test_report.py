@@ -2,6 +2,7 @@
 
 import base64
 import html
+import io
 import json
 import re
 import shutil
@@ -19,6 +20,7 @@ from granular_response.paper.claims import table as claims
 from granular_response.paper.claims.claim import Data
 from granular_response.paper.groups.sensitivity import simulate as sensitivity
 from granular_response.paper.report import benchmarks, explorer, pictures, readings
+from granular_response.paper.report.typeset import typeset
 from granular_response.store import files as store
 from granular_response.store import generated
 from granular_response.store.result import variable
@@ -142,7 +144,7 @@ class Elements(HTMLParser):
 def test_one_row_for_every_claim_with_its_verdict(root, page):
     stored = json.loads((root / "figures" / "claims.json").read_text())
     elements = Elements(page)
-    rows = [row["id"] for row in elements.named("tr") if row.get("class") == "claim"]
+    rows = [row["id"] for row in elements.named("tr") if row.get("class", "").startswith("claim ")]
     assert rows == [f"claim-{row['id']}" for row in stored["table"]]
     chips = [span["class"] for span in elements.named("span") if span.get("class", "").startswith("chip")]
     assert chips == [f"chip {row['verdict'].replace(' ', '_')}" for row in stored["table"]]
@@ -154,7 +156,7 @@ def test_one_row_for_every_claim_with_its_verdict(root, page):
 
 def test_the_page_needs_no_network_and_no_other_file(page):
     elements = Elements(page)
-    assert all(image["src"].startswith("data:image/png;base64,") for image in elements.named("img"))
+    assert all(image["src"].startswith("data:image/webp;base64,") for image in elements.named("img"))
     assert [link["href"] for link in elements.named("link")] == ["data:,"]
     assert not [script for script in elements.named("script") if "src" in script]
     assert not re.search(r"(?:https?:)?//[\w.]+\.\w+/", re.sub(r"base64,[\w+/=]+", "", page))
@@ -244,11 +246,68 @@ def test_the_same_files_give_the_same_bytes(root, tmp_path):
     assert first.read_bytes() == second.read_bytes()
 
 
-def test_embedded_pictures_are_modest(root, page):
-    picture = pictures.embed(root / "figures" / "theory" / "fig01_predictions.png")
-    assert (picture.width, picture.height) == (1200, 429)
-    data = base64.b64decode(picture.source.partition(",")[2])
-    assert data.startswith(b"\x89PNG") and len(data) < 200_000
+def test_embedded_pictures_are_as_drawn(root):
+    path = root / "figures" / "theory" / "fig01_predictions.png"
+    picture = pictures.embed(path)
+    assert (picture.width, picture.height, picture.shown) == (1400, 500, 868)
+    with Image.open(io.BytesIO(base64.b64decode(picture.source.partition(",")[2]))) as shown, Image.open(path) as drawn:
+        assert shown.format == "WEBP"
+        np.testing.assert_array_equal(np.asarray(shown), np.asarray(drawn))
+
+
+def test_every_picture_has_an_alternative_text_of_its_own(page):
+    texts = [image["alt"] for image in Elements(page).named("img")]
+    assert len(set(texts)) == len(texts) == 5
+    assert [text.partition(":")[0] for text in texts if text.startswith("Figure 17")] == [
+        "Figure 17, picture 1 of 2, pile",
+        "Figure 17, picture 2 of 2, pile profiles",
+    ]
+
+
+def test_narrow_figures_stand_beside_each_other(page):
+    assert [f["id"] for f in Elements(page).named("figure") if f.get("class") == "narrow"] == ["figure-6"]
+
+
+def test_a_figure_shows_its_claims(root, page):
+    stored = json.loads((root / "figures" / "claims.json").read_text())["table"]
+    for number in range(1, 25):
+        part = page.partition(f'<figure id="figure-{number}"')[2].partition("</figure>")[0]
+        shown = re.findall(r'<li><a href="#claim-(\w+)">', part)
+        assert shown == [row["id"] for row in stored if number in row["figures"]]
+
+
+def test_explorer_and_summary_come_before_the_figures_and_the_table_after_them(page):
+    names = ("summary", "try", "figures", "claims", "words", "readings", "benchmarks", "rerun", "versions")
+    places = [page.index(f' id="{name}"') for name in names]
+    assert places == sorted(places)
+
+
+def test_the_page_says_its_size(page):
+    assert f"one file of {len(page.encode()) / 1e6:.1f} MB" in page
+
+
+def test_there_is_a_filter_for_every_kind_of_verdict(page):
+    kinds = [row["id"] for row in Elements(page).named("input") if row.get("name") == "only"]
+    assert kinds[0] == "only-all" and len(kinds) == 1 + len(re.findall(r'<div class="tile ', page))
+    for kind in kinds[1:]:
+        assert f"#{kind}:checked ~ table .claim:not(.{kind.removeprefix('only-')}, :target)" in page
+
+
+@pytest.mark.parametrize(
+    ("plain", "typed"),
+    [
+        ("-2.6 % at -.5, (-3)", "\u22122.6 % at \u2212.5, (\u22123)"),
+        ("0.5-0.7 and A-1", "0.5-0.7 and A-1"),
+        ("1.2e-12 or 1e-13", "1.2\u202f×\u202f10<sup>\u221212</sup> or 10<sup>\u221213</sup>"),
+        ("sigma_zz, k_T/k_N", "<i>σ</i><sub>zz</sub>, <i>k</i><sub>T</sub>/<i>k</i><sub>N</sub>"),
+        ("R^2 and R^-1", "R<sup>2</sup> and R<sup>\u22121</sup>"),
+        ("sqrt(k), sqrt(R/g)", "√k, √(R/g)"),
+        ("stop_1e-9, fig_01.png, mu_0.2, floor_disk", "stop_1e-9, fig_01.png, mu_0.2, floor_disk"),
+        ("<b> & c", "&lt;b&gt; &amp; c"),
+    ],
+)
+def test_texts_are_set_with_minus_signs_powers_and_subscripts(plain, typed):
+    assert typeset(plain) == typed
 
 
 def test_slider_data_are_those_of_the_states():
@@ -275,7 +334,7 @@ def test_no_slider_without_states(root, tmp_path):
     (bare / "figures").mkdir(parents=True)
     shutil.copy(root / "figures" / "claims.json", bare / "figures")
     text = report.page(bare)
-    assert 'id="explorer"' not in text and "<script" not in text
+    assert 'id="explorer"' not in text and 'type="range"' not in text
     assert text.count("Not drawn yet.") == 24 and text.count("Not measured yet") == 2
 
 
@@ -332,7 +391,23 @@ window.addEventListener("load", function () {
   const before = canvas.toDataURL(), note = document.getElementById("note-0").textContent;
   slider.value = slider.value === "0" ? "1" : "0";
   slider.dispatchEvent(new Event("input"));
+  const rows = function () {
+    return Array.from(document.querySelectorAll("tr.claim")).filter(function (row) { return row.offsetHeight; }).length;
+  };
+  const filtered = ["not_measured", "derivation"].map(function (kind) {
+    document.getElementById("only-" + kind).click();
+    return rows();
+  });
+  document.getElementById("only-all").click();
+  const picture = document.querySelector(".picture img"), large = document.querySelector("dialog");
+  picture.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"}));
+  const enlarged = [large.open, large.querySelector("img").src === picture.src];
+  large.click();
+  enlarged.push(large.open);
+  large.querySelector("img").remove();
   const seen = {
+    filtered: filtered,
+    enlarged: enlarged,
     problems: window.problems,
     images: Array.from(document.images, function (i) {
       return [i.naturalWidth, i.naturalHeight, i.parentElement.clientWidth];
@@ -381,6 +456,9 @@ def test_a_browser_shows_all_of_it(root, page, tmp_path, width):
     stored = json.loads((root / "figures" / "claims.json").read_text())
     assert seen["problems"] == [] and seen["requests"] == []
     assert seen["claims"] == stored["counts"]["total"]
+    assert seen["filtered"] == [stored["counts"][kind] for kind in ("not_measured", "derivation")]
+    assert seen["filtered"][1] < seen["claims"]
+    assert seen["enlarged"] == [True, True, False]
     assert len(seen["images"]) == 5
     assert all(w > 0 and h > 0 and shown <= width for w, h, shown in seen["images"])
     assert seen["width"] == width and seen["content"] <= width  # nothing sticks out

@@ -20,6 +20,7 @@ from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
 from . import benchmarks, explorer, pictures, readings
+from .typeset import typeset
 
 #: Where the page is kept.
 OUTPUT = Path("figures") / "report.html"
@@ -89,9 +90,11 @@ def page(root: Path) -> str:
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
+    environment.filters["typeset"] = typeset
     template = environment.from_string(_resource("page.html.j2"))
     values = {
         "version": __version__,
+        "size": _SIZE,
         "claims": claims,
         "verdicts": [(k["verdict"], k["verdict"].replace(" ", "_")) for k in claims["verdict_kinds"]],
         "numbered": shown.numbered,
@@ -106,12 +109,17 @@ def page(root: Path) -> str:
         "versions": _versions(root / "requirements.lock"),
         "style": _resource("style.css"),
         "script": _resource("explorer.js"),
+        "enlarge": _resource("enlarge.js"),
     }
     try:
-        return template.render(values) + "\n"
+        text = template.render(values) + "\n"
     except jinja2.UndefinedError as error:
         raise ReportError(f"{root / 'figures' / 'claims.json'}: is not a whole table of claims: {error}") from None
+    return text.replace(_SIZE, f"{len(text.encode()) / 1e6:.1f} MB")
 
+
+#: Stands for the size of the page until the page is there.
+_SIZE = "(size of the page)"
 
 #: What the digits and the pictures come from.
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")

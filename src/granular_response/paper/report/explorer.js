@@ -3,7 +3,7 @@
   const data = JSON.parse(document.getElementById("states").textContent);
   const slider = document.getElementById("force");
   const label = document.getElementById("force-label");
-  const BLUE = "#0072b2", VERMILION = "#d55e00", GREY = "#e4e7eb", INK = "#1c2128", SOFT = "#57606a";
+  let BLUE, VERMILION, GREY, INK, SOFT;
 
   const panels = data.panels.map(function (panel, index) {
     return {
@@ -130,6 +130,10 @@
   }
 
   function show() {
+    const style = window.getComputedStyle(document.documentElement);
+    [BLUE, VERMILION, GREY, INK, SOFT] = ["curve", "opened", "grid", "ink", "soft"].map(function (name) {
+      return style.getPropertyValue("--" + name).trim();
+    });
     const index = Number(slider.value);
     label.textContent = "F = " + data.forces[index] + " mg";
     slider.setAttribute("aria-valuetext", label.textContent);
@@ -142,5 +146,9 @@
     waiting = window.requestAnimationFrame(show);
   });
   slider.addEventListener("input", show);
+  // print is light whatever the screen is
+  ["(prefers-color-scheme: dark)", "print"].forEach(function (medium) {
+    window.matchMedia(medium).addEventListener("change", show);
+  });
   show();
 })();

@@ -23,7 +23,6 @@ REACH = 30.0
 FULL, OPENED = 250, 255
 
 
-
 def payload(datasets: Mapping[str, xr.Dataset]) -> dict[str, Any] | None:
     """Embedded data of the slider from the group with the friction studies; None without the states of any friction."""
     panels = [_panel(datasets, friction) for friction in FRICTIONS if f"states_mu_{friction:g}" in datasets]

@@ -15,13 +15,14 @@ from PIL import Image
 from granular_response.paper.groups import NAMES
 from granular_response.paper.pipeline import group_member
 
-#: Width of an embedded picture in pixels, and its number of colours: sharp on a phone, modest in size.
-WIDTH, COLOURS = 1200, 128
-
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
 SHOWN = 0.62
 
+#: Two figures that are not wider than this, in pixels of the page, stand beside each other.
+NARROW = 480
+
 NUMBER_OF_FIGURES = 24
+
 
 @cache
 def captions() -> dict[int | str, str]:
@@ -75,6 +76,18 @@ class Figure:
     caption: str
     pictures: tuple[Picture, ...]
 
+    @property
+    def narrow(self) -> bool:
+        """Whether another figure has room beside it."""
+        return bool(self.pictures) and all(picture.shown <= NARROW for picture in self.pictures)
+
+    def alternative(self, picture: Picture) -> str:
+        """Text that stands for one of the pictures, of its own for each."""
+        count = len(self.pictures)
+        which = f", picture {self.pictures.index(picture) + 1} of {count}" if count > 1 else ""
+        subject = picture.stem.partition("_")[2].replace("_", " ")
+        return f"Figure {self.number}{which}, {subject}: {self.caption}"
+
 
 @dataclass(frozen=True)
 class Pictures:
@@ -104,14 +117,10 @@ def collect(folder: Path) -> Pictures:
 
 
 def embed(path: Path) -> Picture:
-    """A drawn picture as a data URI, not wider than WIDTH and with few colours."""
+    """A drawn picture as a data URI: every pixel as drawn, in lossless WebP, less than half as large as the PNG."""
     with Image.open(path) as image:
         plain = image.convert("RGB")
-    shown = round(SHOWN * plain.width)
-    if plain.width > WIDTH:
-        plain = plain.resize((WIDTH, round(plain.height * WIDTH / plain.width)), Image.Resampling.LANCZOS)
-    small = plain.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     buffer = io.BytesIO()
-    small.save(buffer, format="PNG", optimize=True)
-    source = "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
-    return Picture(path.stem, path.parent.name, source, small.width, small.height, shown)
+    plain.save(buffer, format="WEBP", lossless=True, quality=60, method=4)
+    source = "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
+    return Picture(path.stem, path.parent.name, source, plain.width, plain.height, round(SHOWN * plain.width))
