@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.paper.trials.random_scenes import check, contradiction, rounding_of
+from granular_response.paper.trials.random_scenes import anachronism, check, contradiction, rounding_of
 from granular_response.solve import Solution, solve_scene
 from granular_response.state import OPEN, SLIDING, Contacts, Reached
 
@@ -116,3 +116,68 @@ def test_a_state_without_a_certificate_is_found(solution):
 def test_a_load_that_is_not_the_scenes_is_found(solution):
     (state,) = solution.loaded
     assert check(solution, replace(state, load_factor=0.999)).force_residual > 1e-3
+
+
+# Other laws, other sides, and history
+
+
+@pytest.fixture(scope="module")
+def other() -> Solution:
+    changes = {"contact__law": "hertz", "packing__sides": "periodic", "packing__polydispersity": 0.05}
+    return solve_scene(scene(contact__friction=0.3, wall__friction=0.3, **changes))
+
+
+def test_the_three_halves_law_and_periodic_sides_pass(other):
+    for state in (other.rest, *other.loaded):
+        assert check(other, state).force_residual < 1e-9
+        assert complaint(other, state) == ""
+    x = other.rest.position[:, 0]
+    pairs = other.rest.pairs
+    across = np.abs(x[pairs.first] - x[pairs.second]) > 0.5 * other.problem.packing.width
+    assert (across & pairs.touching).any()  # or the nearest image would not have been tried
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("contact.law", "linear"), ("contact.normal_stiffness", 3001.0), ("wall.normal_stiffness", 6001.0)],
+)
+def test_another_law_than_the_scenes_is_found(other, key, value):
+    tampered = replace(other, scene=other.scene.updated({key: value}))
+    assert "force_residual is" in complaint(tampered, other.rest)
+
+
+def test_sides_that_are_not_the_scenes_are_found(other):
+    packing = replace(other.problem.packing, periodic=False)
+    tampered = replace(other, problem=replace(other.problem, packing=packing))
+    assert check(tampered, other.rest).force_residual > 0.1
+
+
+def test_disks_in_flight_are_found(other):
+    """A pair that hangs in the air in contact is in flight too; at rest, nothing is."""
+    rest = other.rest
+    assert check(other, rest).in_flight == 0
+    high = rest.position + np.array([0.0, 5.0])
+    found = check(other, replace(rest, position=high))
+    assert found.in_flight > 1
+    settled = replace(rest, position=high, reached=replace(rest.reached, settled=True))
+    assert anachronism(other, settled, found, 0.0).endswith("in flight, said to be at rest")
+
+
+def test_a_fall_that_took_no_time_is_found():
+    falling = {"packing__polydispersity": 0.2, "packing__lattice_constant": "touching-largest"}
+    solution = solve_scene(scene(contact__friction=0.2, protocol__time_step="auto", loads=[], **falling))
+    rest = solution.rest
+    assert rest.reached.steps
+    assert anachronism(solution, rest, check(solution, rest), 0.0) == ""
+    short = replace(rest, reached=replace(rest.reached, steps=1, more_relaxations=None))
+    early = replace(solution, rest=short)
+    assert "said to have fallen by" in anachronism(early, short, check(solution, rest), 0.0)
+
+
+def test_another_load_factor_than_was_asked_for_is_found(solution):
+    (state,) = solution.loaded
+    found = check(solution, state)
+    assert anachronism(solution, state, found, 1.0) == ""
+    assert "said to be at rest" in anachronism(solution, state, found, 2.0)
+    moving = replace(state, reached=replace(state.reached, settled=False))
+    assert anachronism(solution, moving, found, 2.0) == ""

@@ -15,15 +15,33 @@ from granular_response.state import OPEN, FloatArray, State
 
 #: Inward normals of floor, left and right wall.
 _NORMALS = np.array([[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
+#: Force (mean disk weights) that moves a disk which nothing holds.
+FALLS = 1e-6
 
 
 @dataclass(frozen=True)
 class ContactRule:
-    """Static contact law: stiffnesses in weights per radius, coefficient of friction (0: no tangential force)."""
+    """Static contact law: stiffnesses in weights per radius, coefficient of friction (0: no tangential force).
+
+    ``power`` 3/2 is the law of Hertz, ``normal_stiffness`` then the one at a force of one mean disk weight between
+    bodies of the reduced radius ``reference``.
+    """
 
     normal_stiffness: float
     tangential_stiffness: float
     friction: float
+    power: float = 1.0
+    reference: float = 1.0
+
+    def normal_force(self, overlap: FloatArray, reduced_radius: FloatArray) -> FloatArray:
+        """Forces at ``overlap`` > 0, of any shape.
+
+        From f = A xi^(3/2) and df/dxi = k at f = 1 follows A = (2 k / 3)^(3/2).
+        """
+        if self.power == 1.0:
+            return self.normal_stiffness * overlap
+        factor = (self.normal_stiffness / self.power) ** self.power
+        return factor * np.sqrt(reduced_radius / self.reference) * overlap**self.power
 
 
 @dataclass(frozen=True)
@@ -33,7 +51,8 @@ class Audit:
     ``force_residual``, ``torque_residual``: largest on any disk. ``coulomb_excess``: largest ``|f_t| - mu f_n`` of a
     closed contact. ``force_mismatch``: largest difference between a recorded contact force and the one found here.
     ``unlisted``: closed contacts that the state does not list. ``stale_springs``: open contacts that kept a spring.
-    ``escaped``: disks with their centre outside of the box.
+    ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out of balance that no chain of
+    contacts joins to a wall.
     """
 
     force_residual: float
@@ -43,6 +62,7 @@ class Audit:
     unlisted: int
     stale_springs: int
     escaped: int
+    in_flight: int
 
 
 def audit(
@@ -53,6 +73,8 @@ def audit(
     pair: ContactRule,
     wall: ContactRule,
     load: FloatArray,
+    *,
+    periodic: bool = False,
 ) -> Audit:
     """Check a static state.
 
@@ -60,9 +82,10 @@ def audit(
     ----------
     state : positions, springs, and the recorded forces to compare with.
     radius, mass : (n,).
-    width : distance of the side walls.
+    width : distance of the side walls, or the period.
     pair, wall : laws of the contacts between disks and with walls.
     load : (n, 3) external force and torque on each disk, gravity left out.
+    periodic : x and x + width are the same place, and there are no side walls.
     """
     n = len(radius)
     x = state.position
@@ -76,12 +99,14 @@ def audit(
     spring, recorded, listed = _tables(state, n)
     i, j = np.triu_indices(n, 1)
     d = x[i] - x[j]
+    if periodic:  # the nearest of the images
+        d[:, 0] -= width * np.floor(d[:, 0] / width + 0.5)
     distance = np.hypot(d[:, 0], d[:, 1])
     overlap = radius[i] + radius[j] - distance
     touch = overlap > 0
     i, j, d, overlap, distance = i[touch], j[touch], d[touch], overlap[touch], distance[touch]
     normal = d / distance[:, None]
-    fn = pair.normal_stiffness * overlap
+    fn = pair.normal_force(overlap, radius[i] * radius[j] / (radius[i] + radius[j]))
     ft = -pair.tangential_stiffness * spring[i, j] if pair.friction > 0 else np.zeros(len(i))
     _add(total, i, normal, fn, ft, radius, 1.0)
     _add(total, j, normal, fn, ft, radius, -1.0)
@@ -99,9 +124,11 @@ def audit(
     wall_spring[c.first, c.second] = c.spring
     wall_recorded[c.first, c.second] = np.stack([c.normal_force, c.tangential_force], axis=1)
     wall_listed[c.first, c.second] = True
-    for side, gap in enumerate((x[:, 1], x[:, 0], width - x[:, 0])):
+    held = np.zeros(n, bool)
+    for side, gap in enumerate((x[:, 1],) if periodic else (x[:, 1], x[:, 0], width - x[:, 0])):
         k = np.flatnonzero(gap < radius)
-        fn = wall.normal_stiffness * (radius[k] - gap[k])
+        held[k] = True
+        fn = wall.normal_force(radius[k] - gap[k], radius[k])
         ft = -wall.tangential_stiffness * wall_spring[k, side] if wall.friction > 0 else np.zeros(len(k))
         _add(total, k, np.broadcast_to(_NORMALS[side], (len(k), 2)), fn, ft, radius, 1.0)
         excess.append(float((np.abs(ft) - wall.friction * fn).max(initial=0.0)))
@@ -111,7 +138,14 @@ def audit(
         mismatch.append(float(np.abs(found - wall_recorded[k, side])[known].max(initial=0.0)))
 
     stale = sum(int(((c.status == OPEN) & (c.spring != 0)).sum()) for c in (state.pairs, state.walls))
-    outside = (x[:, 0] < 0) | (x[:, 0] > width) | (x[:, 1] < 0) | ~np.isfinite(x).all(axis=1)
+    outside = (x[:, 1] < 0) | ~np.isfinite(x).all(axis=1)
+    if not periodic:
+        outside |= (x[:, 0] < 0) | (x[:, 0] > width)
+    reached = -1
+    while held.sum() > reached:  # from disk to disk along closed contacts
+        reached = int(held.sum())
+        both = held[i] | held[j]
+        held[i[both]] = held[j[both]] = True
     turning = pair.friction > 0 or wall.friction > 0
     return Audit(
         force_residual=float(np.abs(total[:, :2]).max()),
@@ -121,6 +155,7 @@ def audit(
         unlisted=unlisted,
         stale_springs=stale,
         escaped=int(outside.sum()),
+        in_flight=int((~held & (np.abs(total[:, :2]).max(axis=1) > FALLS)).sum()),
     )
 
 

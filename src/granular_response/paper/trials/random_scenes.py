@@ -2,7 +2,7 @@
 
 A scene is drawn from the whole of what a scene file may say: packing, contact law, walls, loads, method and
 integrator. It has one of the outcomes of :data:`OUTCOMES`; ``wrong`` is a result that the audit contradicts or an
-error that a user would not understand, and must never happen.
+error that a user would not understand, and must never happen. A sample is compared with its twins.
 """
 
 from __future__ import annotations
@@ -19,13 +19,21 @@ from granular_response.paper.trials.audit import Audit, ContactRule, audit
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Solution, solve_scene
 from granular_response.solve.choice import finishes_statically
-from granular_response.state import State
+from granular_response.state import FLOOR, State
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
 #: is left. The others are errors of one line: which, is stored beside.
 OUTCOMES = ("certified", "uncertified", "not settled", "no equilibrium", "time step refused", "scene refused", "wrong")
 #: Largest unbalanced force of a certified state, and largest excess over Coulomb's limit (mean disk weights).
 BALANCE, COULOMB = 1e-8, 1e-8
+#: One scene in so many is compared with its twin, where both rest states agree within ``SAME_REST`` (mean disk weights)
+#: on the floor: responses are then the same within ``TWINS`` of the load.
+TWIN_EVERY, SAME_REST, TWINS = 4, 1e-6, 1e-4
+#: Stiffnesses (weights per radius) from soft to nearly rigid.
+STIFFNESS = ((1.0, 1e2), (1e2, 1e4), (1e4, 1e6), (1e6, 1e9))
+METHODS = ("auto", "dynamics", "path", "minimise", "stages")
+#: Least time of a fall over that of the closed form.
+FALL_ROOM = 0.9
 
 _ERRORS = {
     "NotSettled": "not settled",
@@ -53,6 +61,7 @@ class Trial:
     force_residual: float
     torque_residual: float
     coulomb_excess: float
+    twin_difference: float = float("nan")  #: largest difference of floor responses, over the load
 
 
 def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, Any], np.ndarray | None]:
@@ -65,32 +74,40 @@ def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, 
         table, width = _heap(g)
         packing = {"kind": "file", "path": "packing.csv", "width": width}
     else:
-        packing = {"kind": kind, "layers": int(g.integers(2, 6 if kind == "slab" else 5))}
+        packing = {"kind": kind, "layers": int(g.integers(1, 6 if kind == "slab" else 5))}
         if kind == "slab":
             packing["disks_per_row"] = int(g.integers(3, 12))
         packing["polydispersity"] = float(g.choice([0.0, 0.0, 1e-3, 0.05, 0.25, 0.5]))
         packing["lattice_constant"] = [2.0, 2.0, "touching-largest"][g.integers(3)]
         packing["seed"] = int(g.integers(1000))
+    if kind != "pile" and g.random() < 0.2:
+        packing["sides"] = "periodic"
+        if kind == "slab":
+            packing["disks_per_row"] = max(packing["disks_per_row"], 5)
     ratio = float(g.choice([0.0, 0.1, 0.5, 0.8, 1.0, 2.0]))
+    stiffness = _log_uniform(g, *STIFFNESS[int(g.choice(4, p=[0.1, 0.6, 0.2, 0.1]))])
     contact = {
-        "normal_stiffness": _log_uniform(g, 1e2, 1e4) if g.random() < 0.8 else _log_uniform(g, 1e4, 1e6),
+        "law": "hertz" if g.random() < 0.2 else "linear",
+        "normal_stiffness": stiffness,
         "stiffness_ratio": ratio,
         "friction": _friction(g),
         "damping_ratio": float(g.choice([0.5, g.uniform(0.1, 2.0), 0.0, 2.0], p=[0.7, 0.24, 0.02, 0.04])),
     }
     wall: dict[str, Any] = {"friction": _friction(g)}
     if g.random() < 0.3:
-        wall["normal_stiffness"] = contact["normal_stiffness"] * _log_uniform(g, 0.2, 5.0)
+        wall["normal_stiffness"] = stiffness * _log_uniform(g, 0.2, 5.0)
     if table is None:
-        disks = Scene.from_dict({"packing": packing, "loads": []}).packing.build().n
+        walled = {key: value for key, value in packing.items() if key != "sides"}
+        disks = Scene.from_dict({"packing": walled, "loads": []}).packing.build().n
     else:
         disks = len(table)
     turns = max(contact["friction"], wall["friction"]) > 0 or g.random() < 0.1
     loads = [_load(g, disks, turns) for _ in range(int(g.choice([0, 0, 1, 1, 1, 2])))]
     protocol = {
-        "method": str(g.choice(["auto", "auto", "dynamics", "path", "minimise"], p=[0.4, 0.2, 0.2, 0.15, 0.05])),
+        "method": str(g.choice(METHODS, p=[0.5, 0.2, 0.15, 0.05, 0.1])),
+        "load_factors": _programme(g),
         "integrator": str(g.choice(["beeman", "verlet", "gear"])),
-        "time_step": "auto" if g.random() < 0.9 else _log_uniform(g, 1e-5, 1e-2),
+        "time_step": ["auto", None, _log_uniform(g, 1e-7, 1e-2)][int(g.choice(3, p=[0.8, 0.1, 0.1]))],
         "ramp_time": float(g.choice([0.0, 1.0, 5.0])),
         "stop_kinetic_energy": float(g.choice([1e-9, 1e-11, 1e-13])),
         "stop_rule": str(g.choice(["instantaneous", "instantaneous", "envelope"])),
@@ -99,7 +116,7 @@ def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, 
         "tensile_dashpot": bool(g.random() < 0.8),
         "maximum_steps": maximum_steps,
     }
-    gravity = str(g.choice(["at-once", "slow", "frictionless"], p=[0.8, 0.1, 0.1]))
+    gravity = str(g.choice(["at-once", "slow", "frictionless"], p=[0.7, 0.15, 0.15]))
     preparation = {"gravity": gravity, "ramp_time": 5.0}
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
@@ -107,6 +124,16 @@ def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, 
 
 def _log_uniform(g: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(g.uniform(np.log(low), np.log(high))))
+
+
+def _programme(g: np.random.Generator) -> list[float]:
+    """Load factors: mostly one, else growing, or any: falling, zero and repeated ones, and sometimes a reversal."""
+    kind = int(g.choice(3, p=[0.6, 0.2, 0.2]))
+    if kind == 0:
+        return [1.0]
+    if kind == 1:
+        return sorted(float(f) for f in g.uniform(0.1, 1.5, 3))
+    return [float(f) for f in g.choice([0.0, 0.25, 0.5, 1.0, 1.0, 1.5, -0.25], int(g.integers(2, 6)))]
 
 
 def _friction(g: np.random.Generator) -> float:
@@ -144,23 +171,30 @@ def run(maximum_steps: int, entropy: int, index: int) -> Trial:
     """Draw, solve and check scene ``index`` of the sequence that ``entropy`` seeds."""
     generator = np.random.default_rng(np.random.SeedSequence(entropy, spawn_key=(index,)))
     description, table = draw(generator, maximum_steps)
-    factors = [1.0] if generator.random() < 0.7 else sorted(float(f) for f in generator.uniform(0.1, 1.5, 3))
     with tempfile.TemporaryDirectory() as folder:
         if table is not None:
-            with Path(folder, "packing.csv").open("w", newline="") as stream:
-                csv.writer(stream).writerows([("x", "z", "radius"), *table.tolist()])
-        return attempt(description, factors, folder)
+            write_table(Path(folder, "packing.csv"), table)
+        return attempt(description, folder, twin=index % TWIN_EVERY == 0)
 
 
-def attempt(description: dict[str, Any], factors: list[float], folder: str) -> Trial:
-    """Solve a scene and check what comes out."""
+def write_table(path: Path, table: np.ndarray) -> None:
+    """Disks (n, 3) as a table that a scene reads: x, z, radius."""
+    with path.open("w", newline="") as stream:
+        csv.writer(stream).writerows([("x", "z", "radius"), *table.tolist()])
+
+
+def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> Trial:
+    """Solve a scene and check what comes out; ``twin``: compare it with its twin too."""
     states: list[State] = []
     checks: list[Audit] = []
     outcome, message = "certified", ""
     disks = 0
+    difference = float("nan")
     try:
         scene = Scene.from_dict(description, folder=folder)
-        solution = solve_scene(scene, load_factors=factors)
+        solution = solve_scene(scene)
+        if twin and description["packing"]["kind"] != "file":
+            difference = twin_difference(description, solution, folder)
     except (SceneError, *SOLVE_ERRORS) as error:
         outcome, message = _ERRORS[type(error).__name__], str(error)
         if not message or "\n" in message:
@@ -171,8 +205,9 @@ def attempt(description: dict[str, Any], factors: list[float], folder: str) -> T
         disks = solution.problem.n
         states = [solution.rest, *solution.loaded]
         checks = [check(solution, state) for state in states]
-        for state, found in zip(states, checks, strict=True):
-            wrong = contradiction(state, found, rounding_of(solution))
+        asked = [0.0, *scene.protocol.load_factors]
+        for state, found, factor in zip(states, checks, asked, strict=False):
+            wrong = contradiction(state, found, rounding_of(solution)) or anachronism(solution, state, found, factor)
             if wrong:
                 outcome, message = "wrong", wrong
                 break
@@ -181,6 +216,8 @@ def attempt(description: dict[str, Any], factors: list[float], folder: str) -> T
                 outcome = "uncertified"
         if outcome == "uncertified" and finishes_statically(solution.problem):
             outcome, message = "wrong", "a state that is not certified"
+        if difference > TWINS:
+            outcome, message = "wrong", f"the response of the twin differs by {difference:.3g} of the load"
 
     def worst(name: str) -> float:
         return max((float(getattr(found, name)) for found in checks), default=float("nan"))
@@ -189,6 +226,7 @@ def attempt(description: dict[str, Any], factors: list[float], folder: str) -> T
         outcome, message, description["packing"]["kind"], description["protocol"]["method"],
         description["protocol"]["integrator"], description["contact"]["friction"], disks, len(states),
         worst("force_residual"), worst("torque_residual"), worst("coulomb_excess"),
+        difference,
     )  # fmt: skip
 
 
@@ -200,17 +238,99 @@ def check(solution: Solution, state: State) -> Audit:
     for disk, one in zip(solution.problem.load_disk, scene.loads, strict=False):
         load[disk] += state.load_factor * np.array([*one.force, one.torque])
 
-    def rule(law) -> ContactRule:
+    def rule(law, reference: float) -> ContactRule:
         friction = law.friction if law.stiffness_ratio > 0 else 0.0
-        return ContactRule(law.normal_stiffness, law.stiffness_ratio * law.normal_stiffness, friction)
+        power = 1.5 if law.law == "hertz" else 1.0
+        tangential = law.stiffness_ratio * law.normal_stiffness
+        return ContactRule(law.normal_stiffness, tangential, friction, power, reference)
 
-    return audit(state, packing.radius, packing.mass, packing.width, rule(scene.contact), rule(wall), load)
+    # reduced radii of two mean disks, and of one at a wall
+    pair, wall_rule = rule(scene.contact, 0.5), rule(wall, 1.0)
+    return audit(
+        state, packing.radius, packing.mass, packing.width, pair, wall_rule, load, periodic=packing.periodic
+    )  # fmt: skip
 
 
 def rounding_of(solution: Solution) -> float:
     """Force that a last digit of a position is worth: solvers know displacements, an audit only their sums."""
-    stiffest = max(solution.problem.pair_law.normal_stiffness, solution.problem.wall_law.normal_stiffness)
-    return 16.0 * np.finfo(float).eps * stiffest * float(solution.problem.packing.position.max())
+    scene, states = solution.scene, (solution.rest, *solution.loaded)
+    stiffest = max(scene.contact.normal_stiffness, scene.resolved_wall.normal_stiffness)
+    if scene.contact.law == "hertz":  # stiffer under more than a weight, and between large disks
+        largest = max(float(c.normal_force.max(initial=1.0)) for s in states for c in (s.pairs, s.walls))
+        stiffest *= 2.0 * max(1.0, largest) ** (1.0 / 3.0)
+    far = max(float(np.abs(s.position).max()) for s in states)
+    return 16.0 * np.finfo(float).eps * stiffest * max(far, float(solution.problem.packing.position.max()))
+
+
+def anachronism(solution: Solution, state: State, found: Audit, factor: float) -> str:
+    """What a state claims to be that its history rules out; empty if nothing.
+
+    ``factor`` : load factor that was asked for. A state at rest has it, and no disk of it is in flight. Nothing but
+    gravity pulls the centre of mass down, so its fall to the rest state takes ``sqrt(2 h / g)`` at least; friction
+    of the side walls and dashpots that pull are left some room.
+    """
+    reached = state.reached
+    if reached.settled is not False and state.load_factor != factor:
+        return f"load factor {state.load_factor:.17g} in place of {factor:.17g}, said to be at rest"
+    if found.in_flight and (reached.settled or state.certificate.stable):
+        return f"{found.in_flight} disks in flight, said to be at rest"
+    if state is solution.rest and reached.settled and reached.steps is not None and reached.time_step is not None:
+        packing = solution.problem.packing
+        fall = float(packing.mass @ (packing.position - state.position)[:, 1]) / packing.n
+        passed = reached.steps * reached.time_step
+        if passed < FALL_ROOM * np.sqrt(2.0 * max(fall, 0.0)) and not reached.more_relaxations:
+            return f"said to have fallen by {fall:.3g} within a time of {passed:.3g}"
+    return ""
+
+
+def twin_difference(description: dict[str, Any], solution: Solution, folder: str) -> float:
+    """Largest difference of floor responses between a scene and its twin, over the load; NaN if not comparable.
+
+    Both are tables of the scene's disks; the twin's are mirrored, in another order and another unit of length. Where
+    the motion ends elsewhere for a last digit, at rest or across a crossing, there is nothing to compare.
+    """
+    packing, scene = solution.problem.packing, solution.scene
+    if not solution.loaded:
+        return float("nan")
+    order = np.random.default_rng(packing.n).permutation(packing.n)
+    place = np.argsort(order)
+    table = np.column_stack([packing.position, packing.radius])
+    mirrored = np.column_stack([packing.width - packing.position[:, 0], packing.position[:, 1], packing.radius])
+    unit = 3.75
+    solved = []
+    for disks, width, where, sign in (
+        (table, packing.width, np.arange(packing.n), 1.0),
+        (unit * mirrored[order], unit * packing.width, place, -1.0),
+    ):
+        write_table(Path(folder, "twin.csv"), disks)
+        sides = "periodic" if packing.periodic else "walls"
+        loads = [
+            {"disk": int(where[disk]), "force": [sign * load.force[0], load.force[1]], "torque": sign * load.torque}
+            for disk, load in zip(solution.problem.load_disk, scene.loads, strict=True)
+        ]
+        file = {"kind": "file", "path": "twin.csv", "width": float(width), "sides": sides}
+        try:
+            solved.append(solve_scene(Scene.from_dict(description | {"packing": file, "loads": loads}, folder=folder)))
+        except (SceneError, *SOLVE_ERRORS):
+            return float("nan")
+    one, other = solved
+    both = [(one.rest, other.rest), *zip(one.loaded, other.loaded, strict=True)]
+    if any(not state.certificate.stable or state.reached.crossings for pair in both for state in pair):
+        return float("nan")
+    floor = [(_floor(a), _floor(b)[place]) for a, b in both]
+    if np.abs(floor[0][0] - floor[0][1]).max() > SAME_REST:
+        return float("nan")
+    response = max(np.abs((a - floor[0][0]) - (b - floor[0][1])).max() for a, b in floor[1:])
+    largest = max(abs(factor) for factor in scene.protocol.load_factors)
+    size = largest * sum(float(np.hypot(*load.force)) + abs(load.torque) for load in scene.loads)
+    return float(response) / size if size > 0.0 else float("nan")
+
+
+def _floor(state: State) -> np.ndarray:
+    """(n,) force of the floor on each disk."""
+    walls = state.walls
+    on_floor = walls.second == FLOOR
+    return np.bincount(walls.first[on_floor], walls.normal_force[on_floor], len(state.position))
 
 
 def contradiction(state: State, found: Audit, rounding: float) -> str:

@@ -177,7 +177,7 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     outcomes.tick_params(axis="y", length=0.0)
     outcomes.set_xlabel("random scenes")
     certified = study["force_residual"].values[code == 0]
-    bins = np.logspace(-16, -6, 41)
+    bins = np.logspace(-16, -3, 53)
     residuals.hist(np.maximum(certified, 1e-16), bins=bins, color=style.SKY)
     residuals.axvline(1e-9, color=style.MUTED, linewidth=0.8, linestyle="--")
     residuals.set_xscale("log")

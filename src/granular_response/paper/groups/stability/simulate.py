@@ -321,6 +321,7 @@ def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
             "force_residual": "largest unbalanced force, summed anew from positions, in mean disk weights",
             "torque_residual": "largest unbalanced torque",
             "coulomb_excess": "largest friction force beyond Coulomb's limit",
+            "twin_difference": "largest difference of floor responses to the mirrored twin, over the load",
         }
         dataset = xr.Dataset(
             {
@@ -331,7 +332,7 @@ def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
         words = {
             "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
             "kind": (("slab", "pile", "file"), "packing"),
-            "method": (("auto", "dynamics", "path", "minimise"), "method asked for"),
+            "method": (random_scenes.METHODS, "method asked for"),
             "integrator": (("beeman", "verlet", "gear"), "integrator"),
         }
         for name, (values, text) in words.items():
