@@ -7,7 +7,8 @@ import pytest
 from small_scenes import scene
 
 from granular_response.paper.trials.random_scenes import anachronism, check, contradiction, rounding_of
-from granular_response.solve import Solution, solve_scene
+from granular_response.scene import Scene
+from granular_response.solve import PathError, Solution, solve_scene
 from granular_response.state import OPEN, SLIDING, Contacts, Reached
 
 
@@ -181,3 +182,17 @@ def test_another_load_factor_than_was_asked_for_is_found(solution):
     assert "said to be at rest" in anachronism(solution, state, found, 2.0)
     moving = replace(state, reached=replace(state.reached, settled=False))
     assert anachronism(solution, moving, found, 2.0) == ""
+
+
+def test_steps_that_run_out_within_a_ramp_give_no_state_at_its_end():
+    """A path that dynamics crosses: it had brought a part of the load only, and was taken for the whole."""
+    packing = {"kind": "slab", "layers": 1, "disks_per_row": 3, "polydispersity": 0.25}
+    packing |= {"lattice_constant": "touching-largest", "seed": 431}
+    row = {
+        "packing": packing,
+        "contact": {"normal_stiffness": 4e8, "friction": 0.0},
+        "loads": [{"disk": "top-centre", "force": [-0.07, -0.28]}],
+        "protocol": {"method": "path", "time_step": "auto", "ramp_time": 5.0, "maximum_steps": 8000},
+    }
+    with pytest.raises(PathError, match="did not come to rest under load factor 1 within"):
+        solve_scene(Scene.from_dict(row))

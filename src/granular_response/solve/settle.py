@@ -105,7 +105,8 @@ def settle(
     why = ""
     for attempt in range(1, how.tries + 1):
         left = settled.reached.kinetic_energy or 0.0
-        if not settled.reached.settled and left > how.nearly * energy:
+        # steps that run out within a ramp leave another load than the one that is asked for
+        if not settled.reached.settled and (left > how.nearly * energy or settled.load_factor != load[1]):
             break
         try:
             found = _statics(problem, settled, how)
