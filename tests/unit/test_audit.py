@@ -194,5 +194,5 @@ def test_steps_that_run_out_within_a_ramp_give_no_state_at_its_end():
         "loads": [{"disk": "top-centre", "force": [-0.07, -0.28]}],
         "protocol": {"method": "path", "time_step": "auto", "ramp_time": 5.0, "maximum_steps": 8000},
     }
-    with pytest.raises(PathError, match="did not come to rest under load factor 1 within"):
+    with pytest.raises(PathError, match="did not come to rest under load factor"):
         solve_scene(Scene.from_dict(row))
