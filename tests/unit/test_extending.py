@@ -1,7 +1,11 @@
 """The recipes of docs/extending.md, followed with a law and an integrator that the package does not have."""
 
 import math
+import os
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -56,3 +60,16 @@ def test_an_integrator_of_ones_own(monkeypatch):
     assert 0 < np.abs(ours.position - paper.position).max() < 0.01 * moved
     # an undamped spring: stable up to 2 over the frequency
     assert oscillator_limit("leapfrog", 400.0, 0.0) == pytest.approx(0.1, rel=2e-2)
+
+
+def test_what_comes_from_elsewhere_does_not_trouble_other_processes(tmp_path):
+    """Machine code for it is not kept: a process without its module could not read the list of what is."""
+    ours = Path(__file__).parent
+    script = "import test_extending as t; p = t.problem(0.0); t.minimise(p, p.bare_state())"
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": os.environ.get("PYTHONPATH", "")}
+    small = {"packing": {"kind": "slab", "layers": 2, "disks_per_row": 5}, "contact": {"friction": 0.0}}
+    plain = f"import granular_response as gr; gr.solve({small})"
+    for code, folder in ((script, ours), (plain, tmp_path)):
+        run = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True)
+        assert run.returncode == 0, run.stderr
+    assert list(tmp_path.rglob("*.nbi"))

@@ -6,7 +6,8 @@ import xarray as xr
 from small_scenes import scene
 from test_cli import call
 
-from granular_response.solve import solve_scene
+from granular_response.scene import Scene
+from granular_response.solve import certify, solve_scene
 from granular_response.solve.timestep import resolve_time_step
 from granular_response.store.result import solution_from, to_dataset
 
@@ -66,3 +67,13 @@ def test_a_time_step_that_is_left_out_is_one_that_works_and_the_result_says_whic
     if step is None and not stiff.protocol.time_step:
         assert taken < 5e-4
         assert np.isfinite(data["floor_force"].values).all()
+
+
+def test_a_path_from_a_start_that_is_not_in_balance_begins_with_an_equilibrium():
+    """Dynamics alone stops with something left; a first load factor of 0 returned that as certified."""
+    packing = {"layers": 4, "disks_per_row": 9}
+    protocol = {"method": "path", "static_finish": False, "stop_kinetic_energy": 1e-6, "load_factors": [0.0, 0.1]}
+    solution = solve_scene(Scene().updated({"packing": packing, "protocol": protocol}))
+    residuals = [state.certificate.force_residual for state in solution.loaded]
+    assert max(residuals) < 1e-9
+    assert certify(solution.problem, solution.rest).force_residual > 1e-6

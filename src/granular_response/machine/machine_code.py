@@ -34,9 +34,31 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     if folder is not None:
         nb.config.CACHE_DIR = str(folder)  # asked for when a function is decorated, so others keep their own
     try:
-        return nb.njit(cache=folder is not None, error_model="numpy", _nrt=False, **options)(function)
+        compiled = nb.njit(cache=folder is not None, error_model="numpy", _nrt=False, **options)(function)
     finally:
         nb.config.CACHE_DIR = before
+    if folder is not None and hasattr(compiled, "_cache"):  # not with compilation off
+        _keep_own_types_alone(compiled._cache)
+    return compiled
+
+
+def _keep_own_types_alone(kept: Any) -> None:
+    """Code for a law or an integrator from elsewhere is not kept: a process that lacks it could not read the index."""
+    save = kept.save_overload
+
+    def save_own(arguments: Any, data: Any) -> None:
+        if all(map(_is_own, arguments)):
+            save(arguments, data)
+
+    kept.save_overload = save_own
+
+
+def _is_own(kind: Any) -> bool:
+    """Whether a type, with its parts, is Numba's or of a class of this package."""
+    made_by = getattr(kind, "instance_class", None)
+    if made_by is not None and made_by.__module__.partition(".")[0] != __name__.partition(".")[0]:
+        return False
+    return all(map(_is_own, getattr(kind, "types", ())))
 
 
 @cache

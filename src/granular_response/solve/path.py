@@ -43,6 +43,8 @@ CROSSING = 0.1
 STABILITY_STEP = 1.0
 #: Factorisations that statics may spend on the load of one look; after that dynamics is the cheaper way.
 MOST_WORK = 1000
+#: Unbalanced force (mean disk weights), beside so many units of rounding of an overlap, up to which a start is at rest.
+BALANCED, ROUNDING = 1e-8, 16.0
 #: Displacement after which an equilibrium that was displaced a little counts as left.
 LEFT = 2e-5
 
@@ -152,6 +154,7 @@ class _Path:
         self.stable_known, self.stable_trial = self.known, self.trial
 
     def states(self, factors: Sequence[float]) -> list[State]:
+        self._balance()
         results = []
         for target in factors:
             while self.factor != target:
@@ -161,6 +164,22 @@ class _Path:
             results.append(self._state())
             self._restart(results[-1])
         return results
+
+    def _balance(self) -> None:
+        """A start that dynamics alone has left nearly at rest: go to the equilibrium beside it."""
+        external = external_force(self.problem, self.factor)
+        rounding = ROUNDING * float(np.finfo(float).eps) * self.problem.stiffness
+        if float(np.abs(self.trial.contact_force + external).max(initial=0.0)) < BALANCED + rounding:
+            return
+        found = solve_increment(self.system, self.known, external, self.known.q, self.record.work)
+        if found is None:
+            raise PathError(
+                f"no equilibrium beside the start at load factor {self.factor:g}: it is not at rest; "
+                "take a smaller protocol.stop_kinetic_energy, or protocol.static_finish: true"
+            )
+        self.known, self.trial = found.configuration, found
+        self.stable_known, self.stable_trial = self.known, self.trial
+        self._look_at_stability()
 
     def _advance(self, target: float) -> None:
         """One increment towards ``target``, by statics or across the end of a branch by dynamics."""
