@@ -31,8 +31,14 @@ names = st.text(min_size=1).filter(lambda text: text.isprintable() and text.stri
 
 def carried(data):
     """A scene without torques that nothing could balance."""
-    frictions = data.get("contact", {}).get("friction", 0.2), data.get("wall", {}).get("friction", 0.0)
-    if "loads" in data and not any(frictions):
+    contact, wall = data.get("contact", {}), data.get("wall", {})
+    ratio = contact.get("stiffness_ratio", 0.8)
+    wall_ratio = wall.get("stiffness_ratio")
+    rubs = (
+        contact.get("friction", 0.2) * ratio > 0.0
+        or wall.get("friction", 0.0) * (ratio if wall_ratio is None else wall_ratio) > 0.0
+    )
+    if "loads" in data and not rubs:
         data["loads"] = [{key: value for key, value in load.items() if key != "torque"} for load in data["loads"]]
     return data
 

@@ -140,8 +140,8 @@ def test_the_code_of_the_tutorial_runs(tmp_path, monkeypatch):
     names: dict = {}
     exec(compile(second, "tutorial 2", "exec"), names)
     assert (tmp_path / "response.png").stat().st_size > 1000
-    assert (tmp_path / "forces.png").stat().st_size > 1000
-    low, _, high = names["result"]["floor_response"].values
+    assert (tmp_path / "contacts.png").stat().st_size > 1000
+    low, _, high = names["result"].to_dataset()["floor_response"].values
     middle = len(low) // 2
     assert low.argmax() == middle  # one peak becomes two, as the text says
     assert high[middle] < 0.9 * high.max()
