@@ -7,8 +7,11 @@ import pytest
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import Linear
+from granular_response.scene import SceneError
 from granular_response.solve import Problem
 from granular_response.solve.problem import carry_springs, static_contacts
+from granular_response.solve.system import StaticSystem
+from granular_response.state import FLOOR
 
 
 def test_relisting_carries_every_spring():
@@ -99,3 +102,22 @@ def test_slots_of_no_listed_pair_have_no_reach():
     empty = np.setdiff1d(np.arange(c.slots), c.slot)
     assert len(empty) and not c.reach[empty].any()
     assert np.array_equal(c.reach[c.slot], problem.packing.radius[c.first] + problem.packing.radius[c.second])
+
+
+def test_a_wall_that_is_met_and_not_listed_is_noticed():
+    """A path looked at pairs alone, so soft disks could pass a wall."""
+    problem, state = free_disks([[10.0, 1.0]], width=20.0)
+    system = StaticSystem(problem, state)
+    assert system.wall.tolist() == [FLOOR]
+    q = np.zeros(system.dof)
+    assert not system.meets_unlisted(q)
+    q[0] = -9.5
+    assert system.meets_unlisted(q)
+
+
+@pytest.mark.parametrize("smooth", [{"contact.friction": 0.0}, {"contact.stiffness_ratio": 0.0}])
+def test_a_torque_that_nothing_can_balance_is_refused(smooth):
+    """Without tangential springs there are no rotations, and the torque was dropped."""
+    loads = [{"disk": 3, "force": [0.0, -1.0], "torque": 0.5}]
+    with pytest.raises(SceneError, match=r"loads\[0\]\.torque = 0\.5: must be 0 without friction and tangential"):
+        scene(loads=loads).updated(smooth)
