@@ -1,8 +1,9 @@
-"""What the paper's words mean as numbers: one table, written from the words alone, used by every claim.
+"""What the paper's words mean as numbers: one table, used by every claim.
 
 The paper says "about 20 mg", "almost an order of magnitude", "holds quite well". A verdict needs a bound. These are our
-readings of the words; none is chosen for a claim, and :func:`granular_response.paper.claims.table.sensitivity` says how
-the verdicts move with each bound halved and doubled. Numbers that the paper states itself (1 %, 1e-22) are no words.
+readings of the words, written when an earlier table of values was known; none is chosen for a claim, and
+:func:`granular_response.paper.claims.table.sensitivity` says how the verdicts move with each bound halved and doubled.
+Numbers that the paper states itself (1 %, 1e-22) are no words.
 """
 
 from __future__ import annotations
