@@ -175,6 +175,20 @@ def test_a_fall_that_took_no_time_is_found():
     assert "said to have fallen by" in anachronism(early, short, check(solution, rest), 0.0)
 
 
+def test_a_compression_that_statics_completes_is_no_fall():
+    """A stiff disk on the floor: dynamics stops within the overlap of the rest state, and statics goes the rest."""
+    early = Scene.from_dict(
+        {
+            "packing": {"kind": "pile", "layers": 1, "polydispersity": 0.05, "seed": 453},
+            "contact": {"normal_stiffness": 7.5e7, "damping_ratio": 1.4, "friction": 0.7},
+            "protocol": {"stop_kinetic_energy": 1e-9, "stop_rule": "instantaneous"},
+            "loads": [],
+        }
+    )
+    solution = solve_scene(early)
+    assert anachronism(solution, solution.rest, check(solution, solution.rest), 0.0) == ""
+
+
 def test_another_load_factor_than_was_asked_for_is_found(solution):
     (state,) = solution.loaded
     found = check(solution, state)

@@ -3,7 +3,7 @@
 import pytest
 from small_scenes import scene
 
-from granular_response.scene import SceneError
+from granular_response.scene import Scene, SceneError
 from granular_response.solve import (
     DynamicsError,
     EquilibriumError,
@@ -114,6 +114,24 @@ def test_friction_that_comes_after_gravity_leaves_no_tangential_force():
     for state in (solution.rest, *solution.loaded):
         assert state.certificate.stable
         assert state.certificate.force_residual < 1e-9
+
+
+def test_rows_that_just_touch_stay_up_when_friction_comes():
+    """Contacts without force may open in the last digit; the state that is returned is stable all the same."""
+    packing = {"kind": "slab", "layers": 5, "disks_per_row": 11, "sides": "periodic"}
+    solution = solve_scene(
+        Scene.from_dict(
+            {
+                "packing": packing,
+                "contact": {"normal_stiffness": 102.98014201713849, "damping_ratio": 1.744, "friction": 0.0},
+                "wall": {"friction": 0.7},
+                "preparation": {"gravity": "frictionless"},
+                "protocol": {"integrator": "verlet", "time_step": "auto"},
+                "loads": [],
+            }
+        )
+    )
+    assert solution.rest.certificate.stable
 
 
 def test_disks_that_pass_through_each_other_are_refused():
