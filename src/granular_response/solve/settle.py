@@ -128,7 +128,7 @@ def settle(
             wait *= how.growth
             settled = replace(dynamics.state(), reached=replace(settled.reached, more_relaxations=attempt))
     if settled.reached.settled and why:
-        raise NotSettled(f"the packing is nearly at rest under {what}, but nothing near it is a stable equilibrium{why}")
+        raise NotSettled(f"the packing is nearly at rest under {what}, but finds no stable equilibrium{why}")
     raise NotSettled(not_settled(problem, settled, what) + why)
 
 
