@@ -22,9 +22,7 @@ def problem(friction: float) -> Problem:
     packing = {"layers": 4, "disks_per_row": 9, "lattice_constant": 1.99}
     scene = Scene().updated({"packing": packing, "contact.friction": friction, "protocol.time_step": "auto"})
     made = Problem.from_scene(scene)
-    pair, wall = (
-        Cubic.of(k, 50.0, 0.8 * k, 40.0, mu, -math.inf, 0.5) for k, mu in ((3000.0, friction), (6000.0, 0.0))
-    )
+    pair, wall = (Cubic.of(k, 50.0, 0.8 * k, 40.0, mu, -math.inf, 0.5) for k, mu in ((3000.0, friction), (6000.0, 0.0)))
     if friction == 0.0:
         pair = pair.without_friction()
     return replace(made, pair_law=pair, wall_law=wall.without_friction())

@@ -125,7 +125,6 @@ def test_the_command_line_loads_nothing_heavy():
     assert run.stdout.strip() == "[]"
 
 
-
 def test_only_scenes_ask_for_the_kind_of_a_packing():
     """What others need of a packing is data: its order, its neighbours, a smaller one of its kind."""
     asks = re.compile(r"(?<!\")\bpacking\.kind\b|isinstance\([^)]*(Slab|Pile|Lattice)Packing")

@@ -217,8 +217,10 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     store.write(tmp_path / "phase_diagram.nc", found)
     drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))
     assert list(drawn) == ["fig22_phase_diagram", "five_realizations"]
-    marks = [line for line in drawn["fig22_phase_diagram"].axes[1].get_lines() if line.get_marker() == "s"]
-    assert sorted(y for line in marks for y in line.get_ydata()) == pytest.approx(sorted(force[1:]))
+    lattice, disordered = drawn["fig22_phase_diagram"].axes[2:]  # the row of the larger width
+    for axes, expected in ((lattice, force[:1]), (disordered, force[1:])):
+        marks = [line for line in axes.get_lines() if line.get_marker() == "o"]
+        assert sorted(y for line in marks for y in line.get_ydata()) == pytest.approx(sorted(expected))
     for figure in drawn.values():
         assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")
 

@@ -21,9 +21,7 @@ class Linear(NamedTuple):
         friction: float, least_force: float, reduced_radius: float,
     ) -> Linear:  # fmt: skip
         """The law from its constants (see :class:`.law.Law`); ``reduced_radius`` does not matter."""
-        return cls(
-            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force
-        )
+        return cls(normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force)
 
     def elastic_force(self, overlap, shape):
         return self.normal_stiffness * overlap

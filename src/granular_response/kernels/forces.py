@@ -23,12 +23,14 @@ _BLOCK = 64
 #: Length of the scratch that this takes.
 SCRATCH = 3 * _BLOCK
 
+
 @kernel(forceinline=True)
 def _shape_at(shape, k, like):
     """What the law needs of the bodies from contact ``k`` on; None for a law that needs nothing."""
     if shape is None:
         return None
     return take(shape, k, like)
+
 
 @kernel(forceinline=True)
 def _forces_at(like, i, j, s, n, q, v, rim, spring, shape, pairs, rule, dt):
@@ -52,6 +54,7 @@ def _forces_at(like, i, j, s, n, q, v, rim, spring, shape, pairs, rule, dt):
     put(spring, s, new)
     return px, pz, pt
 
+
 @kernel(forceinline=True)
 def _add(f, n, i, px, pz, pt, spring):
     """Add to the forces on disk ``i``, and the disks after it with lanes."""
@@ -59,6 +62,7 @@ def _add(f, n, i, px, pz, pt, spring):
     put(f, n + i, take(f, n + i, pz) + pz)
     if spring is not None:
         put(f, 2 * n + i, take(f, 2 * n + i, pt) + pt)
+
 
 @kernel
 def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt):
@@ -98,6 +102,7 @@ def _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt):
             pz = take(scratch, _BLOCK + end - start, like)
             pt = take(scratch, 2 * _BLOCK + end - start, like)
             _add(f, n, j + end, -px, -pz, pt, spring)
+
 
 @kernel
 def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rule, dt):
@@ -143,6 +148,7 @@ def _add_single_pairs(start, n, q, v, rim, f, spring, shape, pairs, rule, dt):
         _add(f, n, i, px, pz, pt, spring)
         _add(f, n, j, -px, -pz, pt, spring)
 
+
 # Springs and shapes are arguments of their own, beside the pairs that hold them: only of an argument does the compiler
 # know that it is None.
 @kernel
@@ -162,6 +168,7 @@ def add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rule, dt):
             _add_single_pairs(r, n, q, v, rim, f, spring, shape, pairs, rule, dt)
             break
         _add_run(r, n, q, v, rim, f, spring, shape, pairs, rule, dt)
+
 
 @kernel
 def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
@@ -185,10 +192,12 @@ def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
         elif spring is not None:
             spring[c] = 0.0
 
+
 @kernel
 def forces(q, v, f, gravity, load_factor, dt, model):
     """Fill ``f`` with all forces and torques at ``(q, v)``; springs advance by ``dt``."""
     _fill(q, v, f, gravity, load_factor, dt, model.rim, model.pairs, model.walls, model)
+
 
 @kernel
 def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, model):
@@ -215,6 +224,7 @@ def _fill(q, v, f, gravity, load_factor, dt, rim, pairs, walls, model):
         f[n + i] += load_factor * load[c, 1]
         if rim is not None:
             f[2 * n + i] += load_factor * load[c, 2]
+
 
 @kernel
 def accelerations(q, v, a, gravity, load_factor, dt, model):

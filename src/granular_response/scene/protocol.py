@@ -16,7 +16,6 @@ TimeStep = Annotated[
 PAPERS_TIME_STEP = 5e-4
 
 
-
 LoadFactors = Annotated[
     tuple[Annotated[float, Field(strict=True, allow_inf_nan=False)], ...],
     Field(min_length=1),

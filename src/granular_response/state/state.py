@@ -84,9 +84,7 @@ class State:
 
     def wall_force(self) -> FloatArray:
         """(w, 2) force on ``walls.first``."""
-        return contact_force(
-            wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force
-        )
+        return contact_force(wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force)
 
     def __repr__(self) -> str:
         return (

@@ -13,8 +13,8 @@ from granular_response.scene import Scene
 class Parameters(SceneGroup):
     """Section ``contact_law``."""
 
-    scene: Annotated[
-        Scene, over(UNIT_LOAD, "contact.law", "contact.friction", "loads", "protocol.load_factors")
-    ] = Field(description="Base scene; contact.normal_stiffness is that of the linear law.")
+    scene: Annotated[Scene, over(UNIT_LOAD, "contact.law", "contact.friction", "loads", "protocol.load_factors")] = (
+        Field(description="Base scene; contact.normal_stiffness is that of the linear law.")
+    )
     friction: Coefficients = Field(description="Between disks.")
     forces: Growing = Field(description="In mean disk weights.")

@@ -12,92 +12,139 @@ from numpy.typing import NDArray
 
 from granular_response.plot import style
 
+FloatArray = NDArray[np.float64]
+
 #: Kinds of a crossover, as stored.
 FOUND, BELOW, ABOVE = 0, 1, 2
 #: Levels of the thick and of the thin bar.
 THICK, THIN = (0.16, 0.84), (0.025, 0.975)
-#: Shift along friction that keeps bars of neighbouring polydispersities apart.
-SHIFT = 0.014
+#: Fills of the regions; white is what was not simulated, or where too few packings bear the force.
+TWO_PEAKS, ONE_PEAK = "#C9D3DC", "#EFF2F4"
 
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig22_phase_diagram`` and ``five_realizations`` from the datasets of the study of the same name."""
     crossovers = datasets["crossovers"]
-    usual = crossovers["lattice_constant"].values[0]
-    shown = crossovers.isel(case=np.flatnonzero(crossovers["lattice_constant"].values == usual))
-    force = shown["force"].values[np.isfinite(shown["force"].values)]
-    limits = 0.5 * float(force.min()), 2.5 * float(force.max())
-    widths = shown["width"].values
-    figure, panels = style.figure(1, len(widths), width="double", height=3.1, sharey=True)
-    for index, width in enumerate(widths):
-        axes = panels[0, index]
-        axes.set(xlabel="$\\mu = \\mu^{\\mathrm{wall}}$", yscale="log", ylim=limits)
-        _diagram(axes, shown.isel(width=index), limits)
-        style.letter(axes, "abcdefgh"[index], place="above", text=f"$w = {width:g}\\,\\bar R$")
-    panels[0, 0].set_ylabel("$F_{\\mathrm{ext}}/mg$")
-    panels[0, -1].legend(loc="lower center")
-    for text, x, y in (("two peaks", 0.04, 0.93), ("one peak", 0.58, 0.08)):
-        panels[0, 0].text(x, y, text, transform=panels[0, 0].transAxes, va="center", style="italic")
-    return {"fig22_phase_diagram": figure, "five_realizations": _few(shown, datasets["shapes"])}
+    usual = np.flatnonzero(crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0])
+    shown, shapes = crossovers.isel(case=usual), datasets["shapes"].isel(case=usual)
+    return {"fig22_phase_diagram": _diagrams(shown, shapes), "five_realizations": _few(shown, shapes)}
 
 
-def _diagram(axes: Axes, data: xr.Dataset, limits: tuple[float, float]) -> None:
-    """A line through the crossovers of each polydispersity; open triangles are bounds, pointing to where it is."""
-    deltas = sorted(set(data["polydispersity"].values.tolist()))
-    for index, delta in enumerate(deltas):
-        here = np.flatnonzero(data["polydispersity"].values == delta)
-        here = here[np.argsort(data["friction"].values[here])]
-        friction, force, kind = (data[name].values[here] for name in ("friction", "force", "kind"))
-        at = friction + SHIFT * (index - 0.5 * (len(deltas) - 1))
-        look = style.marked_line(index)
+def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
+    """A row for each smoothing width, a column for each polydispersity."""
+    deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
+    widths = crossovers["width"].values
+    applied = shapes["applied_force"].values
+    limits = 0.2 * float(np.nanmin(applied)), 5.0 * float(np.nanmax(applied))
+    figure, panels = style.figure(
+        len(widths),
+        len(deltas),
+        width="double",
+        height=0.5 + 1.85 * len(widths),
+        sharex=True,
+        sharey=True,
+    )
+    for index, (axes, (width, delta)) in enumerate(
+        zip(panels.ravel(), ((w, d) for w in widths for d in deltas), strict=True)
+    ):
+        here = np.flatnonzero(crossovers["polydispersity"].values == delta)
+        here = here[np.argsort(crossovers["friction"].values[here])]
+        axes.set(yscale="log", ylim=limits, xlim=(-0.07, 1.07))
+        axes.set_xticks([0.0, 0.2, 0.5, 1.0], ["0", "0.2", "0.5", "1"])
+        if delta:
+            ordered = crossovers.sel(width=width).isel(case=np.flatnonzero(crossovers["polydispersity"].values == 0.0))
+            ordered = ordered.sortby("friction")
+            axes.plot(ordered["friction"], ordered["force"], color=style.MUTED, linestyle="--", linewidth=0.7)
+        _diagram(axes, crossovers.sel(width=width).isel(case=here), applied[here], limits)
         name = f"$\\delta = {delta:g}$" if delta else "lattice"
-        found = kind == FOUND
-        axes.plot(at, force, color=look["color"], linestyle=(0, (1.0, 2.0)), linewidth=0.7)  # to the bounds too
-        axes.plot(at[found], force[found], color=look["color"], linestyle="-", linewidth=0.9)
-        axes.plot([], [], **look, label=name)
-        _marks(axes, at, force, kind, look)
-        for (low, high), linewidth in ((THIN, 0.6), (THICK, 1.6)):
-            ends = (data["interval"].sel(level=level).values[here].clip(*limits) for level in (low, high))
-            for x, bottom, top, what in zip(at, *ends, kind, strict=True):
-                if what == FOUND and delta:
-                    axes.plot([x, x], [bottom, top], color=look["color"], linewidth=linewidth, linestyle="-")
+        style.letter(axes, chr(ord("a") + index), place="above", text=f"{name}, $w = {width:g}\\,\\bar R$")
+    for axes in panels[-1]:
+        axes.set_xlabel("$\\mu = \\mu^{\\mathrm{wall}}$")
+    for axes in panels[:, 0]:
+        axes.set_ylabel(style.FORCE)
+    for text, x, y in (("two peaks", 0.06, 0.76), ("one peak", 0.45, 0.42)):
+        panels[0, 0].text(x, y, text, transform=panels[0, 0].transAxes, va="center", style="italic", fontsize=8)
+    return figure
 
 
-def _marks(axes: Axes, at: NDArray[np.float64], force: NDArray[np.float64], kind: NDArray[np.int8], look: dict) -> None:
-    for what, marker in ((FOUND, look["marker"]), (BELOW, "v"), (ABOVE, "^")):
-        here = kind == what
-        face = look["color"] if what == FOUND else "white"
-        axes.plot(
-            at[here],
-            force[here],
-            linestyle="none",
-            marker=marker,
-            markersize=3.5 if what == FOUND else 5.5,
-            markerfacecolor=face,
-            markeredgecolor=look["color"],
-        )
+def _diagram(axes: Axes, data: xr.Dataset, applied: FloatArray, limits: tuple[float, float]) -> None:
+    """The crossovers of one polydispersity with their intervals; an arrow for a bound, to the side where it lies.
+
+    ``data`` holds the cases in the order of friction, ``applied`` (case, step) their forces.
+    """
+    friction, force, kind = (data[name].values for name in ("friction", "force", "kind"))
+    smallest, largest = np.nanmin(applied, axis=1), np.nanmax(applied, axis=1)
+    boundary = np.clip(force, smallest, largest)
+    axes.fill_between(friction, boundary, largest, color=TWO_PEAKS, linewidth=0.0, zorder=0)
+    axes.fill_between(friction, smallest, boundary, color=ONE_PEAK, linewidth=0.0, zorder=0)
+    axes.plot(friction, force, color=style.BLACK, linestyle=(0, (1.0, 2.0)), linewidth=0.7)  # to the bounds too
+    found = kind == FOUND
+    axes.plot(friction[found], force[found], color=style.BLACK, linestyle="-", linewidth=0.9)
+    for levels, linewidth in ((THIN, 0.7), (THICK, 2.4)):
+        low, high = data["interval"].sel(level=list(levels)).transpose("level", ...).values
+        for x, bottom, top in zip(friction, low, high, strict=True):
+            if bottom < top:
+                _bar(axes, x, bottom, top, limits, linewidth)
+    axes.plot(friction[found], force[found], linestyle="none", marker="o", markersize=4.0, color=style.BLACK, zorder=5)
+    for x, bound, what in zip(friction, force, kind, strict=True):
+        if what != FOUND:
+            axes.plot(x, bound, marker="o", markersize=4.0, color=style.BLACK, markerfacecolor="white", zorder=5)
+            factor = 2.2 if what == ABOVE else 1.0 / 2.2
+            arrow = {"arrowstyle": "-|>", "color": style.BLACK, "linewidth": 0.8, "shrinkA": 2.0, "shrinkB": 0.0}
+            axes.annotate("", (x, bound * factor), (x, bound), arrowprops=arrow, annotation_clip=False)
 
 
-def _few(shown: xr.Dataset, shapes: xr.Dataset) -> Figure:
-    """How often the mean of a few realizations has as many peaks as that of all, near the crossover and off it."""
-    figure, panels = style.figure(1, shown.sizes["width"], width="double", height=2.6, sharey=True)
-    deltas = [delta for delta in sorted(set(shown["polydispersity"].values.tolist())) if delta]
-    all_deltas = sorted(set(shown["polydispersity"].values.tolist()))
-    for index, axes in enumerate(panels[0]):
-        data = shown.isel(width=index)
-        for delta in deltas:
-            look = style.marked_line(all_deltas.index(delta))
-            cases = np.flatnonzero((data["polydispersity"].values == delta) & (data["kind"].values == FOUND))
-            for case in cases:
-                force = shapes["applied_force"].values[case] / float(data["force"][case])
-                axes.plot(
-                    force, shapes["few_agree"].values[index, case], **{**look, "linewidth": 0.6, "markersize": 3.5}
+def _bar(axes: Axes, x: float, low: float, high: float, limits: tuple[float, float], linewidth: float) -> None:
+    """An interval in force; an end beyond every simulated force goes to the edge and has an arrow head there."""
+    ends = np.clip([low, high], *limits)
+    axes.plot([x, x], ends, color=style.VERMILION, linewidth=linewidth, linestyle="-", solid_capstyle="butt", zorder=3)
+    for end, edge, marker in ((low, limits[0], "v"), (high, limits[1], "^")):
+        if not np.isfinite(end):
+            axes.plot(x, edge, marker=marker, markersize=5.0, color=style.VERMILION, clip_on=False, zorder=6)
+
+
+def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
+    """How often the mean of a few realizations has as many peaks as that of all, near the crossover and off it.
+
+    A column for each polydispersity, a row for each smoothing width, a line for each friction.
+    """
+    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
+    frictions = sorted(set(crossovers["friction"].values.tolist()))
+    widths = crossovers["width"].values
+    figure, panels = style.figure(
+        len(widths), len(deltas), width="double", height=0.6 + 1.7 * len(widths), sharex=True, sharey=True
+    )
+    drawn = {}
+    for row, width in enumerate(widths):
+        for column, delta in enumerate(deltas):
+            axes = panels[row, column]
+            one = crossovers.sel(width=width)
+            for case in np.flatnonzero((one["polydispersity"].values == delta) & (one["kind"].values == FOUND)):
+                friction = float(one["friction"][case])
+                agree = shapes["few_agree"].sel(width=width).values[case]
+                look = style.marked_line(frictions.index(friction)) | {"linewidth": 0.9}
+                (drawn[friction],) = axes.plot(
+                    shapes["applied_force"].values[case] / float(one["force"][case]), agree, **look
                 )
-            axes.plot([], [], **look, label=f"$\\delta = {delta:g}$")
-        axes.axvline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
-        axes.set(xlabel="force over crossover force", xscale="log", ylim=(0.3, 1.03))
-        style.letter(axes, "abcdefgh"[index], place="above", text=f"$w = {float(data['width']):g}\\,\\bar R$")
-    panels[0, 0].set_ylabel(f"means of {int(shapes.attrs['few'])} that agree with all")
-    panels[0, -1].legend(loc="lower left")
+            axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
+            axes.set(xscale="log", ylim=(0.2, 1.05))
+            style.letter(
+                axes,
+                chr(ord("a") + row * len(deltas) + column),
+                place="above",
+                text=f"$\\delta = {delta:g}$, $w = {width:g}\\,\\bar R$",
+            )
+    for axes in panels[-1]:
+        axes.set_xlabel("force over crossover force")
+    few = int(shapes.attrs["few"])
+    for axes in panels[:, 0]:
+        axes.set_ylabel(f"means of {few} that agree")
+    order = sorted(drawn)
+    figure.legend(
+        [drawn[friction] for friction in order],
+        [f"$\\mu = {friction:g}$" for friction in order],
+        loc="outside upper center",
+        ncols=len(order),
+    )
     return figure
