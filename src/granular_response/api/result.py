@@ -15,6 +15,7 @@ import numpy as np
 
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
+from ..solve.small_loads import influence
 from ..solve.solution import Progress, Solution, continue_solution, solve_scene
 from ..state import Certificate, State
 from ..store import files
@@ -127,10 +128,7 @@ class Result:
         """
         import xarray as xr
 
-        count = len(self.loaded) + 1
-        if not -count <= state < count:
-            raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
-        state %= count
+        state = self._index(state)
         added = state > 0 if added is None else added
         if added and state == 0:
             raise ValueError("added: a load adds nothing to the state at rest, must be False for state 0")
@@ -149,6 +147,58 @@ class Result:
             "stress",
             {"long_name": "stress that the load adds" if added else "stress", "units": "1", "gaussian_width": width},
         )
+
+    def influence(self, *, state: int = -1, sliding: str = "refuse") -> xr.DataArray:
+        """What a small force on any disk adds to the vertical force on each floor disk, exactly in the limit.
+
+        Parameters
+        ----------
+        state : the one that answers: 0 at rest, then one for each load factor; -1 is the last one.
+        sliding : "refuse" a state with contacts at the Coulomb limit, whose answer depends on the direction of the
+            load, or take them to "stick".
+
+        Returns
+        -------
+        Dimensions ``floor_disk``, ``disk`` and ``component``: per unit force along "x" and "z" and, where disks turn,
+        per unit "torque". With ``x`` of the floor disks from the loaded disk, and ``disk_x``, ``disk_z`` of all disks.
+        NaN where nothing bears the load.
+
+        Raises
+        ------
+        IndexError
+            For a state that there is not.
+        ValueError
+            For another ``sliding``.
+        granular_response.solve.EquilibriumError
+            For a state that is not stable, or has contacts at the Coulomb limit where these are refused.
+        """
+        import xarray as xr
+
+        state = self._index(state)
+        solution = self._solution or solution_from(self._data, folder=self._folder)
+        chosen = (solution.rest, *solution.loaded)[state]
+        data = self._data
+        disks = data["floor_disk"].values
+        found = influence(solution.problem, chosen, disks, sliding=sliding)
+        return xr.DataArray(
+            found,
+            {
+                "floor_disk": data["floor_disk"],
+                "x": ("floor_disk", data["x"].values, data["x"].attrs),
+                "disk_x": ("disk", chosen.position[:, 0] - self.origin, {"units": "mean radii"}),
+                "disk_z": ("disk", chosen.position[:, 1], {"units": "mean radii"}),
+                "component": ["x", "z", "torque"][: found.shape[2]],
+            },
+            ("floor_disk", "disk", "component"),
+            "influence",
+            {"long_name": "vertical floor force per small force on a disk", "units": "1"},
+        )
+
+    def _index(self, state: int) -> int:
+        count = len(self.loaded) + 1
+        if not -count <= state < count:
+            raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
+        return state % count
 
     @property
     def origin(self) -> float:

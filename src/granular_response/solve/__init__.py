@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .dynamics import Dynamics, DynamicsError, Relaxation, Stop, relax
     from .energy import minimise
     from .equilibrium import EquilibriumError, certify, finish
+    from .small_loads import influence
     from .path import PathError, PathRecord, follow
     from .problem import Problem
     from .settle import NotSettled
@@ -36,6 +37,7 @@ _HOME = {
     "PathError": "path",
     "PathRecord": "path",
     "follow": "path",
+    "influence": "small_loads",
     "Problem": "problem",
     "NotSettled": "settle",
     "Solution": "solution",
@@ -74,6 +76,7 @@ __all__ = [
     "continue_solution",
     "finish",
     "follow",
+    "influence",
     "loaded_states",
     "minimise",
     "relax",

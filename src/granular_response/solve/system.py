@@ -237,6 +237,11 @@ class StaticSystem:
             self._kept = trial.sense, factor
         return factor
 
+    def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
+        """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
+        factor = self._storage.factor(_transposed(self.tangent(trial, REGULARISATION * self.problem.stiffness)))
+        return factor, _transposed(self.tangent(trial))
+
     def kept_factor(self, trial: Trial) -> Factor | None:
         """The last factorisation of a tangent, when every contact has the same status (and direction of sliding)."""
         if self._kept is None or not np.array_equal(self._kept[0], trial.sense):
@@ -350,6 +355,12 @@ class StaticSystem:
 
 def _symmetric_part(matrix: sp.csc_array) -> sp.csc_array:
     """(K + K^T) / 2 on the same (symmetric) pattern."""
+    data = 0.5 * (matrix.data + _transposed(matrix).data)
+    return sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+
+
+def _transposed(matrix: sp.csc_array) -> sp.csc_array:
+    """K^T on the same (symmetric) pattern."""
     transposed = sp.csc_array(matrix.T)
     transposed.sort_indices()
-    return sp.csc_array((0.5 * (matrix.data + transposed.data), matrix.indices, matrix.indptr), shape=matrix.shape)
+    return transposed

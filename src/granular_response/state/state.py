@@ -86,6 +86,12 @@ class State:
         """(w, 2) force on ``walls.first``."""
         return contact_force(wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force)
 
+    def contact_count(self) -> NDArray[np.intp]:
+        """(n,) closed contacts of each disk, walls included. Two are the least that hold one under gravity."""
+        pairs, walls = self.pairs, self.walls
+        sides = (pairs.first[pairs.touching], pairs.second[pairs.touching], walls.first[walls.touching])
+        return np.bincount(np.concatenate(sides), minlength=len(self.position))
+
     def __repr__(self) -> str:
         return (
             f"State({len(self.position)} disks at load factor {self.load_factor:g}, "

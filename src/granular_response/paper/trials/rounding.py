@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from granular_response.observe.floor import floor_disks, floor_force
-from granular_response.paper.trials.time_steps import contact_count
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states, minimise, rest_state
 from granular_response.solve.equilibrium import finish
@@ -37,7 +36,7 @@ def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
     problem = Problem.from_scene(scene)
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
-    count = contact_count(problem.n, rest)
+    count = rest.contact_count()
     bearing = count >= 2
     # a contact has one force without friction and two with it; each disk has two equations or three
     contacts = rest.pairs.touching.sum() + rest.walls.touching.sum() - count[~bearing].sum()

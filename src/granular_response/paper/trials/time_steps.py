@@ -71,19 +71,12 @@ def kick(problem: Problem, state: State, seed: int, part: float = KICK) -> State
     """The state with random velocities and spins of the disks that bear anything, up to ``part`` of the unit above."""
     generator = np.random.default_rng(seed)
     overlap = float(np.mean(state.pairs.overlap[state.pairs.touching]))
-    size = part * overlap * np.sqrt(problem.stiffness) * (contact_count(problem.n, state) >= 2)
+    size = part * overlap * np.sqrt(problem.stiffness) * (state.contact_count() >= 2)
     return replace(
         state,
         velocity=size[:, None] * generator.uniform(-1.0, 1.0, state.velocity.shape),
         angular_velocity=size * generator.uniform(-1.0, 1.0, problem.n) * problem.rotations,
     )
-
-
-def contact_count(n: int, state: State) -> np.ndarray:
-    """(n,) number of closed contacts of each disk."""
-    pairs, walls = state.pairs, state.walls
-    sides = (pairs.first[pairs.touching], pairs.second[pairs.touching], walls.first[walls.touching])
-    return np.sum([np.bincount(side, minlength=n) for side in sides], axis=0)
 
 
 def outcome(problem: Problem, kicked: State, load: float, integrator: str, step: float, steps: int) -> int:

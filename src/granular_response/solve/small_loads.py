@@ -1,0 +1,86 @@
+"""Every small load at once: what a force on any disk adds to the force on the floor.
+
+A stable state answers a force that is too small to change the status of any contact by ``dq = K^-1 f``, with the
+tangent stiffness K, and the vertical force on a floor disk changes by ``c . dq``, with the row c of its floor contact.
+So the influence of every disk on one floor disk is one solution with the transposed tangent, ``K^T y = c``: as many
+solutions as there are floor disks, whatever the number of loads.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..state import FLOOR, FloatArray, State
+from .equilibrium import EquilibriumError
+from .problem import Problem
+from .system import StaticSystem
+
+#: A contact is at the Coulomb limit when what is left is less than this part of it.
+AT_LIMIT = 1e-9
+
+
+def at_limit(problem: Problem, state: State) -> int:
+    """How many closed contacts are at the Coulomb limit: what they answer depends on the direction of a load."""
+    count = 0
+    for contacts, friction, law in (
+        (state.pairs, problem.pair_friction, problem.pair_law),
+        (state.walls, problem.wall_friction, problem.wall_law),
+    ):
+        if friction:
+            limit = (1.0 - AT_LIMIT) * law.friction * contacts.normal_force
+            count += int((contacts.touching & (np.abs(contacts.tangential_force) >= limit)).sum())
+    return count
+
+
+def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str = "refuse") -> FloatArray:
+    """What a unit force or torque on any disk adds to the vertical floor force, in the limit of small loads.
+
+    Parameters
+    ----------
+    problem : of the state; its loads do not matter.
+    state : a stable state of static equilibrium.
+    disks : (k,) the floor disks.
+    sliding : "refuse" a state with contacts at the Coulomb limit, or let them "stick".
+
+    Returns
+    -------
+    (k, n, freedoms) mean disk weights per mean disk weight along x and z, and per mean disk weight times mean radius
+    for a torque where disks turn. NaN where nothing bears the load: for disks with less than two contacts, and along
+    x where nothing holds the packing as a whole.
+
+    Raises
+    ------
+    ValueError
+        For another ``sliding``.
+    EquilibriumError
+        For a state that is not certified as stable, or that has contacts at the Coulomb limit where these are refused.
+    """
+    if sliding not in ("refuse", "stick"):
+        raise ValueError(f"sliding = {sliding!r}: must be refuse or stick")
+    if not (state.reached.certificate and state.reached.certificate.stable):
+        raise EquilibriumError("the state is not certified as stable: small loads have no small answer")
+    count = at_limit(problem, state)
+    if count and sliding == "refuse":
+        raise EquilibriumError(
+            f"{count} contacts are at the Coulomb limit: the answer to a small load depends on its direction; "
+            "sliding = 'stick' takes them as sticking"
+        )
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    never = np.full(len(system.first), np.inf), np.full(len(system.wall_disk), np.inf)
+    trial = system.trial(known, known.q, never)
+    factor, transposed = system.transposed_factor(trial)
+    n, freedoms = problem.n, problem.freedoms
+    result = np.zeros((len(disks), n, freedoms))
+    for row, disk in enumerate(disks):
+        here = np.flatnonzero((system.wall_disk == disk) & (system.wall == FLOOR))
+        force = np.zeros((freedoms, n))
+        force[:, disk] = trial.wall_tangent[here, 1, :freedoms].sum(axis=0)
+        right = system.interleave(force.ravel())
+        y = factor.solve(right)
+        y += factor.solve(right - transposed @ y)  # the tangent was held by a tiny stiffness
+        result[row] = system.deinterleave(y).reshape(freedoms, n).T
+    result[:, state.contact_count() < 2] = np.nan
+    if problem.packing.periodic and not problem.wall_friction:
+        result[:, :, 0] = np.nan
+    return result

@@ -1,0 +1,93 @@
+"""The influence of every disk on the floor against the answer to one small load after another."""
+
+import numpy as np
+import pytest
+
+import granular_response as gr
+from granular_response.observe.floor import floor_disks, floor_response
+from granular_response.scene import Scene
+from granular_response.solve import EquilibriumError, influence, solve_scene
+
+SMALL = np.array([3e-5, -1e-4, 2e-5])
+CASES = {
+    "ordered, frictionless": {"contact.friction": 0.0, "wall.friction": 0.0},
+    "ordered": {"preparation.gravity": "frictionless"},
+    "disordered": {"packing.polydispersity": 0.1, "packing.lattice_constant": "touching-largest"},
+    "3/2 law": {"contact.law": "hertz", "preparation.gravity": "frictionless"},
+    "periodic": {"packing.sides": "periodic", "packing.lattice_constant": 1.999, "preparation.gravity": "frictionless"},
+}
+
+
+def described(changes, disk, load) -> Scene:
+    packing = {"kind": "slab", "layers": 6, "disks_per_row": 15}
+    base = {
+        "packing": packing,
+        "contact": {"friction": 0.2},
+        "wall": {"friction": 0.2},
+        "protocol": {"time_step": "auto"},
+        "loads": [{"disk": disk, "force": [float(load[0]), float(load[1])], "torque": float(load[2])}],
+    }
+    return Scene.from_dict(base).updated(changes)
+
+
+@pytest.mark.parametrize("disk", [19, 80])
+@pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
+def test_it_is_the_answer_to_a_small_load(changes, disk):
+    turns = changes.get("contact.friction", 0.2) > 0.0
+    solution = solve_scene(described(changes, disk, SMALL * [1.0, 1.0, float(turns)]))
+    rest, loaded = solution.rest, solution.loaded[0]
+    disks = floor_disks([rest, loaded])
+    found = influence(solution.problem, rest, disks)
+    assert found.shape == (len(disks), solution.problem.n, 3 if turns else 2)
+    size = float(np.hypot(*SMALL[:2]))
+    expected = floor_response(rest, loaded, disks, size)
+    assert found[:, disk] @ SMALL[: found.shape[2]] / size == pytest.approx(expected, abs=1e-6)
+    assert np.abs(expected).max() > 0.1
+
+
+def test_without_friction_of_the_walls_the_floor_bears_every_force():
+    changes = {"wall.friction": 0.0, "preparation.gravity": "frictionless"}
+    solution = solve_scene(described(changes, 80, SMALL))
+    found = influence(solution.problem, solution.rest, floor_disks([solution.rest]))
+    assert found[:, :, 1].sum(axis=0) == pytest.approx(-1.0, abs=1e-8)
+    assert found[:, :, 0].sum(axis=0) == pytest.approx(0.0, abs=1e-8)
+
+
+def test_contacts_at_the_limit_are_refused_unless_they_shall_stick():
+    changes = {"contact.friction": 0.1, "preparation.gravity": "frictionless", "loads.0.force": [0.0, -20.0]}
+    solution = solve_scene(described(changes, 80, [0.0, 0.0, 0.0]))
+    state = solution.loaded[0]
+    disks = floor_disks([solution.rest, state])
+    with pytest.raises(EquilibriumError, match=r"^\d+ contacts are at the Coulomb limit"):
+        influence(solution.problem, state, disks)
+    assert np.isfinite(influence(solution.problem, state, disks, sliding="stick")).all()
+    with pytest.raises(ValueError, match=r"sliding = 'slip': must be refuse or stick"):
+        influence(solution.problem, state, disks, sliding="slip")
+
+
+def test_nothing_holds_a_periodic_slab_on_a_smooth_floor_along_x():
+    changes = CASES["periodic"] | {"wall.friction": 0.0}
+    solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
+    found = influence(solution.problem, solution.rest, floor_disks([solution.rest]))
+    assert np.isnan(found[:, :, 0]).all() and np.isfinite(found[:, :, 1]).all()
+
+
+def test_what_is_not_certified_is_refused():
+    scene = described({"protocol.static_finish": False, "protocol.stop_kinetic_energy": 1e-6}, 80, [0.0, 0.0, 0.0])
+    solution = solve_scene(scene.updated({"loads": []}))
+    with pytest.raises(EquilibriumError, match="not certified as stable"):
+        influence(solution.problem, solution.rest, floor_disks([solution.rest]))
+
+
+def test_a_result_has_it_labelled_and_a_stored_one_too(tmp_path):
+    result = gr.solve(described({"preparation.gravity": "frictionless"}, 80, SMALL))
+    found = result.influence(state=0)
+    response = result.floor_response.values * float(np.hypot(*SMALL[:2]))
+    one = found.isel(disk=80).values @ SMALL
+    assert one == pytest.approx(response, abs=1e-9)
+    assert list(found["component"].values) == ["x", "z", "torque"]
+    assert float(found["disk_x"][80]) == pytest.approx(0.0, abs=1e-12)
+    result.save(tmp_path / "r.nc")
+    assert np.array_equal(gr.open_result(tmp_path / "r.nc").influence(state=0).values, found.values)
+    with pytest.raises(IndexError, match="state = 7"):
+        result.influence(state=7)
