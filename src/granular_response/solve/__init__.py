@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from .dynamics import Dynamics, DynamicsError, Relaxation, Stop, relax
     from .energy import minimise
     from .equilibrium import EquilibriumError, certify, finish
-    from .small_loads import influence
     from .path import PathError, PathRecord, follow
     from .problem import Problem
     from .settle import NotSettled
+    from .small_loads import influence
     from .solution import Solution, continue_solution, loaded_states, rest_state, solve_scene
     from .timestep import UnstableTimeStep
 
