@@ -29,6 +29,7 @@ COMMANDS = {
     "continue": (["continue", "result.nc", "--to", "2"], ["result.nc"]),
     "simulate": (["simulate", "theory", "--params", "params.yaml"], ["params.yaml"]),
     "draw": (["draw", "theory", "--data", "theory/fig01_predictions.png"], ["theory"]),
+    "measure": (["measure", "theory", "--data", "theory/fig01_predictions.png"], ["theory/fig01_predictions.png"]),
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
     "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),

@@ -2,6 +2,7 @@
 
 import ast
 import functools
+import json
 import re
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ import yaml
 
 from granular_response.paper import groups, pipeline
 from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import drawing, simulation
+from granular_response.paper.pipeline import drawing, measuring, simulation
 from granular_response.scene import SceneError
 from granular_response.store import files as store
 
@@ -31,12 +32,26 @@ SIMULATION = [
 STARTS = {
     "simulate": SIMULATION,
     "draw": ["granular_response.paper.pipeline.drawing", "granular_response.paper.groups.{}.draw"],
+    "measure": [
+        "granular_response.paper.pipeline.measuring",
+        *(f"granular_response.paper.groups.{{}}.{module}" for module in ("claims", "numbers")),
+    ],
     "claims": ["granular_response.paper.claims.table"],
     "report": [
         "granular_response.paper.report",
         *(f"granular_response.paper.groups.{group}.captions" for group in NAMES),
     ],
 }
+
+
+#: Modules that a group has if it has something for them.
+OPTIONAL = ("claims", "numbers")
+
+
+def starts(kind, group):
+    """Modules at which a single stage starts."""
+    modules = [start.format(group) for start in STARTS[kind]]
+    return [name for name in modules if file_of(name) or name.rpartition(".")[2] not in OPTIONAL]
 
 
 def groups_of(kind):
@@ -111,7 +126,7 @@ def closure(starts: list[str]) -> set[str]:
 
 
 def imported_files(kind: str, group: str | None) -> set[str]:
-    modules = closure([start.format(group) for start in STARTS[kind]])
+    modules = closure(starts(kind, group))
     return {str(file_of(module).relative_to(ROOT)) for module in modules}
 
 
@@ -132,8 +147,8 @@ def test_the_walk_finds_imports_through_packages():
 
 @pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
 def test_every_imported_module_is_a_dependency(kind, group, definition):
-    for start in STARTS[kind]:
-        assert file_of(start.format(group)), f"{start.format(group)} does not exist"
+    for start in starts(kind, group):
+        assert file_of(start), f"{start} does not exist"
     missing = {
         file
         for file in imported_files(kind, group)
@@ -159,7 +174,7 @@ def test_every_dependency_is_imported_by_some_group(kind):
 
 
 def group_exists(kind: str, group: str | None) -> bool:
-    return all(file_of(start.format(group)) for start in STARTS[kind])
+    return all(file_of(start) for start in starts(kind, group))
 
 
 @pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
@@ -181,6 +196,10 @@ def test_stages_have_the_agreed_form(kind, group, definition):
         assert definition["outs"] == [{f"figures/{group}": {"cache": False}}]
         assert f"data/{group}.nc" in definition["deps"]
         assert "params" not in definition
+    elif kind == "measure":
+        assert definition["cmd"] == f"granular-response measure {group}"
+        assert definition["metrics"] == [{f"figures/metrics/{group}.json": {"cache": False}}]
+        assert f"data/{group}.nc" in definition["deps"]
     else:  # nothing is written that is not declared: no file named beside the outputs
         assert definition["cmd"] == f"granular-response {kind}"
 
@@ -194,7 +213,8 @@ def test_what_is_derived_comes_after_the_data_that_it_reads():
 def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():
     folders = {path.parent.name for path in SOURCE.glob("granular_response/paper/groups/*/__init__.py")}
     assert len(NAMES) == len(set(NAMES)) and set(NAMES) == folders == set(PARAMETERS) - {"common"}
-    assert list(NAMES) == list(GROUPS) and groups_of("simulate") == groups_of("draw") == list(NAMES)
+    assert list(NAMES) == list(GROUPS)
+    assert all(groups_of(kind) == list(NAMES) for kind in ("simulate", "draw", "measure"))
     assert [f"figures/{group}" for group in sorted(NAMES)] == [
         dependency for dependency in PIPELINE["report"]["deps"] if re.fullmatch(r"figures/\w+", dependency)
     ]
@@ -250,7 +270,7 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, change, said):
 def test_dvc_reads_the_pipeline():
     repo = pytest.importorskip("dvc.repo")
     names = {stage.addressing for stage in repo.Repo(ROOT).index.stages}
-    assert {f"{kind}@{group}" for kind in ("simulate", "draw") for group in NAMES} <= names
+    assert {f"{kind}@{group}" for kind in ("simulate", "draw", "measure") for group in NAMES} <= names
 
 
 def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
@@ -272,6 +292,8 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
         assert simulation.simulate("example", workers=1) == Path("data/example.nc")
         assert Path("figures/example/example.png") in drawing.draw("example")
         assert set(pipeline.group_member("example", "captions", "CAPTIONS")) == {"example"}
+        measured = json.loads(measuring.measure("example").read_text())["numbers"]
+        assert measured["largest_response_0"] != measured["largest_response_0.5"] and min(measured.values()) > 0.0
     finally:
         for name in [name for name in sys.modules if name.startswith("granular_response.paper.groups.example")]:
             del sys.modules[name]

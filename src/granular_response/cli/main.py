@@ -275,6 +275,30 @@ def draw(
 
 @app.command(
     epilog=_examples(
+        "granular-response measure pile_dip",
+        "granular-response measure pile_dip --data other.nc -o other.json",
+    )
+)
+def measure(
+    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
+    data: Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Numbers (JSON); figures/metrics/GROUP.json if not given.")
+    ] = None,
+) -> None:
+    """Write the numbers of a group, as its own datasets have them, for comparing experiments.
+
+    The table of claims (granular-response claims) needs the datasets of all groups.
+    """
+    from ..paper.pipeline import measuring
+
+    _loaded()
+
+    typer.echo(str(measuring.measure(group, data, output)))
+
+
+@app.command(
+    epilog=_examples(
         "granular-response show slab.nc",
         "granular-response show data/pile_dip.nc",
     )

@@ -81,6 +81,12 @@ class Quantity:
         return f"{_number(self.value, unit)} ({ends})" if math.isfinite(self.value) else ends
 
 
+def rounded(value: float) -> float | None:
+    """As it is stored: to six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON
+    lacks."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None
+
+
 def _number(value: float, unit: str) -> str:
     return f"{100.0 * value:.3g} %" if unit == "%" else f"{value:.4g}{' ' + unit if unit else ''}"
 

@@ -7,7 +7,6 @@ report and the README quote.
 from __future__ import annotations
 
 import json
-import math
 import os
 import re
 from collections.abc import Sequence
@@ -32,7 +31,7 @@ from ..groups.symmetry_breaking import claims as symmetry_breaking
 from ..groups.theory import claims as theory
 from ..groups.torque import claims as torque
 from . import preparations
-from .claim import Claim, Condition, Data, Quantity
+from .claim import Claim, Condition, Data, Quantity, rounded
 from .verdict import MEANINGS, Entry, Verdict, judge
 from .words import TABLE, bounds
 
@@ -160,7 +159,7 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
     verdicts = {
         entry.claim.id: {
             "verdict": entry.verdict,
-            **({"value": _number(entry.finding.quantity.value)} if entry.finding else {}),
+            **({"value": rounded(entry.finding.quantity.value)} if entry.finding else {}),
         }
         for entry in entries
     }
@@ -217,15 +216,10 @@ def _interval(quantity: Quantity) -> dict[str, Any]:
     """A value with its interval and the kind of it; an end that is open is null."""
     bare = quantity.kind == "none"
     return {
-        "value": _number(quantity.value),
-        "interval": None if bare else [_number(quantity.low), _number(quantity.high)],
+        "value": rounded(quantity.value),
+        "interval": None if bare else [rounded(quantity.low), rounded(quantity.high)],
         "interval_kind": KINDS[quantity.kind],
     }
-
-
-def _number(value: float) -> float | None:
-    """To six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON lacks."""
-    return float(f"{value:.6g}") if math.isfinite(value) else None
 
 
 def write(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from granular_response.paper.pipeline import GroupError, data_path, figures_folder, group_member
-from granular_response.store import files as store
+from granular_response.paper.pipeline import figures_folder, group_member, stored
 
 
 def draw(group: str, data: Path | None = None, folder: Path | None = None) -> list[Path]:
@@ -19,12 +18,7 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
         If its datasets cannot be read.
     """
     function = group_member(group, "draw", "draw")
-    path = data or data_path(group)
-    datasets = store.read(path)
-    stored = store.read_attributes(path).get("group")
-    if stored != group:
-        what = f"those of {stored}" if stored else "not those of a figure group"
-        raise GroupError(f"{path}: holds datasets of another kind, {what}, must be those of {group}")
+    path, datasets = stored.datasets(group, data)
     from granular_response.plot import style
 
     paths: list[Path] = []

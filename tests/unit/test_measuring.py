@@ -1,0 +1,91 @@
+"""The numbers of one group, from its own datasets."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from claims_data import pile_study
+
+from granular_response.paper.groups import NAMES
+from granular_response.paper.groups.sensitivity.numbers import numbers as sensitivity
+from granular_response.paper.groups.stability.numbers import numbers as stability
+from granular_response.paper.pipeline import GroupError, measuring
+from granular_response.store import files as store
+
+LABELS = {"long_name": "test", "units": "1"}
+
+
+def stored(path: Path, datasets, group: str) -> Path:
+    for data in datasets.values():
+        for variable in data.variables.values():
+            variable.attrs = {**LABELS, **variable.attrs}
+    store.write(path, datasets, {"group": group})
+    return path
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_every_group_has_something_to_compare(group):
+    assert measuring.contents(group) != (None, None)
+
+
+def test_claims_are_measured_on_the_group_alone(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = stored(Path("data/pile_dip.nc"), pile_study(), "pile_dip")
+    assert measuring.measure("pile_dip") == Path("figures/metrics/pile_dip.json")
+    found = json.loads(Path("figures/metrics/pile_dip.json").read_text())
+    assert found["claims"]["P1"] == {"outcome": "holds", "value": 0.07, "low": 0.07, "high": 0.07}
+    assert "numbers" not in found
+    with store_without(path, "stress"):
+        measuring.measure("pile_dip")
+    missing = json.loads(Path("figures/metrics/pile_dip.json").read_text())["claims"]
+    assert {"outcome": "not measured"} in missing.values() and missing != found["claims"]
+
+
+class store_without:
+    """The datasets of a file but one, for a while."""
+
+    def __init__(self, path: Path, name: str):
+        self.path, self.before = path, path.read_bytes()
+        datasets = store.read(path)
+        del datasets[name]
+        store.write(path, datasets, {"group": path.stem})
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.path.write_bytes(self.before)
+
+
+def test_numbers_of_variants():
+    study = xr.Dataset(
+        {"variant": ("variant", ["reference", "path"]), "largest_difference": ("variant", np.array([0.0, 0.25]))}
+    )
+    assert sensitivity({"mu_0.2": study}) == {"mu_0.2_path": 0.25}
+
+
+def test_numbers_of_stress_tests():
+    """A kick without a rest state says nothing about the step; residuals are those of certified scenes."""
+    ratio = ("ratio", np.array([0.5, 0.9, 1.1, 2.0]))
+    kicks = xr.Dataset({"outcome": (("integrator", "friction", "ratio"), np.array([[[0, 0, 2, 2]], [[3, 0, 0, 1]]]))})
+    scenes = xr.Dataset(
+        {
+            "outcome": ("scene", np.array([0, 1, 0, 6])),
+            **{name: ("scene", np.array([1e-12, 1.0, 2e-12, 9.0])) for name in
+               ("force_residual", "torque_residual", "coulomb_excess")},
+        }
+    )  # fmt: skip
+    scenes["outcome"].attrs["long_name"] = "what became of the scene: 0 certified, 1 uncertified, 6 wrong"
+    found = stability({"time_step_friction": kicks.assign_coords(ratio=ratio), "random_scenes": scenes})
+    assert (found["stable_step"], found["unstable_step"]) == (0.9, 2.0)
+    assert (found["scenes_certified"], found["scenes_uncertified"], found["scenes_wrong"]) == (2.0, 1.0, 1.0)
+    assert found["largest_force_residual"] == 2e-12
+
+
+def test_datasets_of_another_group_are_refused(tmp_path):
+    path = stored(tmp_path / "torque.nc", pile_study(), "pile_dip")
+    with pytest.raises(GroupError, match=r"torque\.nc: .*those of pile_dip, must be those of torque"):
+        measuring.measure("torque", path, tmp_path / "torque.json")
+    assert not (tmp_path / "torque.json").exists()
