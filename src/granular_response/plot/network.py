@@ -23,6 +23,10 @@ from granular_response.state import OPEN, Box, foot_points
 FloatArray = NDArray[np.float64]
 
 
+#: Points; a thinner line is lost in print.
+THINNEST = 0.4
+
+
 def draw_disks(
     axes: Axes,
     position: ArrayLike,
@@ -194,9 +198,9 @@ def draw_force_chains(
     smallest: float = 0.0,
     **lines: Any,
 ) -> LineCollection:
-    """Draw each force (m, 2) as a line along it, centred at its contact ``point`` (m, 2) (Figs. 2, 13, 18).
+    """Draw each force (m, 2) as a line along it, centred at its contact ``point`` (m, 2) (Figs. 2, 13, 17, 18).
 
-    Length (radii) and width (points) are both proportional to the magnitude. Forces
+    Length (radii) and width (points) are both proportional to the magnitude, the width down to :data:`THINNEST`. Forces
     below ``smallest`` are left out, which keeps the files of large packings small. Choose the factors with
     :func:`force_scale`, one for all panels that are compared.
     """
@@ -207,7 +211,7 @@ def draw_force_chains(
     shown = magnitude > smallest
     half = 0.5 * length_per_force * vector[shown]
     keywords: dict[str, Any] = {"color": style.BLACK, "capstyle": "butt", **lines}
-    keywords["linewidths"] = width_per_force * magnitude[shown]
+    keywords["linewidths"] = np.maximum(width_per_force * magnitude[shown], THINNEST)
     return _segments(axes, centre[shown] - half, centre[shown] + half, keywords)
 
 

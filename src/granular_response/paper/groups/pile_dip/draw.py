@@ -9,6 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from scipy.spatial import ConvexHull
 
 from granular_response.plot import style
 from granular_response.plot.field import draw_field
@@ -27,6 +29,11 @@ from granular_response.state import Box
 #: Cases that are drawn, left and right; of the two frictionless minima one, the other is its mirror image.
 DRAWN = {"frictionless": "without friction", "frictional": "with friction"}
 
+#: Force of the key (mg).
+KEY = 5.0
+
+STRESS = "$\\sigma_{zz}\\bar R/\\bar mg$"
+
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
@@ -41,6 +48,7 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     scale = force_scale(shown["contact_force"].values.reshape(-1, 2), longest=3.4, widest=2.8)
     fields = stress["stress_zz"].sel(case=list(DRAWN))
     largest = float(fields.max())
+    levels = np.asarray(MaxNLocator(8).tick_values(0.0, largest))[1:-1]  # without zero and what is above all
     width = float(piles["width"])
     top = float(piles["position"].values[..., 1].max()) + 1.0
     for column, (case, name) in enumerate(DRAWN.items()):
@@ -49,9 +57,9 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         _forces(forces, one, scale)
         style.letter(forces, "ab"[column], place="above", text=f"forces, {name}")
         field = fields.sel(case=case)
-        levels = largest * np.arange(0.1, 1.0, 0.1)
         image = draw_field(map_axes, stress["x"], stress["z"], field, norm=Normalize(0.0, largest), levels=levels)
-        map_axes.set(xlabel="$x/R$", ylabel="$z/R$" if column == 0 else "")
+        _outline(map_axes, one)
+        map_axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT if column == 0 else "")
         style.letter(map_axes, "cd"[column], place="above", text="$\\sigma_{zz}$")
         _network(network, one)
         style.letter(network, "ef"[column], place="above", text="contacts")
@@ -60,15 +68,16 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
             style.no_axes(axes)
             axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
-    draw_force_key(panels[0, 1], (0.8 * width, 0.9 * top), 5.0, **scale)
-    bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02)
-    bar.set_label("$\\sigma_{zz} R/mg$")
+        draw_force_key(forces, (0.8 * width, 0.9 * top), KEY, **scale)
+    bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
+    bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
+    bar.set_label(STRESS)
     return figure
 
 
 def _forces(axes: Axes, one: xr.Dataset, scale: Mapping[str, float]) -> None:
     position, radius = one["position"].values, one["radius"].values
-    draw_disks(axes, position, radius, edgecolor="#E0E0E0")
+    draw_disks(axes, position, radius)
     touching = one["contact_status"].values != 0
     pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
     force = one["contact_force"].values[touching]
@@ -77,9 +86,20 @@ def _forces(axes: Axes, one: xr.Dataset, scale: Mapping[str, float]) -> None:
     draw_force_chains(axes, at_wall, one["wall_force"].values, **scale)
 
 
+def _outline(axes: Axes, one: xr.Dataset) -> None:
+    """The convex hull of the disks and the floor, in the coordinates of the map."""
+    around = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    circle = np.stack([np.cos(around), np.sin(around)], axis=1)
+    rim = one["position"].values[:, None] + one["radius"].values[:, None, None] * circle
+    hull = ConvexHull(rim.reshape(-1, 2))
+    corner = hull.points[hull.vertices[[*range(len(hull.vertices)), 0]]] - (0.5 * float(one["width"]), 0.0)
+    axes.plot(*corner.T, color="white", linestyle="--", linewidth=0.9)
+    axes.axhline(0.0, color=style.MUTED, linewidth=1.6, linestyle="-", zorder=4)
+
+
 def _network(axes: Axes, one: xr.Dataset) -> None:
     touching = one["contact_status"].values != 0
-    draw_disks(axes, one["position"].values, one["radius"].values, edgecolor="#E8E8E8", linewidth=0.3)
+    draw_disks(axes, one["position"].values, one["radius"].values)
     pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
     draw_contacts(axes, one["position"].values, *pairs, linewidth=0.6)
 
@@ -97,11 +117,11 @@ def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         line.plot(stress["x"], one, **style.line(index), label=name)
         look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
         floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
-    line.set(xlabel="$x/R$", ylabel="$\\sigma_{zz} R/mg$")
+    line.set(xlabel=style.POSITION, ylabel=STRESS)
     line.set_ylim(0.0, 1.32 * float(stress["profile_zz"].max()))
     line.legend(loc="upper right", borderaxespad=0.3)
-    style.letter(line, "a", text=f"$z = {float(stress['dip_height']):g}\\,R$")
-    floor.set(xlabel="$x/R$", ylabel="floor force $/mg$")
+    style.letter(line, "a", text=f"$z = {float(stress['dip_height']):g}\\,\\bar R$")
+    floor.set(xlabel=style.POSITION, ylabel="floor force $/\\bar mg$")
     floor.set_ylim(0.0, 1.15 * float(piles["floor_force"].max()))
     style.letter(floor, "b")
     half = 0.5 * float(piles["width"])

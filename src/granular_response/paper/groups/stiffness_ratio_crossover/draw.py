@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from granular_response.paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
 from granular_response.plot import style
 
 #: Ratios whose simulated profiles are drawn, and those of the elastic bodies; others are in the dataset.
-DRAWN = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.6, 1.0)
+DRAWN = (0.0, 0.1, 0.2, 0.25, 0.3, 0.6, 1.0)
 ELASTIC = (0.1, 0.2, 0.3, 0.6)
+#: The crossover in the paper's simulations (Fig. 10), and that of its half plane (Sec. V.C).
+PAPER = {"simulation": 0.3, "half plane": 0.2915}
 
 
 @style.context()
@@ -26,25 +30,31 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     form.
     """
     response, elastic, events = datasets["response"], datasets["elastic"], datasets["events"]
-    figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=2.85)
+    figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=3.1)
     force = float(response["force"])
     available = response["stiffness_ratio"].values
     shown = _among(available, DRAWN)
-    colour = dict(zip(shown, style.ordered_colours(len(shown)), strict=True))
+    colours = style.ordered_colours(len(shown))
+    look: dict[float, dict[str, Any]] = {
+        ratio: {"color": colour, "linestyle": dashes, "linewidth": 1.1}
+        for ratio, colour, dashes in zip(shown, colours, style.LINE_STYLES, strict=False)
+    }
     for ratio in shown:
         one = response["floor_response"].sel(stiffness_ratio=ratio)
-        simulated.plot(response["x"], one, color=colour[ratio], linestyle="-", linewidth=1.0, label=f"{ratio:g}")
-    simulated.legend(title="$k_T/k_N$", loc="upper right", borderaxespad=0.3, handlelength=1.2)
-    style.letter(simulated, "a", place="above", text=f"simulation, $F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$")
+        simulated.plot(response["x"], one, **look[ratio], label=f"{ratio:g}")
+    style.letter(simulated, "a", place="above", text=f"simulation, $F_{{\\mathrm{{ext}}}} = {force:g}\\,\\bar mg$")
 
     profile = elastic["profile"].sel(rotations="free")
-    for ratio in _among(available, ELASTIC):
-        for body, line in (("smooth floor", "-"), ("half plane", (0, (3, 1.5)))):
+    marks: dict[str, dict[str, Any]] = {
+        "slab": {},
+        "half plane": {"marker": "o", "markerfacecolor": "white", "markersize": 3.0, "markevery": 3},
+    }
+    for ratio in _among(np.array(shown), ELASTIC):
+        for name, body in (("slab", "smooth floor"), ("half plane", "half plane")):
             one = profile.sel(body=body).sel(stiffness_ratio=ratio, method="nearest")
-            bodies.plot(elastic["x"], one, color=colour[ratio], linestyle=line, linewidth=1.0)
-    for name, line in (("slab", "-"), ("half plane", (0, (3, 1.5)))):
-        bodies.plot([], [], color=style.MUTED, linestyle=line, linewidth=1.0, label=name)
-    bodies.legend(loc="upper right", borderaxespad=0.3)
+            bodies.plot(elastic["x"], one, **look[ratio], **marks[name])
+    keys = [Line2D([], [], color=style.MUTED, linestyle="-", **marks[name]) for name in marks]
+    bodies.legend(keys, list(marks), loc="upper right", borderaxespad=0.3)
     style.letter(bodies, "b", place="above", text="elastic, no horizontal springs")
 
     _draw_dips(dips, response, elastic, events)
@@ -53,38 +63,45 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     reach = min(40.0, float(np.abs(response["x"]).max()))
     top = 1.08 * float(response["floor_response"].max())
     for axes in (simulated, bodies):
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-        axes.set(xlabel="$x/R$", xlim=(-reach, reach), ylim=(-0.012 * top / 0.11, top))
-    simulated.set_ylabel("$F_z/F_{\\mathrm{ext}}$")
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        axes.set(xlabel=style.POSITION, xlim=(-reach, reach), ylim=(-0.012 * top / 0.11, top))
+    simulated.set_ylabel(style.RESPONSE)
+    figure.legend(
+        *simulated.get_legend_handles_labels(), title="$k_T/k_N$", loc="outside upper center", ncols=len(shown)
+    )
     return {"fig10_stiffness_ratio": figure, **draw_spring_model()}
 
 
 def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr.Dataset) -> None:
-    ratio = response["stiffness_ratio"].values
+    """The depth of the dip, and below it the same near the crossover, where the differences are small."""
+    inset = axes.inset_axes((0.36, 0.25, 0.61, 0.36))
+    ratio, fine = response["stiffness_ratio"].values, elastic["stiffness_ratio"].values
     low, high = float(events["low"].min()), float(events["high"].max())
-    axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-    if np.isfinite(high):
-        axes.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)
     dip = elastic["central_dip"].sel(rotations="free")
-    fine = elastic["stiffness_ratio"].values
-    axes.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")
-    axes.plot(fine, dip.sel(body="smooth floor"), **style.line(2), label="slab")
-    look = {**style.marked_line(0), "color": style.BLACK}
-    axes.plot(ratio, response["central_dip"], **look, label="simulation")
+    simulated = {**style.marked_line(0), "color": style.BLACK}
+    for panel in (axes, inset):
+        panel.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        if np.isfinite(high):
+            panel.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)
+        panel.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")
+        panel.plot(fine, dip.sel(body="smooth floor"), **style.line(2), label="slab")
+        panel.plot(ratio, response["central_dip"], **simulated, label="simulation")
     axes.set(xlabel="$k_T/k_N$", ylabel="dip at $x = 0$ per largest response", xlim=(-0.03, 1.03))
     axes.legend(loc="upper right", borderaxespad=0.3)
-    # the same near the crossover, where the differences are small
-    inset = axes.inset_axes((0.44, 0.3, 0.53, 0.33))
-    near = (ratio >= 0.19) & (ratio <= 0.45)
-    close = (fine >= 0.19) & (fine <= 0.45)
-    inset.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-    if np.isfinite(high):
-        inset.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)
-    inset.plot(fine[close], dip.sel(body="half plane")[close], **style.line(1))
-    inset.plot(fine[close], dip.sel(body="smooth floor")[close], **style.line(2))
-    inset.plot(ratio[near], response["central_dip"][near], **look)
     inset.set(xlim=(0.24, 0.41), ylim=(-0.012, 0.045))
     inset.tick_params(labelsize=7)
+    for name, value in PAPER.items():
+        inset.axvline(value, color=style.MUTED, linewidth=0.8, linestyle="-" if name == "simulation" else ":")
+        side = 1.0 if name == "simulation" else -1.0
+        inset.annotate(
+            f"{value:g}",
+            (value, 0.045),
+            (1.5 * side, 2.0),
+            textcoords="offset points",
+            ha="left" if side > 0.0 else "right",
+            fontsize=7,
+            color=style.MUTED,
+        )
 
 
 def _among(available: np.ndarray, wanted: tuple[float, ...]) -> list[float]:

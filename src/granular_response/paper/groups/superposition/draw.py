@@ -18,6 +18,9 @@ FloatArray = NDArray[np.float64]
 FORCES = {"fig23_superposition": 0.2, "fig24_superposition": 1.0}
 REALIZATION = 0
 
+#: The force up to which the paper finds the response linear here, in mean disk weights (Sec. VI).
+LINEAR_UNTIL = 0.4
+
 #: Part of the box that is shown, in mean radii.
 HALF_WIDTH = 48.0
 
@@ -38,15 +41,16 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     figure, panels = style.figure(rows, 2, width="double", height=0.45 + 2.0 * rows, sharex=True, sharey=True)
     responses = data["floor_response"].values
     x = data["x"].values
-    high, low = float(responses.max()), float(min(0.0, responses.min()))
+    drawn = dataset["floor_response"].isel(realization=REALIZATION).sel(force=list(FORCES.values())).values
+    high, low = float(drawn.max()), float(min(0.0, drawn.min()))  # of both figures, which share their scale
     for axes in panels.ravel()[len(distances) :]:
         axes.set_axis_off()
     for k, distance in enumerate(distances):
         axes = panels.ravel()[k]
         left, right, both = responses[k]
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
-        axes.plot(x, left, **{**style.line(0), "linewidth": 0.9}, label="Left")
-        axes.plot(x, right, **{**style.line(3), "linestyle": (0, (5, 1.6)), "linewidth": 0.9}, label="Right")
+        axes.plot(x, left, **{**style.line(0), "linestyle": (0, (5, 1.6)), "linewidth": 0.9}, label="Left")
+        axes.plot(x, right, **{**style.line(2), "linewidth": 1.1}, label="Right")
         axes.plot(x, both, color=style.BLACK, linestyle="-", linewidth=0.9, label="(Left+Right)")
         axes.plot(
             x,
@@ -69,9 +73,9 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
         axes.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(1.2 * low if low < 0.0 else -0.03 * high, 1.36 * high))
         style.letter(axes, chr(ord("a") + k), place="above", text=f"$d = {distance:g}$ diameters")
         if k % 2 == 0:
-            axes.set_ylabel("added floor force / $F_{\\mathrm{ext}}$")
+            axes.set_ylabel(style.RESPONSE)
         if k + 2 >= len(distances):
-            axes.set_xlabel("$x/R$")
+            axes.set_xlabel(style.POSITION)
             axes.tick_params(labelbottom=True)
     panels[0, 1].legend(loc="upper right", fontsize=7.5)
     return figure
@@ -79,7 +83,7 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
 
 def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Errors against force on the floor and at all contacts, and against depth; means over realizations."""
-    figure, panels = style.figure(1, 3, width="double", height=2.8)
+    figure, panels = style.figure(1, 3, width="double", height=3.0, sharey=True)
     floor, contacts, deep = panels[0]
     errors, linear = datasets["errors"], datasets["linear_range"]
     force, distances = errors["force"].values, errors["distance"].values
@@ -92,27 +96,29 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
         for k, distance in enumerate(distances):
             _mean_with_error(axes, force, errors[name].values[:, k], k, colours[k], f"{distance:g}")
-        axes.set(xscale="log", yscale="log", xlabel="$F_{\\mathrm{ext}}/mg$", ylim=(1e-4, 4.0))
+        axes.axvline(LINEAR_UNTIL, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=1)
+        axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
     change = linear["contact_change"].values.mean(axis=0)[1:]  # zero at the first force, by definition
     (dotted,) = contacts.plot(linear["force"].values[1:], change, color=style.BLACK, linestyle=(0, (1.2, 1.2)))
-    contacts.legend([dotted], ["single load: nonlinearity"], loc="upper left", bbox_to_anchor=(-0.02, 0.93))
-    floor.legend(
-        title=f"$d$ (diameters), {errors.sizes['realization']} realizations",
-        alignment="left",
-        loc="upper left",
-        bbox_to_anchor=(-0.02, 0.93),
-        ncols=2,
-        columnspacing=0.8,
-    )
     floor.set_ylabel("difference of both and sum, relative")
     last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
     for k in range(len(distances)):
         _mean_with_error(deep, errors["gap"].values, profiles[:, k], k, colours[k], "")
-    deep.set(yscale="log", xlabel="depth below the loads$/R$", xlim=(0.0, None), ylim=(2e-3, 1.5))
+    deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel="depth below the loads $/\\bar R$", xlim=(0.0, None))
+    handles, names = floor.get_legend_handles_labels()
+    deep.legend(
+        [*handles, dotted],
+        [*names, "single load"],
+        title=f"$d$ (diameters), {errors.sizes['realization']} realizations",
+        alignment="left",
+        loc="lower left",
+        ncols=2,
+        columnspacing=0.8,
+    )
     style.letter(floor, "a", text="floor forces")
     style.letter(contacts, "b", text="all contact forces")
-    style.letter(deep, "c", text=f"contacts between rows, {last:g} $mg$")
+    style.letter(deep, "c", text=f"contacts between rows, $F_{{\\mathrm{{ext}}}} = {last:g}\\,\\bar mg$")
     return figure
 
 

@@ -21,6 +21,9 @@ from granular_response.plot.network import (
     pair_points,
 )
 
+#: Force of the key (mg).
+KEY = 5.0
+
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
@@ -31,30 +34,31 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def _chains(data: xr.Dataset) -> Figure:
     """The central third of the upper half of the slab, all panels on one scale."""
     torques = data["torque"].values
-    rows = (len(torques) + 2) // 3
-    figure, panels = style.figure(rows, 3, width="double", height=2.15 * rows)
     width, disk = float(data["width"]), int(data["loaded_disk"])
+    radius, top = data["radius"].values, float(data["position"].values[0, :, 1].max()) + 1.0
+    low, left, right = 0.5 * top, width / 3.0, 2.0 * width / 3.0
+    limits = {"xlim": (left - 0.5, right + 0.5), "ylim": (low - 0.5, top + 2.4)}
+    rows = (len(torques) + 2) // 3
+    height = np.ptp(limits["ylim"]) / np.ptp(limits["xlim"]) * style.DOUBLE / 3.0 + 0.2
+    figure, panels = style.figure(rows, 3, width="double", height=float(height) * rows)
     added = data["contact_added_force"].values
     scale = force_scale(added.reshape(-1, 2), longest=3.2, widest=4.6)
-    radius = data["radius"].values
     pairs = data["contact_disk"].values, data["contact_partner"].values
-    low = 0.5 * float(data["position"].values[0, :, 1].max() + 1.0)
-    left, right = width / 3.0, 2.0 * width / 3.0
     for index, axes in enumerate(panels.ravel()):
         style.no_axes(axes)
         if index >= len(torques):
             continue
         position = data["position"].values[index]
         inside = (np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0) & (position[:, 1] >= low - 1.0)
-        draw_disks(axes, position[inside], radius[inside], edgecolor="#D8D8D8")
+        draw_disks(axes, position[inside], radius[inside])
         point = pair_points(position, radius, *pairs)
         shown = (point[:, 0] >= left) & (point[:, 0] <= right) & (point[:, 1] >= low)
         draw_force_chains(axes, point[shown], added[index][shown], **scale)
         draw_loaded_disk(axes, (float(position[disk, 0]), float(position[disk, 1])), float(radius[disk]))
         _loads(axes, position[disk], data["applied_force"].values, float(torques[index]))
-        axes.set(xlim=(left - 0.5, right + 0.5), ylim=(low - 0.5, float(position[disk, 1]) + 4.6))
-        style.letter(axes, chr(ord("a") + index), text=_torque(float(torques[index])))
-    draw_force_key(panels[0, 2], (right - 4.5, float(data["position"].values[0, disk, 1]) + 3.4), 5.0, **scale)
+        draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
+        axes.set(**limits)
+        style.letter(axes, chr(ord("a") + index), place="above", text=_torque(float(torques[index])))
     return figure
 
 
@@ -66,7 +70,7 @@ def _loads(axes: Axes, centre: np.ndarray, force: np.ndarray, torque: float) -> 
 
 def _reach(data: xr.Dataset) -> Figure:
     """Not in the paper: what the torque changes, against the distance from the load."""
-    figure, panels = style.figure(1, 3, width="double", height=2.5, sharex=True)
+    figure, panels = style.figure(1, 3, width="double", height=2.7, sharex=True, sharey=True)
     torques = data["torque"].values
     turned = np.flatnonzero(torques)
     colours = style.ordered_colours(max(1, len(turned)))
@@ -75,17 +79,18 @@ def _reach(data: xr.Dataset) -> Figure:
         "stress_change": "stress tensor",
         "antisymmetric_change": "antisymmetric stress",
     }
-    top = 1.1 * max(float(data[name].max()) for name in panel_of)
+    changes = np.concatenate([data[name].values[turned].ravel() for name in panel_of])
+    limits = 0.6 * float(changes[changes > 0.0].min()), 1.6 * float(changes.max())
     for index, (axes, (name, text)) in enumerate(zip(panels[0], panel_of.items(), strict=True)):
         for number, k in enumerate(turned):
             look = {**style.marked_line(number), "color": colours[number]}
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
-        axes.set(xlabel="distance from the load $/R$", xlim=(0.0, None), ylim=(0.0, top))
+        axes.set(xlabel="distance from the load $/\\bar R$", xlim=(0.0, None), yscale="log", ylim=limits)
         style.letter(axes, chr(ord("a") + index), place="above", text=text)
     panels[0, 0].set_ylabel("relative change by the torque")
-    panels[0, 2].legend(title="torque $/mgR$", loc="upper right")
+    panels[0, 2].legend(title="torque $/\\bar mg\\bar R$", loc="upper right")
     return figure
 
 
 def _torque(value: float) -> str:
-    return "no torque" if value == 0.0 else f"${value:g}\\,mgR$"
+    return "no torque" if value == 0.0 else f"torque ${value:g}\\,\\bar mg\\bar R$"
