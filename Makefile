@@ -21,7 +21,7 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure test fuzz coverage lint docs package matrix benchmark arena lock clean
+.PHONY: help setup reproduce quote figure survey test fuzz coverage lint docs package matrix benchmark arena lock clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -53,6 +53,10 @@ figure: setup ## Draw one figure group: make figure GROUP=pile_dip
 	  "$(BIN)/dvc" stage list --name-only | sed -n 's/^draw@/  /p'; exit 1; } >&2
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro draw@$(GROUP)
+
+survey: setup ## Run the large ensembles of disordered slabs, two hours on one core (survey/dvc.yaml); goes on where it was
+	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
+	"$(BIN)/dvc" repro survey/dvc.yaml
 
 test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two processes)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true

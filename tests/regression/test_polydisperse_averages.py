@@ -122,10 +122,7 @@ def test_collapse_and_failure_are_reported() -> None:
     parameters = study.Parameters(**PARAMETERS)
     case = study.Case(0.25, 0.2, "touching-largest", (5.0, 60.0, 80.0), 1)
     # so shallow that every load collapses the packing, but the one that moves nothing
-    scene = study.ensemble_scene(parameters, case, 0)
-    task = study.Task(
-        scene, (0.01, 5.0, 10.0), collapse_depth=1e-3, ramp_time=5.0, largest_rate=5.0, stop_kinetic_energy=1e-8
-    )
+    task = replace(study.ensemble_task(parameters, case, 0), forces=(0.01, 5.0, 10.0), collapse_depth=1e-3)
     found = study.realize(task)
     assert found.outcome.tolist() == [AT_REST, COLLAPSED, NOT_REACHED]
     assert np.isfinite(found.response[0]).all()

@@ -47,6 +47,7 @@ def map_tasks(
     scheduler: str | None = None,
     progress: Progress | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
+    parts: Sequence[str] = (),
     what: str = "tasks",
 ) -> list[Result]:
     """Results of ``function`` for all items, in the order of the items.
@@ -66,6 +67,8 @@ def map_tasks(
         Folder in which the result of each finished task is kept until the caller removes it. A later call
         finds it there if function, item and the sources of this package are the same (see :mod:`.digest`). If None,
         that of the resources in use; nothing is kept if there is none either.
+    parts
+        Folders of this package with the sources that the results depend on; all of it if none is named.
     what
         What the tasks are, for the progress line.
 
@@ -80,7 +83,7 @@ def map_tasks(
     items = list(items)
     scheduler = scheduler or current().scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
     folder = checkpoint or current().checkpoint
-    kept = _Checkpoint(folder, function, items) if folder and items else None
+    kept = _Checkpoint(folder, function, items, parts) if folder and items else None
 
     results: list[Any] = [kept.load(index) if kept else MISSING for index in range(len(items))]
     todo = [index for index, result in enumerate(results) if result is MISSING]
@@ -140,8 +143,10 @@ def _here(function: Callable, items: Sequence[Any], todo: Sequence[int]) -> Gene
 class _Checkpoint:
     """Finished results of one function in a folder; nothing is kept of what has no name of its own."""
 
-    def __init__(self, folder: str | os.PathLike[str], function: Callable, items: Sequence[Any]) -> None:
-        self.memory = Memory(folder, sources(), (_module(function),))
+    def __init__(
+        self, folder: str | os.PathLike[str], function: Callable, items: Sequence[Any], parts: Sequence[str]
+    ) -> None:
+        self.memory = Memory(folder, sources(*parts), (_module(function),))
         self.function = self._name(function)
         self.names = [self._name(self.function, item) if self.function else None for item in items]
 

@@ -25,6 +25,7 @@ class Case:
     lattice_constant: float | str
     forces: tuple[float, ...]
     realizations: int
+    wall_friction: float | None = None  #: None: the same as between disks
 
 
 class Cases(Description):
@@ -75,8 +76,8 @@ class ForcesPicture(Description):
     realization: Index
 
 
-class Parameters(SceneGroup):
-    """Section ``polydisperse_averages``.
+class EnsembleGroup(SceneGroup):
+    """What makes a realization of a disordered slab.
 
     ``scene`` holds the lattice constant of the start and what ends the fall.
     """
@@ -97,6 +98,11 @@ class Parameters(SceneGroup):
     longest_time_step: Positive = Field(description="Without friction the limit is far beyond what the fall needs.")
     loading: Loading
     collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a packing counts as collapsed.")
+
+
+class Parameters(EnsembleGroup):
+    """Section ``polydisperse_averages``."""
+
     realizations: Count = Field(description="Of a disordered case; a lattice needs one.")
     cases: Annotated[tuple[Cases, ...], AfterValidator(some)]
     widths: Positives = Field(description="w of the smoothing Gaussian, in radii.")

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from granular_response.observe import network
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED
-from granular_response.paper.groups.polydisperse_averages.parameters import Case, Parameters
+from granular_response.paper.groups.polydisperse_averages.parameters import Case, EnsembleGroup
 from granular_response.scene import Scene
 from granular_response.solve import SOLVE_ERRORS, Problem, loaded_states
 from granular_response.solve.choice import load_method
@@ -210,9 +210,20 @@ def _packing_numbers(problem: Problem, rest: State) -> dict[str, float]:
     }
 
 
-def ensemble_scene(
-    parameters: Parameters, case: Case, realization: int, *, wall_friction: float | None = None
-) -> Scene:
+def ensemble_task(parameters: EnsembleGroup, case: Case, realization: int) -> Task:
+    """The task of one realization of a case."""
+    loading = parameters.loading
+    return Task(
+        scene=ensemble_scene(parameters, case, realization),
+        forces=case.forces,
+        collapse_depth=parameters.collapse_depth,
+        ramp_time=loading.ramp_time,
+        largest_rate=loading.largest_rate,
+        stop_kinetic_energy=loading.stop_kinetic_energy,
+    )
+
+
+def ensemble_scene(parameters: EnsembleGroup, case: Case, realization: int) -> Scene:
     """The scene of one realization of a case.
 
     The time step is ``time_step_part`` of the stability limit of its lightest disk, at most
@@ -224,7 +235,7 @@ def ensemble_scene(
             "packing.lattice_constant": case.lattice_constant,
             "packing.realization": realization,
             "contact.friction": case.friction,
-            "wall.friction": case.friction if wall_friction is None else wall_friction,
+            "wall.friction": case.friction if case.wall_friction is None else case.wall_friction,
         }
     )
     limit = stability_limit(Problem.from_scene(scene), smallest=True)

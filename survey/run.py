@@ -1,0 +1,44 @@
+"""Runs blocks of the survey: python run.py BLOCK [BLOCK ...], all of them if none is named.
+
+``DASK_SCHEDULER_ADDRESS`` sends the tasks to a Dask cluster. What is finished is kept in ``.realizations.checkpoint``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from granular_response.machine import floating_point
+
+HERE = Path(__file__).resolve().parent
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("blocks", nargs="*", metavar="BLOCK")
+    parser.add_argument("--workers", type=int, help="processes; all cores if not given")
+    parser.add_argument("--realizations", type=int, help="at most so many of each case")
+    given = parser.parse_args()
+    floating_point.pin()
+    from granular_response.paper.survey.simulate import SurveyError, read_parameters, run
+    from granular_response.scene import SceneError
+    from granular_response.store.files import StoreError
+    from granular_response.sweeps.errors import SweepError
+
+    try:
+        for block in given.blocks or read_parameters(HERE / "params.yaml").blocks:
+            path = run(
+                block,
+                HERE / "params.yaml",
+                realizations=given.realizations,
+                workers=given.workers,
+                progress=lambda done, total, what="": print(f"\r{what}: {done:g} of {total:g}", end="", flush=True),
+            )
+            print(f"\n{path}")
+    except (SceneError, StoreError, SurveyError, SweepError) as error:
+        sys.exit(f"error: {error}")
+
+
+if __name__ == "__main__":
+    main()

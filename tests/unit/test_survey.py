@@ -1,0 +1,101 @@
+"""The survey's parameters, and that its runs go on where they were."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from granular_response.paper.ensembles import AT_REST
+from granular_response.paper.survey import simulate as survey
+from granular_response.scene import SceneError
+from granular_response.store import files as store
+
+ROOT = Path(__file__).parents[2]
+
+SMALL = {
+    "method": "stages",
+    "scene": {
+        "packing": {"layers": 4, "disks_per_row": 9, "lattice_constant": "touching-largest"},
+        "protocol": {"integrator": "verlet", "stop_kinetic_energy": 1e-9, "maximum_steps": 200_000},
+    },
+    "loading": {"ramp_time": 5.0, "largest_rate": 5.0, "stop_kinetic_energy": 1e-8},
+    "time_step_part": 0.9,
+    "longest_time_step": 1e-3,
+    "collapse_depth": 2.0,
+    "realizations": 3,
+    "blocks": {
+        "small": [
+            {"polydispersities": [0.01], "frictions": [0.0, 0.2], "forces": [0.5, 5.0], "wall_friction": 0.0},
+            {"polydispersities": [0.0], "frictions": [0.0], "forces": [0.5], "lattice_constants": [2.0]},
+        ],
+    },
+}
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "params.yaml"
+    path.write_text(yaml.safe_dump(SMALL))
+    return path
+
+
+def test_the_cases_of_a_block_are_all_combinations():
+    parameters = survey.Parameters(**SMALL)
+    cases = parameters.cases("small")
+    assert [(c.polydispersity, c.friction, c.lattice_constant, c.realizations, c.wall_friction) for c in cases] == [
+        (0.01, 0.0, "touching-largest", 3, 0.0),
+        (0.01, 0.2, "touching-largest", 3, 0.0),
+        (0.0, 0.0, 2.0, 1, None),  # a lattice has one
+    ]
+
+
+def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file, monkeypatch):
+    done = []
+    real = survey.realize
+    monkeypatch.setattr(survey, "realize", lambda task: done.append(task) or real(task))
+    survey.run("small", file, realizations=2, workers=1)
+    assert len(done) == 5
+    path = survey.run("small", file, workers=1)
+    assert len(done) == 7  # the third ones alone
+    assert [task.scene.packing.realization for task in done[5:]] == [2, 2]
+
+    found = store.read(path)
+    one = found["ensembles"].isel(case=1, realization=2)
+    again = real(done[6])
+    assert (one["outcome"].values[:2] == AT_REST).all()
+    np.testing.assert_allclose(one["floor_response"].values[:2], again.response, atol=2.0**-18, rtol=1e-7)
+    np.testing.assert_allclose(one["x"].values, again.x, atol=2.0**-13, rtol=1e-7)
+    assert one["wall_friction"] == 0.0
+    packing = found["packings"].isel(case=1, realization=2)
+    for name in survey.PACKINGS:
+        np.testing.assert_equal(packing[name].values, np.float32(again.packing[name]))
+    assert packing["processor_time"] > 0.0
+    marks = store.read_attributes(path)
+    assert marks["block"] == "small" and marks["seed"] == "0" and "loading" in marks["parameters"]
+    assert survey.sources(*survey.SOURCES) in marks["sources"]
+
+
+def test_mistakes_are_one_line_each(file, tmp_path):
+    with pytest.raises(survey.SurveyError, match=r"^block large: there is none of this name, must be one of small$"):
+        survey.run("large", file)
+    with pytest.raises(survey.SurveyError, match=r"none\.yaml: cannot be read"):
+        survey.read_parameters(tmp_path / "none.yaml")
+    file.write_text(yaml.safe_dump({**SMALL, "realizations": 0}))
+    with pytest.raises(SceneError, match=r"params\.yaml: realizations = 0"):
+        survey.read_parameters(file)
+
+
+def test_the_survey_extends_the_ensembles_of_the_pipeline():
+    """Scene, protocol and seeds are those of polydisperse_averages, so its realizations are among the survey's."""
+    pipeline = yaml.safe_load((ROOT / "params.yaml").read_text())["polydisperse_averages"]
+    own = yaml.safe_load((ROOT / "survey" / "params.yaml").read_text())
+    for key in ("method", "scene", "time_step_part", "longest_time_step", "loading", "collapse_depth"):
+        assert own[key] == pipeline[key]
+
+
+def test_its_pipeline_names_a_stage_and_the_sources_of_every_block():
+    stage = yaml.safe_load((ROOT / "survey" / "dvc.yaml").read_text())["stages"]["simulate"]
+    declared = {path.removeprefix("../src/granular_response/") for path in stage["do"]["deps"]}
+    assert {*survey.SOURCES, "paper/survey"} <= declared
+    assert stage["foreach"] == "${blocks}"
