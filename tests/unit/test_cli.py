@@ -26,6 +26,7 @@ from granular_response.api import terminal
 from granular_response.cli import main as cli
 from granular_response.machine import floating_point
 from granular_response.paper import pipeline
+from granular_response.paper.captions import Caption
 from granular_response.paper.pipeline import drawing, simulation
 from granular_response.scene import SceneError
 from granular_response.scene.base import Description
@@ -299,6 +300,9 @@ class Study:
         figure.add_subplot().plot(datasets["squares"]["square"])
         return {"fig99_squares": figure}
 
+    def captions(datasets, parameters):
+        return {"fig99_squares": Caption(f"{parameters.count} squares.", "A parabola.", {"force": [1.0, 2.0]})}
+
 
 @pytest.fixture
 def group(tmp_path, monkeypatch):
@@ -322,7 +326,18 @@ def test_simulate_and_draw(group, tmp_path):
     attributes = store.read_attributes("data/squares.nc")
     assert yaml.safe_load(attributes["parameters"])["count"] == 4
     paths = drawing.draw(group)
-    assert sorted(map(str, paths)) == [f"figures/squares/fig99_squares.{kind}" for kind in ("pdf", "png")]
+    assert sorted(map(str, paths)) == [
+        f"figures/squares/{name}" for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png")
+    ]
+    assert json.loads(Path("figures/squares/captions.json").read_text()) == {
+        "fig99_squares": {
+            "figure": None,
+            "panels": [],
+            "caption": "4 squares. F_ext = 1 and 2 m\u0304g.",
+            "alternative": "A parabola.",
+            "parameters": {"force": [1.0, 2.0]},
+        }
+    }
     before = [path.read_bytes() for path in paths]
     first = Path("data/squares.nc").read_bytes()
     simulation.simulate(group, workers=1)

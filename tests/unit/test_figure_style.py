@@ -89,3 +89,23 @@ def test_bad_input_is_named() -> None:
         style.ordered_colours(0)
     with pytest.raises(ValueError, match="file_format = 'bmp'"):
         style.render(_drawn(), "bmp")
+
+
+def test_a_symbol_with_its_value_is_set_with_unit_and_power() -> None:
+    assert style.equals(style.FRICTION, 0.2) == r"$\mu = 0.2$"
+    assert style.equals("k_N", 1e5, style.STIFFNESS_UNIT) == r"$k_N = 10^{5}\,\bar m g/\bar R$"
+    assert style.equals("k_N", 3000.0) == "$k_N = 3000$"
+
+
+@pytest.mark.parametrize("along", ["x", "y"])
+def test_a_value_of_the_paper_is_a_line_or_a_band_with_its_text(along: str) -> None:
+    panel = style.figure()[1][0, 0]
+    panel.plot([0.0, 10.0], [0.0, 10.0])
+    style.paper_value(panel, 4.0, "paper: 4", along=along, side="behind")
+    line = panel.lines[-1]
+    assert np.unique(line.get_xdata() if along == "x" else line.get_ydata()).tolist() == [4.0]
+    style.paper_value(panel, 6.0, along=along, band=7.0)
+    lower, upper = panel.patches[-1].get_window_extent().get_points()
+    ends = panel.transData.inverted().transform([lower, upper])[:, "xy".index(along)]
+    np.testing.assert_allclose(ends, [6.0, 7.0])
+    assert [text.get_text() for text in panel.texts] == ["paper: 4"]

@@ -31,16 +31,16 @@ SIMULATION = [
 #: Modules at which a stage starts; {} is its figure group.
 STARTS = {
     "simulate": SIMULATION,
-    "draw": ["granular_response.paper.pipeline.drawing", "granular_response.paper.groups.{}.draw"],
+    "draw": [
+        "granular_response.paper.pipeline.drawing",
+        *(f"granular_response.paper.groups.{{}}.{module}" for module in ("parameters", "draw", "captions")),
+    ],
     "measure": [
         "granular_response.paper.pipeline.measuring",
         *(f"granular_response.paper.groups.{{}}.{module}" for module in ("claims", "numbers")),
     ],
     "claims": ["granular_response.paper.claims.table"],
-    "report": [
-        "granular_response.paper.report",
-        *(f"granular_response.paper.groups.{group}.captions" for group in NAMES),
-    ],
+    "report": ["granular_response.paper.report"],
 }
 
 
@@ -291,7 +291,9 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
     try:
         assert simulation.simulate("example", workers=1) == Path("data/example.nc")
         assert Path("figures/example/example.png") in drawing.draw("example")
-        assert set(pipeline.group_member("example", "captions", "CAPTIONS")) == {"example"}
+        said = json.loads(Path("figures/example/captions.json").read_text())["example"]
+        assert said["caption"].startswith("Floor response per applied force") and "k_T/k_N = 0.8" in said["caption"]
+        assert (said["figure"], said["panels"], said["parameters"]["friction"]) == (None, [], [0.0, 0.5])
         measured = json.loads(measuring.measure("example").read_text())["numbers"]
         assert measured["largest_response_0"] != measured["largest_response_0.5"] and min(measured.values()) > 0.0
     finally:

@@ -266,7 +266,7 @@ def draw_force_key(
     )
     with style.context():
         axes.annotate(
-            f"${magnitude:g}\\,mg$",
+            f"${magnitude:g}\\,{style.WEIGHT}$",
             (at[0] + length, at[1]),
             (4.0, 0.0),
             textcoords="offset points",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -52,16 +53,43 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 #: Colour map of magnitudes.
 SEQUENTIAL = "viridis"
 
+#: Symbols of the paper, for :func:`equals` and for labels: set them between dollar signs.
+F_EXT = r"F_{\mathrm{ext}}"
+FRICTION, WALL_FRICTION = r"\mu", r"\mu^{\mathrm{wall}}"
+BOTH_FRICTIONS = f"{FRICTION} = {WALL_FRICTION}"
+STIFFNESS_RATIO = "k_T/k_N"
+POLYDISPERSITY = r"\delta"
+SMOOTHING = "w"
+#: Units: mean disk weight, mean radius, stiffness, torque.
+WEIGHT, RADIUS = r"\bar m g", r"\bar R"
+STIFFNESS_UNIT, TORQUE_UNIT = rf"{WEIGHT}/{RADIUS}", rf"{WEIGHT}{RADIUS}"
+
 #: One label for each quantity.
-POSITION = "$x/\\bar R$"
-HEIGHT = "$z/\\bar R$"
-FORCE = "$F_{\\mathrm{ext}}/\\bar m g$"
-RESPONSE = "floor response$\\,/\\,F_{\\mathrm{ext}}$"
+POSITION = rf"$x/{RADIUS}$"
+HEIGHT = rf"$z/{RADIUS}$"
+DEPTH = rf"depth$\,/\,{RADIUS}$"
+WIDTH = rf"width$\,/\,{RADIUS}$"
+SCALED_POSITION = "$x/h$"
+FORCE = rf"${F_EXT}/{WEIGHT}$"
+RESPONSE = rf"floor response$\,/\,{F_EXT}$"
+RESPONSE_AT_CENTRE = rf"floor response at $x=0\,/\,{F_EXT}$"
+#: Where the response is smoothed, it is a stress.
+FLOOR_STRESS = rf"floor stress $\sigma_{{zz}}{RADIUS}/{F_EXT}$"
+PRESSURE = rf"floor pressure $p\,h/{F_EXT}$"
+STRESS = rf"$\sigma_{{zz}}{RADIUS}/{F_EXT}$"
+STRESS_OF_GRAVITY = rf"$\sigma_{{zz}}{RADIUS}/{WEIGHT}$"
+STIFFNESS = rf"$k_N{RADIUS}/{WEIGHT}$"
+CONTACT_FORCE = rf"$|\mathbf{{f}}|/{WEIGHT}$"
+ENERGY_UNIT = rf"{WEIGHT}{RADIUS}"
+TIME_UNIT = rf"\sqrt{{{RADIUS}/g}}"
 #: A difference of stresses has both signs: blue is compression, red the loss of it, white neither.
 SIGNED = "RdBu"
 
 #: Greys of things that are there for orientation only.
 FAINT, MUTED = "#C8C8C8", "#707070"
+
+#: What the paper says, on a plot: lines with its value beside them, or a band.
+PAPER, PAPER_BAND = "#9A7B4F", "#F1E9DA"
 
 RC: dict[str, Any] = {
     "axes.axisbelow": True,
@@ -209,10 +237,70 @@ def letter(axes: Axes, name: str, *, place: Literal["inside", "above"] = "inside
             )
 
 
-def letters(axes: Sequence[Axes] | np.ndarray, **keywords: Any) -> None:
-    """Panel letters a, b, c, ... on ``axes`` in reading order; keywords as of :func:`letter`."""
+def letters(axes: Sequence[Axes] | np.ndarray, *, first: str = "a", **keywords: Any) -> None:
+    """Panel letters from ``first`` on, on ``axes`` in reading order; keywords as of :func:`letter`."""
     for index, panel in enumerate(np.asarray(axes, dtype=object).ravel()):
-        letter(panel, chr(ord("a") + index), **keywords)
+        letter(panel, chr(ord(first) + index), **keywords)
+
+
+def drawn_letters(drawn: Figure) -> list[str]:
+    """The panel letters that a figure has, sorted."""
+    texts = [text for axes in drawn.axes for text in [axes.get_title("left"), *(t.get_text() for t in axes.texts)]]
+    return sorted(match[1] for match in (re.match(r"\(([a-z])\)", text) for text in texts) if match)
+
+
+def equals(symbol: str, value: float, unit: str = "") -> str:
+    """``symbol = value unit`` as it is set: ``equals(F_EXT, 15, WEIGHT)``; whole powers of ten from 1e4 on as such."""
+    exponent = round(np.log10(value)) if value >= 1e4 else 0
+    number = f"10^{{{exponent}}}" if exponent and np.isclose(value, 10.0**exponent) else f"{value:g}"
+    return f"${symbol} = {number}" + (rf"\,{unit}$" if unit else "$")
+
+
+def paper_value(
+    axes: Axes,
+    value: float,
+    text: str = "",
+    *,
+    along: Literal["x", "y"] = "x",
+    at: float = 0.97,
+    side: Literal["before", "behind"] = "before",
+    band: float | None = None,
+) -> None:
+    """Mark a ``value`` that the paper prints, in one light style: a dotted line across the axes and ``text`` on it.
+
+    Parameters
+    ----------
+    along : axis that the value is read on.
+    at : where the text ends on the other axis, as a part of it.
+    side : the text stands before the line (left of it, above it) or behind it.
+    band : a range from ``value`` to this, in place of the line.
+    """
+    with context():
+        upright = along == "x"
+        if band is not None:
+            (axes.axvspan if upright else axes.axhspan)(value, band, color=PAPER_BAND, linewidth=0.0, zorder=0)
+            value = (value + band) / 2.0
+        else:
+            line = axes.axvline if upright else axes.axhline
+            line(value, color=PAPER, linewidth=0.8, linestyle=(0, (1.0, 1.6)), zorder=0.5)
+        if not text:
+            return
+        # on a band in its middle, else beside the line
+        gap = 0.0 if band is not None else 1.5 if side == "behind" else -1.5
+        across = "center" if band is not None else "left" if side == "behind" else "right"
+        over = "center" if band is not None else "top" if side == "behind" else "bottom"
+        axes.annotate(
+            text,
+            (value, at) if upright else (at, value),
+            (gap, 0.0) if upright else (0.0, -gap),
+            xycoords=("data", "axes fraction") if upright else ("axes fraction", "data"),
+            textcoords="offset points",
+            rotation=90.0 if upright else 0.0,
+            ha=across if upright else "right",
+            va="top" if upright else over,
+            fontsize=7,
+            color=PAPER,
+        )
 
 
 def no_axes(axes: Axes) -> None:

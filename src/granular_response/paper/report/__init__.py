@@ -45,7 +45,7 @@ def write(
     Raises
     ------
     ReportError
-        If ``figures/claims.json`` is missing or not JSON.
+        If ``figures/claims.json`` is missing or not JSON, or a ``captions.json`` is damaged.
     granular_response.store.StoreError
         If a dataset cannot be read.
     OSError
@@ -78,7 +78,10 @@ def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".
 def page(root: Path) -> str:
     """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing."""
     claims = _claims(root / "figures" / "claims.json")
-    shown = pictures.collect(root / "figures")
+    try:
+        shown = pictures.collect(root / "figures")
+    except ValueError as error:
+        raise ReportError(str(error)) from None
     data = root / "data"
     explored, sensitivity = (data / f"{group}.nc" for group in (EXPLORED, SENSITIVITY))
     states = explorer.payload(store.read(explored)) if explored.exists() else None

@@ -4,37 +4,20 @@ from __future__ import annotations
 
 import base64
 import io
-import re
+import json
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PIL import Image
 
-from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import group_member
+from granular_response.paper import captions
 
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
 SHOWN = 0.62
 
 #: Two figures that are not wider than this, in pixels of the page, stand beside each other.
 NARROW = 480
-
-NUMBER_OF_FIGURES = 24
-
-
-@cache
-def captions() -> dict[int | str, str]:
-    """What the figures show, by number of the paper's figure or by file; of several groups one after the other."""
-    found: dict[int | str, str] = {}
-    for group in NAMES:
-        for key, text in group_member(group, "captions", "CAPTIONS").items():
-            found[key] = f"{found[key]} {text}" if key in found else text
-    return found
-
-
-_NUMBER = re.compile(r"fig(\d+)")
 
 
 @dataclass(frozen=True)
@@ -47,6 +30,8 @@ class Picture:
     width: int
     height: int
     shown: int  #: width on a wide screen in pixels of the page
+    caption: str = ""  #: with all its parameters, in plain text
+    alternative: str = ""  #: what stands for it where it cannot be seen
 
     @property
     def module(self) -> str:
@@ -55,17 +40,11 @@ class Picture:
     @property
     def number(self) -> int | None:
         """Number of the paper's figure that it belongs to."""
-        match = _NUMBER.match(self.stem)
-        return int(match[1]) if match and int(match[1]) in captions() else None
+        return captions.number(self.stem)
 
     @property
     def title(self) -> str:
         return self.stem.replace("_", " ").capitalize()
-
-    @property
-    def caption(self) -> str:
-        """Of a further figure."""
-        return captions().get(self.stem, "")
 
 
 @dataclass(frozen=True)
@@ -73,8 +52,12 @@ class Figure:
     """A figure of the paper with its pictures, none if it is not drawn yet."""
 
     number: int
-    caption: str
     pictures: tuple[Picture, ...]
+
+    @property
+    def caption(self) -> str:
+        """Those of its pictures, one after the other."""
+        return " ".join(picture.caption for picture in self.pictures if picture.caption)
 
     @property
     def narrow(self) -> bool:
@@ -86,7 +69,7 @@ class Figure:
         count = len(self.pictures)
         which = f", picture {self.pictures.index(picture) + 1} of {count}" if count > 1 else ""
         subject = picture.stem.partition("_")[2].replace("_", " ")
-        return f"Figure {self.number}{which}, {subject}: {self.caption}"
+        return f"Figure {self.number}{which}, {subject}: {picture.alternative}"
 
 
 @dataclass(frozen=True)
@@ -103,17 +86,33 @@ class Pictures:
 
 
 def collect(folder: Path) -> Pictures:
-    """All pictures ``folder/GROUP/STEM.png``; a stem that begins with ``figNN`` belongs to that figure."""
-    numbered: dict[int, list[Picture]] = {number: [] for number in range(1, NUMBER_OF_FIGURES + 1)}
+    """All pictures ``folder/GROUP/STEM.png`` with their captions; one that begins with ``figNN`` is of that figure.
+
+    Raises ValueError if a file of captions is none.
+    """
+    numbered: dict[int, list[Picture]] = {number: [] for number in range(1, captions.NUMBER_OF_FIGURES + 1)}
     further = []
+    said = _said(folder)
     for path in sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name)):
-        picture = embed(path)
+        caption, alternative = said.get((path.parent.name, path.stem), ("", ""))
+        picture = replace(embed(path), caption=caption, alternative=alternative)
         if picture.number is None:
             further.append(picture)
         else:
             numbered[picture.number].append(picture)
-    figures = tuple(Figure(n, captions()[n], tuple(found)) for n, found in numbered.items())
-    return Pictures(figures, tuple(further))
+    return Pictures(tuple(Figure(n, tuple(found)) for n, found in numbered.items()), tuple(further))
+
+
+def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
+    """Caption and alternative text of each picture, by group and stem."""
+    found = {}
+    for path in folder.glob(f"*/{captions.FILE}"):
+        try:
+            for stem, entry in json.loads(path.read_text(encoding="utf-8")).items():
+                found[path.parent.name, stem] = str(entry["caption"]), str(entry["alternative"])
+        except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
+            raise ValueError(f"{path}: holds no captions: {type(error).__name__} {error}") from None
+    return found
 
 
 def embed(path: Path) -> Picture:

@@ -11,8 +11,8 @@ _GREEK = {"sigma": "σ", "mu": "µ", "delta": "δ", "gamma": "γ", "xi": "ξ", "
 _TEN = re.compile(r"(?<![\w.])([-−]?)(\d+(?:\.\d+)?)e([-+]?)0*(\d+)(?![\w.]*\w)")
 _MINUS = re.compile(r"(?<![\w.)\]])-(?=\.?\d)")
 _POWER = re.compile(r"(?<=[\w)])(?:\^|\*\*)(-?\d+(?:/\d+)?)")
-#: One letter or the name of a Greek one, with an index of up to three letters or digits.
-_INDEX = re.compile(rf"(?<![\w.])([A-Za-z]|{'|'.join(_GREEK)})_([A-Za-z0-9]{{1,3}})(?![\w.(]*\w)")
+#: One letter, µ or the name of a Greek one, with an index of up to four letters or digits.
+_INDEX = re.compile(rf"(?<![\w.])([A-Za-zµ]|{'|'.join(_GREEK)})_([A-Za-z0-9]{{1,4}})(?![\w.(]*\w)")
 _ROOT = re.compile(r"\bsqrt\((\w+)\)")
 
 

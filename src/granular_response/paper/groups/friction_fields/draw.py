@@ -25,6 +25,8 @@ from granular_response.state import Box
 
 #: Half of the width of the stress maps and of the profiles, in mean radii.
 MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
+#: Contours of the stress maps, per largest stress.
+LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 
 
 @style.context()
@@ -85,7 +87,7 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
     largest = max(float(field.max()) for field, _ in maps)
     # the stress falls like 1/depth: equal steps of its square root show the lower part of the slab too
     norm = root_norm(largest)
-    levels = largest * np.array([0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7])
+    levels = largest * np.array(LEVELS)
     for index, (axes, (field, name)) in enumerate(zip(panels.ravel(), maps, strict=False)):
         image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=levels)
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))

@@ -1,10 +1,88 @@
-"""What the figures of this group show: by number of the paper's figure, or by file of a further one."""
+"""What the figures of this group show."""
 
-CAPTIONS: dict[int | str, str] = {
-    6: "Response at x = 0 per applied force. It is constant in the linear range, which friction extends.",
-    7: "Floor response at friction 0.2 and 1 for growing forces.",
-    8: "Contacts opened and sliding at friction 0.2.",
-    9: "Contacts opened and sliding at friction 1.",
-    12: "Floor response at one force for several coefficients of friction.",
-    16: "Large forces: a third peak at friction 0.2, and the loss of symmetry at friction 1.",
-}
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import xarray as xr
+
+from granular_response.paper.captions import WEIGHT, Caption, of_scene, values
+
+from .draw import AXIS_FRICTIONS, DYNAMIC_FORCES, LARGE_FORCES, PROFILE_FORCES, at_forces, at_frictions, contact_forces
+from .parameters import Parameters
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    response = datasets["response"]
+    frictions = response["friction"].values.tolist()
+    reached = response["response_at_centre"].notnull()
+    ends = {mu: float(response["force"].values[reached.sel(friction=mu)].max()) for mu in frictions}
+    early = [mu for mu in frictions if ends[mu] < max(parameters.forces)]
+    stops = "".join(f" At µ = {mu:g} it was followed up to {ends[mu]:g} {WEIGHT}." for mu in early)
+    found = {
+        "fig06_linear_range": Caption(
+            "Response at x = 0 of ordered slabs per force, against the force, for several coefficients of friction. "
+            "It is level in the linear range, which friction extends. Dotted: the forces at which the paper sees the "
+            f"first contact open, without friction, at µ = 0.2 and at µ = 1.{stops}",
+            "Curves against the force on a logarithmic axis, level at 0.071 for small forces; they leave it the later "
+            "the larger the friction, most of them downwards, that of µ = 1 upwards.",
+            of_scene(parameters.scene, force=parameters.forces, friction=frictions),
+        ),
+        "fig07_friction_response": Caption(
+            "Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2: one peak becomes two near "
+            "20 mg, as the paper says. (b) µ = 1: one peak, which sharpens; the symbols of each curve are at other "
+            "disks, as the curves nearly cover each other.",
+            "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
+            of_scene(
+                parameters.scene,
+                force=at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist(),
+                friction=[0.2, 1.0],
+            ),
+        ),
+        "fig12_friction_crossover": Caption(
+            "Floor response of ordered slabs at one force, for several coefficients of friction: two peaks at small "
+            "ones, one at large ones.",
+            "Curves from two high peaks without friction over a plateau to one peak.",
+            of_scene(
+                parameters.scene,
+                force=parameters.friction_axis.force,
+                friction=at_frictions(datasets["friction_axis"], AXIS_FRICTIONS),
+            ),
+        ),
+    }
+    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
+        states = datasets.get(f"states_mu_{friction:g}")
+        if states is not None:
+            shown = contact_forces(states)
+            found[stem] = Caption(
+                f"What the force does to the contacts of an ordered slab at µ = {friction:g}, the central third: "
+                "those that it opens (thick), that slide (middle) and that it leaves alone (thin). Arrow and circle: "
+                f"the force and its disk; the line below is the floor. {panels(shown)}",
+                f"Triangular networks at friction {friction:g}: open contacts below the force, sliding ones beside "
+                "them, more and deeper from panel to panel.",
+                of_scene(parameters.scene, force=shown, friction=friction),
+            )
+    if "large_forces" in datasets:
+        dynamic = datasets["large_forces"]
+        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values
+        left = at_forces(response.sel(friction=0.2), LARGE_FORCES)["force"].values
+        found["fig16_large_forces"] = Caption(
+            f"Floor response of ordered slabs under large forces. (a) µ = 0.2, F_ext = {values(left.tolist())} "
+            f"{WEIGHT}; the paper sees the crossover near 20 {WEIGHT} and a third peak at x = 0 from 40 {WEIGHT} on. "
+            f"(b) µ = 1, dynamics from rest to F_ext = {values(beyond.tolist())} {WEIGHT}; in the paper symmetry is "
+            f"lost beyond 91 {WEIGHT}, and at 95 {WEIGHT} the response is the mirror image of another.",
+            "(a) A plateau, then two peaks with a third one between them. (b) One symmetric bell and three lopsided "
+            "curves with a sharp negative dip to the left or the right of the middle.",
+            of_scene(
+                parameters.scene,
+                force=sorted({*left.tolist(), *beyond.tolist()}),
+                friction=[0.2, float(dynamic["friction"])],
+            ),
+        )
+    return found
+
+
+def panels(forces: Sequence[float]) -> str:
+    """The force of each panel."""
+    return ", ".join(f"({chr(ord('a') + k)}) {force:g}" for k, force in enumerate(forces)) + f" {WEIGHT}."

@@ -15,7 +15,7 @@ from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 
 #: Forces of the profiles (Fig. 7), of the pictures of contacts (Figs. 8 and 9) and of the large forces (Fig. 16).
-PROFILE_FORCES = {0.2: (4.0, 10.0, 20.0, 30.0, 50.0), 1.0: (4.0, 10.0, 20.0, 30.0, 50.0)}
+PROFILE_FRICTIONS, PROFILE_FORCES = (0.2, 1.0), (4.0, 10.0, 20.0, 30.0, 50.0)
 CONTACT_FORCES = (6.0, 12.0, 20.0)
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
 DYNAMIC_FORCES = (91.0, 93.0, 95.0, 100.0)
@@ -24,11 +24,6 @@ AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 
 #: Part of the slab that profiles show, to both sides of the load (radii): beyond it the walls matter.
 REACH = 40.0
-
-
-POSITION_LABEL = "$x/R$"
-RESPONSE_LABEL = r"floor response$\,/\,F_\mathrm{ext}$"
-FORCE_LABEL = r"$F_\mathrm{ext}/mg$"
 
 
 @style.context()
@@ -61,7 +56,7 @@ def _linear_range(response: xr.Dataset) -> Figure:
     panel.set_xscale("log")
     panel.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     panel.set_ylim(bottom=0.0)
-    panel.set(xlabel=FORCE_LABEL, ylabel=r"response at $x=0$, per $F_\mathrm{ext}$")
+    panel.set(xlabel=style.FORCE, ylabel=r"response at $x=0$, per $F_\mathrm{ext}$")
     panel.legend(title=r"$\mu$", loc="lower left")
     return figure
 
@@ -70,22 +65,21 @@ def _profiles(response: xr.Dataset) -> Figure:
     """Fig. 7."""
     figure, axes = style.figure(1, 2, width="double", height=2.5, sharey=True)
     extents = []
-    for panel, name, (friction, forces) in zip(axes[0], "ab", PROFILE_FORCES.items(), strict=True):
-        curves = _at_forces(response.sel(friction=friction), forces)
-        extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), FORCE_LABEL))
+    for panel, name, friction in zip(axes[0], "ab", PROFILE_FRICTIONS, strict=True):
+        curves = at_forces(response.sel(friction=friction), PROFILE_FORCES)
+        extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), style.FORCE))
         style.letter(panel, name, text=rf"$\mu={friction:g}$")
     _fit(axes[0, 0], *extents)
-    axes[0, 0].set_ylabel(RESPONSE_LABEL)
+    axes[0, 0].set_ylabel(style.RESPONSE)
     return figure
 
 
 def _friction_axis(axis: xr.Dataset) -> Figure:
     """Fig. 12."""
     figure, axes = style.figure(height=2.6)
-    stored = axis["friction"].values
-    curves = axis.sel(friction=[mu for mu in AXIS_FRICTIONS if mu in stored] or stored)
+    curves = axis.sel(friction=at_frictions(axis, AXIS_FRICTIONS))
     _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), r"$\mu$"))
-    axes[0, 0].set_ylabel(RESPONSE_LABEL)
+    axes[0, 0].set_ylabel(style.RESPONSE)
     return figure
 
 
@@ -93,15 +87,15 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
     figure, axes = style.figure(1, 2, width="double", height=2.7)
     left, right = axes[0]
-    curves = _at_forces(response.sel(friction=0.2), LARGE_FORCES)
-    _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), FORCE_LABEL))
+    curves = at_forces(response.sel(friction=0.2), LARGE_FORCES)
+    _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), style.FORCE))
     style.letter(left, "a", text=r"$\mu=0.2$")
-    curves = _at_forces(dynamic, DYNAMIC_FORCES)
-    _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), FORCE_LABEL, categorical=True))
+    curves = at_forces(dynamic, DYNAMIC_FORCES)
+    _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), style.FORCE, categorical=True))
     style.letter(right, "b", text=rf"$\mu={float(dynamic['friction']):g}$")
     right.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
     for panel in (left, right):
-        panel.set_ylabel(RESPONSE_LABEL)
+        panel.set_ylabel(style.RESPONSE)
     return figure
 
 
@@ -109,7 +103,19 @@ def _labels(values: xr.DataArray) -> list[str]:
     return [f"{value:g}" for value in values.values]
 
 
-def _at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
+def at_frictions(axis: xr.Dataset, wanted: Sequence[float]) -> list[float]:
+    """The wanted frictions as far as they are stored; all of them if none is."""
+    stored = axis["friction"].values.tolist()
+    return [mu for mu in wanted if mu in stored] or stored
+
+
+def contact_forces(states: xr.Dataset) -> list[float]:
+    """The forces of Figs. 8 and 9 as far as they are stored, else the first ones."""
+    stored = states["force"].values.tolist()
+    return [force for force in CONTACT_FORCES if force in stored] or stored[1:4]
+
+
+def at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
     """The given forces as far as they are stored; all of them if none is."""
     stored = dataset.dropna("force", subset=["response_at_centre"])
     shown = [force for force in forces if force in stored["force"].values]
@@ -129,7 +135,7 @@ def _plot_profiles(
         look: dict[str, Any] = style.marked_line(index, colour=None if categorical else colour)
         look["markersize"] = 2.6
         panel.plot(curves["x"], curves["floor_response"].isel({dimension: index}), label=label, **look)
-    panel.set(xlabel=POSITION_LABEL, xlim=(-REACH, REACH))
+    panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
     panel.legend(title=title, loc="upper right")
     shown = curves["floor_response"].where(abs(curves["x"]) <= REACH)
     return float(shown.min()), float(shown.max())
@@ -143,8 +149,7 @@ def _fit(panel: Axes, *extents: tuple[float, float]) -> None:
 
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
-    stored = states["force"].values
-    shown = [force for force in CONTACT_FORCES if force in stored] or stored[1:4].tolist()
+    stored, shown = states["force"].values, contact_forces(states)
     figure, axes = style.figure(len(shown), 1, height=2.15 * len(shown))
     rest = states.isel(state=0)
     handles: dict[str, Any] = {}

@@ -1,5 +1,23 @@
-"""What the figures of this group show: by number of the paper's figure, or by file of a further one."""
+"""What the figures of this group show."""
 
-CAPTIONS: dict[int | str, str] = {
-    "sensitivity": "How much each reading of the paper changes the floor response; the table below has the numbers.",
-}
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import xarray as xr
+
+from granular_response.paper.captions import Caption, of_scene
+
+from .parameters import Parameters
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    return {
+        "sensitivity": Caption(
+            "How much each reading of the paper changes the floor response, one changed at a time: largest difference "
+            "from the reference per applied force. The table of readings has the numbers.",
+            "Two marks for each reading on a logarithmic axis, from below 1e-6 to 3e-2.",
+            of_scene(parameters.scene, force=parameters.force, friction=parameters.friction),
+        )
+    }

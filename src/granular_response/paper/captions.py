@@ -1,0 +1,158 @@
+"""Captions of the pictures, complete as the paper's are, made from the parameters that their dataset was made with.
+
+A group's ``captions.py`` has ``captions(datasets, parameters) -> dict[str, Caption]``: one for each picture by file
+stem, from the datasets that it is drawn from and the validated parameters that their file stores. The draw stage writes
+them as ``captions.json`` beside the pictures (:func:`document`); the page reads that file.
+
+Texts are plain, as ``report.typeset`` sets them: ``F_ext``, ``k_T/k_N``, ``1e-13``, ``sqrt(R/g)``. They cite the panels
+by the letters that :func:`letters` gives: those of a figure of several pictures run on.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from granular_response.scene import Scene
+
+#: Name of the file beside the pictures.
+FILE = "captions.json"
+
+NUMBER_OF_FIGURES = 24
+
+#: Units of force and length in a text: mean disk weights, mean radii.
+WEIGHT, RADIUS = "m\u0304g", "R\u0304"
+
+#: First panel of a picture that goes on with a figure begun by another one; all others begin at (a).
+FIRST_LETTERS: Mapping[str, str] = {
+    "fig01b_slab_comparison": "c",
+    "fig05b_stiffness": "e",
+    "fig05c_depth_and_width": "h",
+    "fig16s_symmetry_breaking": "c",
+    "fig17_pile_profiles": "g",
+    "fig18_torque_reach": "g",
+    "fig24b_superposition_error": "e",
+}
+
+Value = float | int | str | Sequence[float]
+
+#: What a caption says of each parameter, in this order; {} is the value or the list of them.
+SAID: Mapping[str, str] = {
+    "force": f"F_ext = {{}} {WEIGHT}",
+    "angle": "at {}° to the horizontal",
+    "torque": f"torque {{}} {WEIGHT}{RADIUS} clockwise",
+    "distance": f"d = {{}} {RADIUS}",
+    "friction": "µ = {}",
+    "wall_friction": "µ_wall = {}",
+    "stiffness_ratio": "k_T/k_N = {}",
+    "normal_stiffness": f"k_N = {{}} {WEIGHT}/{RADIUS}",
+    "polydispersity": "δ = {}",
+    "realizations": "{} realizations",
+    "width": f"w = {{}} {RADIUS}",
+    "packing": "{}",
+}
+
+
+@dataclass(frozen=True)
+class Caption:
+    """What stands below a picture, and what stands for it where it cannot be seen.
+
+    ``parameters`` are keys of :data:`SAID` with a value or several; they end the caption as a sentence. Raises
+    ValueError for another key.
+    """
+
+    text: str
+    alternative: str
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if unknown := set(self.parameters) - set(SAID):
+            raise ValueError(f"parameters: unknown {', '.join(sorted(unknown))}, must be among {', '.join(SAID)}")
+
+    @property
+    def whole(self) -> str:
+        """The text with the parameters."""
+        given = dict(self.parameters)
+        if "friction" in given and given["friction"] == given.get("wall_friction"):
+            given["friction"] = f"µ_wall = {values(given.pop('wall_friction'))}"
+        said = [SAID[key].format(values(given[key])) for key in SAID if key in given]
+        return f"{self.text} {', '.join(said)}." if said else self.text
+
+
+def of_scene(scene: Scene, **others: Value | None) -> dict[str, Value]:
+    """The parameters that every caption has, of a group's base scene; ``others`` replace or add, None leaves out.
+
+    Without friction there is no k_T/k_N.
+    """
+    packing = scene.packing.model_dump()
+    found: dict[str, Value | None] = {
+        "friction": scene.contact.friction,
+        "wall_friction": scene.wall.friction,
+        "stiffness_ratio": scene.contact.stiffness_ratio,
+        "normal_stiffness": scene.contact.normal_stiffness,
+        "polydispersity": packing["polydispersity"],
+        "packing": rows(scene.packing.build().row_count.tolist(), kind=packing["kind"]),
+        **others,
+    }
+    frictions = found["friction"]
+    if frictions == 0.0 and "stiffness_ratio" not in others:
+        del found["stiffness_ratio"]
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def rows(counts: Sequence[int], *, kind: str = "slab") -> str:
+    """A lattice in words, of the number of disks in each row from the bottom."""
+    layers, disks = len(counts), [*dict.fromkeys(counts)]
+    if kind == "pile":
+        return f"pile of {layers} layers, {disks[0]} disks in the lowest"
+    each = "each" if len(disks) == 1 else "in turn"
+    return f"slab of {layers} layers, {values(disks)} disks {each}"
+
+
+def values(given: Value) -> str:
+    """One value or several in words: ``4, 10 and 20``; of many the number and the ends."""
+    if isinstance(given, str):
+        return given
+    many = [given] if isinstance(given, float | int) else list(given)
+    texts = [f"{value:g}" for value in many]
+    if len(texts) > 8:
+        return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
+    return " and ".join([", ".join(texts[:-1]), texts[-1]]) if len(texts) > 1 else texts[0]
+
+
+def letters(stem: str) -> Iterator[str]:
+    """The letters of the panels of a picture, in reading order."""
+    first = FIRST_LETTERS.get(stem, "a")
+    return (chr(code) for code in range(ord(first), ord("z") + 1))
+
+
+def number(stem: str) -> int | None:
+    """The paper's figure that a picture belongs to: NN of ``figNN...``."""
+    match = re.match(r"fig(\d+)", stem)
+    return int(match[1]) if match and 1 <= int(match[1]) <= NUMBER_OF_FIGURES else None
+
+
+def document(captions: Mapping[str, Caption], panels: Mapping[str, Sequence[str]]) -> dict[str, dict[str, Any]]:
+    """What ``captions.json`` holds: by file stem the paper's figure, the letters drawn, the texts, the parameters.
+
+    ``panels`` are the letters of each picture. Raises ValueError for a picture without a caption.
+    """
+    if missing := set(panels) - set(captions):
+        raise ValueError(f"no caption for {', '.join(sorted(missing))}")
+    return {
+        stem: {
+            "figure": number(stem),
+            "panels": list(panels[stem]),
+            "caption": captions[stem].whole,
+            "alternative": captions[stem].alternative,
+            "parameters": {key: _plain(value) for key, value in captions[stem].parameters.items()},
+        }
+        for stem in sorted(panels)
+    }
+
+
+def _plain(value: Value) -> Any:
+    return value if isinstance(value, str | float | int) else [float(one) for one in value]

@@ -1,0 +1,110 @@
+"""Captions: what they say of parameters, and letters that run on through a figure of several pictures."""
+
+import json
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from granular_response.paper import captions
+from granular_response.paper.captions import Caption, of_scene
+from granular_response.paper.groups import NAMES
+from granular_response.paper.pipeline import GroupError, drawing
+from granular_response.plot import style
+from granular_response.scene import PilePacking, Scene
+from granular_response.store import files as store
+
+ROOT = Path(__file__).parents[2]
+STORED = {group: ROOT / "figures" / group / captions.FILE for group in NAMES}
+
+
+def test_parameters_end_the_caption_in_the_papers_symbols():
+    scene = Scene().updated({"contact.friction": 0.2, "contact.stiffness_ratio": 0.8, "packing.polydispersity": 0.01})
+    given = of_scene(scene, force=[4.0, 10.0, 20.0], width=6.0, realizations=15)
+    assert Caption("Response.", "A curve.", given).whole == (
+        "Response. F_ext = 4, 10 and 20 m̄g, µ = 0.2, µ_wall = 0, k_T/k_N = 0.8, k_N = 3000 m̄g/R̄, δ = 0.01, "
+        "15 realizations, w = 6 R̄, slab of 15 layers, 61 and 60 disks in turn."
+    )
+
+
+def test_equal_frictions_are_said_once_and_no_friction_has_no_tangential_spring():
+    scene = Scene().updated({"contact.friction": 0.5, "wall.friction": 0.5})
+    assert "µ = µ_wall = 0.5, k_T/k_N" in Caption("", "", of_scene(scene)).whole
+    smooth = of_scene(Scene().updated({"contact.friction": 0.0}))
+    assert "stiffness_ratio" not in smooth and "µ = µ_wall = 0, k_N" in Caption("", "", smooth).whole
+    assert "stiffness_ratio" in of_scene(scene, friction=[0.0, 0.5])
+
+
+def test_other_packings_have_their_own_words():
+    pile = Scene(packing=PilePacking(layers=11), loads=())
+    assert "pile of 11 layers, 31 disks in the lowest" in Caption("", "", of_scene(pile)).whole
+    periodic = Scene().updated({"packing.sides": "periodic", "packing.disks_per_row": 60})
+    assert of_scene(periodic)["packing"] == "slab of 15 layers, 60 disks each"
+
+
+def test_of_many_values_the_ends_are_said():
+    assert captions.values(np.arange(1.0, 13.0)) == "1 to 12 (12 values)"
+    assert captions.values([0.5]) == "0.5" and captions.values((1.0, 2.0)) == "1 and 2"
+
+
+def test_an_unknown_parameter_is_refused():
+    with pytest.raises(ValueError, match="parameters: unknown frction, must be among force"):
+        Caption("", "", {"frction": 0.2})
+
+
+def test_a_picture_without_caption_is_refused():
+    with pytest.raises(ValueError, match="no caption for other"):
+        captions.document({"fig06_one": Caption("a", "b")}, {"fig06_one": [], "other": []})
+
+
+@pytest.mark.parametrize(
+    ("stem", "number"), [("fig06_one", 6), ("fig24b_two", 24), ("fig25_x", None), ("fig0_x", None), ("pile", None)]
+)
+def test_the_figure_of_a_picture(stem, number):
+    assert captions.number(stem) == number
+
+
+def test_letters_of_a_picture_are_those_that_are_drawn():
+    figure, axes = style.figure(1, 3)
+    for panel, name in zip(axes[0], captions.letters("fig05b_stiffness"), strict=False):
+        style.letter(panel, name, place="above" if name == "f" else "inside", text="text")
+    assert style.drawn_letters(figure) == ["e", "f", "g"]
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_stored_captions_cite_the_panels_that_are_drawn(group):
+    said = stored(group)
+    for stem, entry in said.items():
+        cited = set(re.findall(r"\(([a-z])\)", entry["caption"]))
+        for first, last in re.findall(r"\(([a-z])\) to \(([a-z])\)", entry["caption"]):
+            cited |= {chr(code) for code in range(ord(first), ord(last) + 1)}
+        assert cited >= set(entry["panels"]), f"{stem}: {set(entry['panels']) - cited} not cited"
+        assert entry["alternative"].strip() and entry["caption"].strip()
+
+
+def test_letters_of_stored_pictures_run_on_and_alternatives_differ():
+    panels, alternatives = defaultdict(list), []
+    for group in NAMES:
+        for stem, entry in stored(group).items():
+            alternatives.append(entry["alternative"])
+            if entry["figure"]:
+                panels[entry["figure"]].append((stem, entry["panels"]))
+    for pictures in panels.values():
+        found = [letter for _, letters in sorted(pictures) for letter in letters]
+        assert found == [chr(ord("a") + k) for k in range(len(found))], pictures
+    assert len(set(alternatives)) == len(alternatives)
+
+
+def stored(group):
+    if not STORED[group].exists():
+        pytest.skip(f"figures/{group}/captions.json is not there yet: dvc repro draw@{group}")
+    return json.loads(STORED[group].read_text())
+
+
+def test_captions_are_made_from_the_parameters_that_the_file_stores(tmp_path):
+    """Other parameters than those that the code has now are refused by name."""
+    store.write(tmp_path / "theory.nc", {}, {"group": "theory", "parameters": "stifness_ratio: 0.8"})
+    with pytest.raises(GroupError, match=r"was made with parameters that theory does not have now: .*stifness_ratio"):
+        drawing.draw("theory", tmp_path / "theory.nc", tmp_path)
