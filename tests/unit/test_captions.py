@@ -11,7 +11,7 @@ import pytest
 from granular_response.paper import captions
 from granular_response.paper.captions import Caption, of_scene
 from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import GroupError, drawing
+from granular_response.paper.pipeline import GroupError, drawing, group_member
 from granular_response.plot import style
 from granular_response.scene import PilePacking, Scene
 from granular_response.store import files as store
@@ -71,6 +71,11 @@ def test_letters_of_a_picture_are_those_that_are_drawn():
     for panel, name in zip(axes[0], captions.letters("fig05b_stiffness"), strict=False):
         style.letter(panel, name, place="above" if name == "f" else "inside", text="text")
     assert style.drawn_letters(figure) == ["e", "f", "g"]
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_every_group_has_captions(group):
+    assert callable(group_member(group, "captions", "captions"))
 
 
 @pytest.mark.parametrize("group", NAMES)

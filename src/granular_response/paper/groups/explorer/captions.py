@@ -1,7 +1,23 @@
-"""What the figures of this group show: by number of the paper's figure, or by file of a further one."""
+"""What the figures of this group show."""
 
-CAPTIONS: dict[int | str, str] = {
-    "explorer": "Not in the paper: response at x = 0 of the slabs of the explorer that no other figure shows. Ordered "
-    "slabs with a small k_T/k_N, and single disordered slabs, smoothed with w = 3 mean radii, up to the last force "
-    "before they collapse.",
-}
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import xarray as xr
+
+from granular_response.paper.captions import Caption
+
+from .parameters import Parameters
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    return {
+        "explorer": Caption(
+            "Not in the paper: response at x = 0 of the slabs of the explorer that no other figure shows. (a) Ordered "
+            "slabs with a small k_T/k_N, and (b) single disordered slabs, smoothed with w = 3 R, up to the last force "
+            "before they collapse.",
+            "Two plots of the response at x = 0 against the force, a curve for each slab.",
+        )
+    }
