@@ -21,7 +21,8 @@ export DVC_NO_ANALYTICS := 1
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure survey test fuzz coverage lint docs package matrix benchmark arena lock clean
+.PHONY: help setup reproduce quote figure survey test fuzz coverage lint docs notebooks archive restore package matrix
+.PHONY: benchmark arena lock clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -77,6 +78,15 @@ lint: setup ## Run the linters and the type checker alone
 docs: setup ## Build the documentation site into docs/_build/html, running every example of the gallery
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
 
+archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
+	"$(BIN)/granular-response" archive
+
+restore: setup ## Take the datasets from an archive in place of computing them: make restore ARCHIVE=path
+	@test -n "$(ARCHIVE)" || { echo "make restore ARCHIVE=path" >&2; exit 1; }
+	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
+	"$(BIN)/granular-response" restore "$(ARCHIVE)"
+	"$(BIN)/dvc" commit simulate < /dev/null
+
 package: setup ## Build sdist and wheel, and try the wheel in a fresh environment
 	.ci/package "$(BIN)/python" "$(PYTHON)"
 
@@ -92,7 +102,7 @@ arena: setup ## Time a step beside other codes that are installed; says how to i
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows
 	$(PYTHON) -m venv --clear "$(VENV)-lock"
-	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[dask,docs,export,pipeline,test]"
+	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[archive,dask,docs,export,pipeline,test]"
 	{ sed -n '/^#/p' requirements.lock; \
 	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock

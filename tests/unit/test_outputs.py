@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 from granular_response.cli import main as cli
+from granular_response.paper.archive import crate
 from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response.store.files import StoreError
@@ -32,6 +33,7 @@ COMMANDS = {
     "measure": (["measure", "theory", "--data", "theory/fig01_predictions.png"], ["theory/fig01_predictions.png"]),
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
+    "archive": (["archive"], ["params.yaml", "LICENSE"]),
     "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),
     "report": (["report", "--root", ".", "--notes", "notes.md"], ["notes.md", "data/torque.nc", "figures/claims.json"]),
 }
@@ -57,7 +59,10 @@ def inputs(tmp_path_factory) -> Path:
     store.write(folder / "data" / "torque.nc", xr.Dataset())
     for path in ("figures/claims.json", "README.md", "notes.md"):
         (folder / path).write_text("{}")
-    shutil.copy(ROOT / "params.yaml", folder)
+    for name in set(crate.ALSO) - {"README.md"}:
+        shutil.copy(ROOT / name, folder)
+    for name in ("dvc.yaml", "dvc.lock"):
+        (folder / name).write_text("stages: {}\n")
     assert call("run", "scene.yaml", "-o", "result.nc", folder=folder).returncode == 0
     shutil.copy(folder / "result.nc", folder / "result.pdf")
     assert call("simulate", "theory", "--workers", 1, "-o", "theory/theory.nc", folder=folder).returncode == 0

@@ -442,6 +442,49 @@ def report(
         reporting.renew_notes(notes, root)
 
 
+@app.command(
+    epilog=_examples(
+        "granular-response archive",
+        "granular-response archive -o slabs.zip",
+    )
+)
+def archive(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Archive to make (RO-Crate, zip).")] = Path(
+        f"granular-response-{__version__}.zip"
+    ),
+    root: Annotated[Path, typer.Option(help="Folder with dvc.lock.")] = Path("."),
+) -> None:
+    """Archive the reproduction: datasets, figures, claims, sources and how each was made.
+
+    Only what is as dvc.lock says goes in, so everything must be up to date.
+    """
+    from ..paper.archive import crate
+
+    _loaded()
+
+    names = crate.write(output, root)
+    typer.echo(f"{output}: {len(names)} files, {output.stat().st_size / 1e6:.1f} MB")
+
+
+@app.command(epilog=_examples("granular-response restore granular-response-0.1.0.zip"))
+def restore(
+    archive: Annotated[Path, typer.Argument(help="An archive of this project.", show_default=False)],
+    root: Annotated[Path, typer.Option(help="Folder with dvc.lock.")] = Path("."),
+) -> None:
+    """Take the datasets out of an archive, in place of computing them.
+
+    They must be those of dvc.lock; one that is there already stays.
+    """
+    from ..paper.archive import restore as restoring
+
+    _loaded()
+
+    restored = restoring.restore(archive, root)
+    for path in restored:
+        typer.echo(str(root / path))
+    typer.echo(f"{archive}: {len(restored)} datasets restored, those there already are the same")
+
+
 @app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))
 def cite(
     bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
@@ -459,6 +502,7 @@ def print_version() -> None:
 def _expected_errors() -> tuple[type[BaseException], ...]:
     """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
     names = {
+        "paper.archive": ["ArchiveError"],
         "paper.claims.table": ["ClaimsError"],
         "paper.pipeline": ["GroupError"],
         "paper.report": ["ReportError"],
