@@ -126,7 +126,7 @@ def paths_of(data: object, place: str = "") -> set[str]:
 def test_the_reference_has_every_key_of_every_kind_of_scene():
     known = {key.path for key in scene_reference.every()}
     packings = ({"kind": "slab"}, {"kind": "pile"}, {"kind": "file", "path": "disks.csv", "width": 9.0})
-    loads = [{"disk": {"row": "top"}, "force": [0.0, -1.0]}, {"disk": 3, "force": [0.0, -1.0]}]
+    loads = [{"disk": {"row": "top"}, "force": [0.0, -1.0]}, {"disk": 3, "displacement": [None, -0.01]}]
     scenes = [Scene.from_dict({"packing": packing, "loads": loads}) for packing in packings]
     assert set().union(*(paths_of(scene.to_dict()) for scene in scenes)) == known
 
@@ -138,8 +138,9 @@ def test_the_reference_says_what_the_scene_allows():
     assert str(caught.value).endswith(f"must be {keys['contact.friction'].allowed}")
     assert keys["wall.normal_stiffness"].allowed.endswith(", or null")
     assert Scene.from_text(f"contact: {{normal_stiffness: {keys['contact.normal_stiffness'].default}}}") == Scene()
-    assert not keys["loads[].force"].default and not keys["packing.kind"].default
+    assert not keys["loads[].disk"].default and not keys["packing.kind"].default
     assert keys["loads[].force"].unit == "disk weight"
+    assert keys["loads[].displacement"].unit == "mean radius"
 
 
 def test_units_are_given_for_keys_that_exist():

@@ -32,7 +32,7 @@ MALFORMED = {
         f"contact.fricton = 0.2: unknown key, did you mean friction? (allowed: {CONTACT_KEYS})"
     ),
     "loads: [{disk: 0, force: [0, -1], torqe: 1}]": (
-        "loads[0].torqe = 1: unknown key, did you mean torque? (allowed: disk, force, torque)"
+        "loads[0].torqe = 1: unknown key, did you mean torque? (allowed: disk, force, displacement, torque)"
     ),
     "preparation: {gravty: slow}": (
         "preparation.gravty = 'slow': unknown key, did you mean gravity? (allowed: gravity, ramp_time)"
@@ -83,7 +83,7 @@ MALFORMED = {
     "loads: {disk: 0, force: [0, -1]}": (
         "loads = {'disk': 0, 'force': [0, -1]}: must be a list of loads, [] for gravity alone"
     ),
-    "loads: [{disk: 0}]": "loads[0].force: missing, must be given",
+    "loads: [{disk: 0}]": "loads[0].force = null: must be given, or displacement",
     "loads: [{disk: 0, force: -15}]": "loads[0].force = -15: must be two finite numbers [x, z]",
     "loads: [{disk: 0, force: [0, -1, 0]}]": "loads[0].force = [0, -1, 0]: must be two finite numbers [x, z]",
     "loads: [{disk: 0, force: [0, .nan]}]": "loads[0].force = [0, nan]: must be two finite numbers [x, z]",

@@ -50,12 +50,14 @@ slabs = st.fixed_dictionaries(
 piles = st.fixed_dictionaries({"kind": st.just("pile")}, optional={**disorder, "layers": st.integers(10, 20)})
 files = st.fixed_dictionaries({"kind": st.just("file"), "path": names, "width": st.floats(0.0, 1e9, exclude_min=True)})
 stiffness = st.floats(0.0, 5e11, exclude_min=True)
+disks = {"disk": st.just("top-centre") | st.integers(0, 100)}
 loads = st.lists(
     st.fixed_dictionaries(
-        {
-            "disk": st.just("top-centre") | st.integers(0, 100),
-            "force": st.lists(finite, min_size=2, max_size=2),
-        },
+        {**disks, "force": st.lists(finite, min_size=2, max_size=2)},
+        optional={"torque": finite},
+    )
+    | st.fixed_dictionaries(
+        {**disks, "displacement": st.tuples(finite, st.none() | finite).map(list)},
         optional={"torque": finite},
     ),
     max_size=3,

@@ -88,6 +88,17 @@ class Result:
         return self._data["floor_response"]
 
     @property
+    def reaction(self) -> xr.DataArray:
+        """Force x, z, in mean disk weights, with which each load holds its disk at its displacement.
+
+        Dimensions ``load_point`` and ``axis`` ("x", "z"), before them one for the load where there are several; 0 along
+        directions that are free. Raises ValueError for a scene in which no load displaces a disk.
+        """
+        if "reaction" not in self._data:
+            raise ValueError("reaction: there is none, no load of this scene has a displacement")
+        return self._data["reaction"]
+
+    @property
     def contacts(self) -> xr.Dataset:
         """Every candidate contact in every state: between disks (``contact_...``) and at walls (``wall_...``).
 

@@ -39,6 +39,7 @@ UNITS = {
     "friction": "",
     "damping_ratio": "",
     "force": "disk weight",
+    "displacement": "mean radius",
     "torque": "disk weight × mean radius",
     "time_step": "sqrt(R/g)",
     "ramp_time": "sqrt(R/g)",

@@ -100,6 +100,9 @@ class Shown:
         if not self.index:
             return []
         applied = float(self.values("state_load_factor")) * self.values("applied_load")
+        if "reaction" in self.data:
+            reaction = self.data["reaction"]
+            applied[:, :2] += (reaction.isel(load=self.index - 1) if "load" in reaction.dims else reaction).values
         return [
             (int(disk), load[:2], float(load[2]))
             for disk, load in zip(self.values("loaded_disk"), applied, strict=True)

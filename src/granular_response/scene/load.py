@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from .base import Description, Finite, allowed
 from .errors import Problem, SceneError, show, show_key
@@ -39,18 +39,58 @@ Selector = Annotated[
     allowed("must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"),
 ]
 Vector = Annotated[tuple[Finite, Finite], allowed("must be two finite numbers [x, z]")]
+Displacement = Annotated[
+    tuple[Finite | None, Finite | None],
+    allowed("must be two finite numbers [x, z], null for a direction that is left free"),
+]
 
 
 class Load(Description):
-    """A force and a torque on one disk, in mean disk weights (times the mean radius)."""
+    """A force and a torque on one disk, in mean disk weights (times the mean radius), or a displacement of it.
+
+    A disk that is displaced is held where the displacement says, and the force that this takes is part of the answer.
+    A direction that is left free has the force, as rotation has the torque.
+    """
 
     disk: Selector = Field(
         description="The loaded disk: top-centre (the topmost one nearest the middle, chosen when the "
         "packing is at rest), the index of a disk, or {row: top | bottom | number, offset: "
         "places from the middle of the row}."
     )
-    force: Vector = Field(description="Force x, z in mean disk weights; z points up.")
+    force: Vector = Field(
+        default=(0.0, 0.0),
+        description="Force x, z in mean disk weights; z points up. It must be given unless displacement is, and be 0 "
+        "where that holds the disk.",
+    )
+    displacement: Displacement | None = Field(
+        default=None,
+        description="Displacement x, z from the rest state, in mean radii, by which the disk is moved and held in "
+        "place of a force: the reaction is the answer. null leaves a direction free.",
+    )
     torque: Finite = Field(default=0.0, description="Torque in mean disk weights times mean radius, counter-clockwise.")
+
+    @model_validator(mode="after")
+    def _check_displacement(self) -> Load:
+        if self.displacement is None:
+            if "force" not in self.model_fields_set:
+                raise Problem("must be given, or displacement", key=("force",), value=None)
+            return self
+        if self.displacement == (None, None):
+            raise Problem("must hold a direction at least", key=("displacement",), value=list(self.displacement))
+        for name, force, held in zip("xz", self.force, self.displacement, strict=True):
+            if held is not None and force != 0.0:
+                rule = f"must be 0 along {name}, where displacement holds the disk"
+                raise Problem(rule, key=("force",), value=list(self.force))
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_null(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """A load without a displacement is written without the key, as ever."""
+        return {key: value for key, value in whole(self).items() if key != "displacement" or value is not None}
+
+    def holds(self, axis: int) -> bool:
+        """Whether the disk is held along x (0) or z (1)."""
+        return self.displacement is not None and self.displacement[axis] is not None
 
 
 def resolve_disk(

@@ -8,6 +8,7 @@ of the kinetic energy that decides. A packing of which a part is in flight is no
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -91,7 +92,9 @@ class Dynamics:
         b, c = ([*self.history[1:], None, None])[:2]
         self.rows = Memory(self.history[0], b, c, force=rows[-1], seen=aligned_zeros(n * freedoms))
         self.rim = aligned_zeros(n) if problem.rotations else None
+        self._held = problem.held.unknowns(n)
         self._inverse_mass = aligned(problem.inverse_mass)
+        self._inverse_mass[self._held] = 0.0  # no force accelerates what is held
         self._list(state)
         self._fill_history()
 
@@ -135,10 +138,30 @@ class Dynamics:
     def set_ramps(self, gravity: Ramp = (1.0, 1.0, 0.0), load: Ramp = (0.0, 0.0, 0.0)) -> None:
         """Start new linear ramps ``(from, to, duration)`` now; the clock restarts at zero."""
         self.gravity, self.load, self.time = gravity, load, 0.0
+        start, end, duration = load
+        self._move_held((end - start) / duration if duration > 0.0 else 0.0)
         self._fill_history()
+
+    def _move_held(self, rate: float) -> None:
+        """Put held coordinates where the load factor has them now, and let them go on as it grows by ``rate``."""
+        held = self.problem.held
+        if len(held):
+            self.q[self._held] = held.shift(self.candidates.reference, self._now(self.load))
+            self.v[self._held] = rate * held.travel
 
     def advance(self, steps: int) -> None:
         """Advance by ``steps`` time steps, listing candidates again whenever disks have moved too far."""
+        if self._held.size and self.v[self._held].any():
+            ramp = math.ceil((self.load[2] - self.time) / self.time_step - 1e-6)
+            self._advance(min(ramp, steps))
+            if ramp > steps:
+                return
+            self.time = max(self.time, self.load[2])  # a rounding short of it
+            self._move_held(0.0)
+            steps -= ramp
+        self._advance(steps)
+
+    def _advance(self, steps: int) -> None:
         left = steps
         listed = False
         while left:
@@ -253,7 +276,7 @@ class Dynamics:
 
     def kinetic_energy(self, *, bearing_only: bool = False, count: NDArray[np.int64] | None = None) -> float:
         """Kinetic energy per disk; optionally of the disks with two contacts or more (``count``, if it is known)."""
-        energies = 0.5 * self.v**2 / self._inverse_mass
+        energies = 0.5 * self.v**2 / self.problem.inverse_mass
         if bearing_only:
             count = self.contact_count() if count is None else count
             energies = energies.reshape(self.problem.freedoms, -1)[:, count >= 2]
@@ -271,7 +294,7 @@ class Dynamics:
 
     def rolling_energy(self, rollers: NDArray[np.bool_]) -> float:
         """Kinetic energy, per disk of the packing, of the motion of ``rollers`` along the floor and of their spin."""
-        energies = (0.5 * self.v**2 / self._inverse_mass).reshape(self.problem.freedoms, -1)
+        energies = (0.5 * self.v**2 / self.problem.inverse_mass).reshape(self.problem.freedoms, -1)
         return float(energies[0::2, rollers].sum()) / self.problem.n
 
     def in_flight(self, touching: NDArray[np.bool_]) -> bool:
@@ -283,6 +306,7 @@ class Dynamics:
         parts, part = connected_components(graph, directed=False)
         held = np.zeros(parts, bool)
         held[part[c.wall_disk[wall & (problem.wall_friction | (c.wall == FLOOR))]]] = True
+        held[part[problem.held.disk[problem.held.axis == 1]]] = True
         if held.all():
             return False
         force = -self._now(self.gravity) * problem.weight

@@ -84,7 +84,8 @@ class _Descent:
         self.known = self.system.start(start)
         self.damping = 1e-3 * self.stiffness
         self.iterations = self.escapes = 0
-        self._move(self.known.q.copy(), self.system.trial(self.known, self.known.q))
+        q = self.system.displaced(self.known.q, load_factor).copy()
+        self._move(q, self.system.trial(self.known, q))
 
     def _move(self, q: FloatArray, trial: Trial) -> None:
         self.q, self.trial = q, trial

@@ -38,8 +38,10 @@ def residual(system: StaticSystem, trial: Trial, external: FloatArray) -> FloatA
 
 
 def external_force(problem: Problem, load_factor: float) -> FloatArray:
-    """(dof,) gravity and the scene's loads times ``load_factor``."""
-    return problem.weight_vector() + load_factor * problem.load_vector()
+    """(dof,) gravity and the scene's loads times ``load_factor``; nothing on what is held."""
+    force = problem.weight_vector() + load_factor * problem.load_vector()
+    force[problem.held.unknowns(problem.n)] = 0.0
+    return force
 
 
 def attainable(system: StaticSystem, q: FloatArray) -> float:
@@ -115,11 +117,10 @@ def newton(
     return trial, NewtonReport(size < tolerance, iterations, size)
 
 
-def certify(problem: Problem, state: State, *, modes: int | None = None) -> Certificate:
-    """Measure a state's certificate from its own positions and contact forces.
+def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
+    """(n, 2) force and (n,) torque on each disk: contacts, weight and loads, but not what holds a displaced disk.
 
-    ``modes`` : unstable directions of its tangent, where they have been counted. The residual is summed anew from the
-    state's contact forces, not taken from the solver.
+    Summed anew from the state's contact forces, not taken from the solver.
     """
     n, radius = problem.n, problem.packing.radius
     force = np.zeros((n, 2))
@@ -137,6 +138,27 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         (state.walls.first, state.walls.tangential_force),
     ):
         np.add.at(torque, index, -radius[index] * tangential)
+    return force, torque
+
+
+def reaction(problem: Problem, state: State) -> FloatArray:
+    """(l, 2) force with which each load holds its disk at its displacement; 0 along directions that are free."""
+    force, _ = unbalanced(problem, state)
+    held = problem.held
+    result = np.zeros((len(problem.load_disk), 2))
+    result[held.load, held.axis] = -force[held.disk, held.axis]
+    return result
+
+
+def certify(problem: Problem, state: State, *, modes: int | None = None) -> Certificate:
+    """Measure a state's certificate from its own positions and contact forces.
+
+    ``modes`` : unstable directions of its tangent, where they have been counted. A disk that is not where a load holds
+    it counts as out of balance by what one contact would feel.
+    """
+    n, held = problem.n, problem.held
+    force, torque = unbalanced(problem, state)
+    force[held.disk, held.axis] = problem.stiffness * held.shift(state.position, state.load_factor)
     normal = np.concatenate([state.pairs.normal_force, state.walls.normal_force])
     excess = np.concatenate(
         [

@@ -63,7 +63,7 @@ def solve_increment(
         return None
     here = system.trial(known, known.q)
     limits = (pair_mu * here.pair_normal, wall_mu * here.wall_normal)
-    q = known.q
+    q = system.held_as_in(guess, known.q)
     before_rounds = work.factorisations
     for done in range(1, ROUNDS + 1):
         if work.factorisations - before_rounds > MOST_WORK:

@@ -121,9 +121,7 @@ class _Path:
         self.record: PathRecord = PathRecord() if record is None else record
         self.progress = progress
         self.dynamics = dynamics
-        applied = np.hypot(problem.load[:, 0], problem.load[:, 1]).sum()
-        #: mean disk weights of one unit of the load factor; a pure torque counts as a force at one radius
-        self.unit = max(float(applied), float(np.abs(problem.load[:, 2]).sum()), 1e-300)
+        self.unit = problem.load_size
         #: part of the load that an increment may have; nothing is added to what the caller asks for
         self.part = LARGE_LOAD if longest_step is None else 0.0
         self.least_longest = (LONGEST_STEP * problem.n**0.5 if longest_step is None else longest_step) / self.unit
@@ -191,6 +189,7 @@ class _Path:
             new = target
         increment = new - self.factor
         guess = self.known.q if self.rate is None else self.known.q + increment * self.rate
+        guess = self.system.displaced(guess, new)
         rounds = self.record.work.rounds
         found = solve_increment(self.system, self.known, external_force(self.problem, new), guess, self.record.work)
         if found is None:
@@ -254,7 +253,8 @@ class _Path:
         while abs(unstable - self.factor) > CROSSING / self.unit:
             middle = 0.5 * (self.factor + unstable)
             external = external_force(self.problem, middle)
-            found = solve_increment(self.system, self.known, external, self.known.q, self.record.work)
+            guess = self.system.displaced(self.known.q, middle)
+            found = solve_increment(self.system, self.known, external, guess, self.record.work)
             if found is None:
                 break
             before = (self.factor, self.known, self.trial)

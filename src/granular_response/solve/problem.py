@@ -17,6 +17,7 @@ from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, resolve_disk
 from ..state import Contacts, FloatArray, State
+from .held import NOTHING, Held
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
@@ -61,8 +62,8 @@ class Candidates:
 class Problem:
     """A scene with its packing, in the form the kernels take.
 
-    ``load`` is (l, 3): force components and torque on the disks ``load_disk`` (l,), both empty for gravity
-    alone and until :meth:`with_loads` has chosen the loaded disks on the rest state.
+    ``load`` is (l, 3): force components and torque on the disks ``load_disk`` (l,), and ``held`` the coordinates that
+    loads hold; all empty for gravity alone and until :meth:`with_loads` has chosen the loaded disks on the rest state.
     """
 
     scene: Scene
@@ -72,6 +73,7 @@ class Problem:
     rule: int
     load_disk: NDArray[np.int64]
     load: FloatArray
+    held: Held = NOTHING
 
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
@@ -146,16 +148,25 @@ class Problem:
     def with_loads(self, position: FloatArray) -> Problem:
         """The same problem with the scene's loads on disks chosen at the rest ``position`` (n, 2)."""
         loads = self.scene.loads
-        disk = [resolve_disk(load.disk, self.packing, position) for load in loads]
+        disk = np.array([resolve_disk(load.disk, self.packing, position) for load in loads], np.int64)
         return replace(
             self,
-            load_disk=np.array(disk, np.int64),
+            load_disk=disk,
             load=np.array([[*load.force, load.torque] for load in loads], float).reshape(-1, 3),
+            held=Held.by(loads, disk, position),
         )
 
     def without_friction(self) -> Problem:
         """The same packing with smooth disks and walls."""
         return replace(self, pair_law=self.pair_law.without_friction(), wall_law=self.wall_law.without_friction())
+
+    @property
+    def load_size(self) -> float:
+        """Mean disk weights of one unit of the load factor: a torque counts as a force at one radius, a displacement
+        as what it takes to press it into a contact."""
+        applied = np.hypot(self.load[:, 0], self.load[:, 1]).sum()
+        size = max(float(applied), float(np.abs(self.load[:, 2]).sum()), 1e-300)
+        return size + self.stiffness * float(np.abs(self.held.travel).sum())
 
     def load_vector(self) -> FloatArray:
         """(dof,) generalised load at load factor 1."""

@@ -10,11 +10,11 @@ import numpy as np
 
 from ..contact import Linear
 from ..scene import Scene, SceneError
-from ..state import Crossing, State
+from ..state import Crossing, FloatArray, State
 from .choice import Choice, finishes_statically, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
-from .equilibrium import EquilibriumError, certify, check_overlaps, finish
+from .equilibrium import EquilibriumError, certify, check_overlaps, finish, reaction
 from .nested import rest_start
 from .path import follow
 from .problem import Problem
@@ -25,6 +25,9 @@ from .timestep import resolve_time_step
 
 #: Load that the contacts of one disk bear at most without an overlap of a radius, over the stiffness of one.
 MOST_BORNE = 4.0
+
+#: Reaction (mean disk weights) up to which a displaced disk counts as free of force.
+BALANCED = 1e-8
 
 #: Called as ``progress(done, total, what)``.
 Progress = Callable[[float, float, str], None]
@@ -53,7 +56,7 @@ class Solution:
     @property
     def rounding(self) -> float:
         """Largest force out of balance over the smallest load: the part of a response that is no more than rounding."""
-        loads = [abs(factor) * self.total_force for factor in self.load_factors if factor]
+        loads = [self.applied_force(state) for state in self.loaded if state.load_factor]
         states = (self.rest, *self.loaded)
         return max(s.certificate.force_residual for s in states) / min(loads) if loads and min(loads) > 0.0 else 0.0
 
@@ -70,8 +73,20 @@ class Solution:
 
     @property
     def total_force(self) -> float:
-        """Sum of the magnitudes of the applied forces at load factor 1."""
+        """Sum of the magnitudes of the forces of the loads at load factor 1, reactions left out."""
         return float(np.hypot(self.problem.load[:, 0], self.problem.load[:, 1]).sum())
+
+    def reaction(self, state: State) -> FloatArray:
+        """(l, 2) force with which each load holds its disk, 0 along directions that are free (mean disk weights)."""
+        return reaction(self.problem, state)
+
+    def applied_force(self, state: State) -> float:
+        """Sum of the magnitudes of the forces of the loads in a state, with reactions that are more than rounding."""
+        if len(self.problem.held) == 0:
+            return abs(state.load_factor) * self.total_force
+        forces = state.load_factor * self.problem.load[:, :2] + self.reaction(state)
+        size = float(np.hypot(forces[:, 0], forces[:, 1]).sum())
+        return size if size > BALANCED else 0.0
 
 
 def solve_scene(

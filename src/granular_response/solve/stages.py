@@ -112,7 +112,7 @@ def _dynamic(problem: Problem, start: State, factor: float, ramp_time: float, lo
 
 def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]:
     """As far towards ``target`` as plain Newton iterations go, and whether that is all the way."""
-    unit = max(float(np.hypot(problem.load[:, 0], problem.load[:, 1]).sum()), 1e-300)
+    unit = problem.load_size
     factor = state.load_factor
     sense = 1.0 if target > factor else -1.0
     step = FIRST_STEP / unit
@@ -122,7 +122,7 @@ def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]
     rate: FloatArray | None = None
     while factor != target:
         new = target if abs(target - factor) < 1.5 * step else factor + sense * step
-        guess = known.q if rate is None else known.q + (new - factor) * rate
+        guess = system.displaced(known.q if rate is None else known.q + (new - factor) * rate, new)
         found, report = newton(system, known, external_force(problem, new), guess, maximum_iterations=ITERATIONS)
         moved = float(np.abs(found.configuration.q[: 2 * problem.n] - known.q[: 2 * problem.n]).max())
         if not report.converged or moved > LISTED_AGAIN:

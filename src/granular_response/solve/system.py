@@ -42,7 +42,7 @@ class Trial:
     """Forces at a trial configuration reached in one increment from another."""
 
     configuration: Configuration
-    contact_force: FloatArray  #: (dof,) sum of contact forces and torques on each disk
+    contact_force: FloatArray  #: (dof,) sum of contact forces and torques on each disk, 0 where it is held
     pair_normal: FloatArray
     pair_tangential: FloatArray
     pair_status: np.ndarray
@@ -89,7 +89,7 @@ class StaticSystem:
         self._walls = statics.Walls(
             self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law
         )
-        self.weight = problem.weight_vector()
+        self.held = problem.held.unknowns(problem.n)
         self._pattern()
         self._kept: tuple[np.ndarray, Factor] | None = None
 
@@ -113,8 +113,24 @@ class StaticSystem:
         )
         return replace(self.trial(bare, q).configuration, pair_spring=bare.pair_spring, wall_spring=bare.wall_spring)
 
+    def displaced(self, q: FloatArray, load_factor: float) -> FloatArray:
+        """``q`` (dof,) with held coordinates where the load factor has them; ``q`` itself where nothing is held."""
+        if self.held.size == 0:
+            return q
+        q = q.copy()
+        q[self.held] = self.problem.held.shift(self.reference, load_factor)
+        return q
+
+    def held_as_in(self, other: FloatArray, q: FloatArray) -> FloatArray:
+        """``q`` (dof,) with held coordinates as in ``other``; ``q`` itself where nothing is held."""
+        if self.held.size == 0:
+            return q
+        q = q.copy()
+        q[self.held] = other[self.held]
+        return q
+
     def trial(self, known: Configuration, q: FloatArray, limits: tuple[FloatArray, FloatArray] | None = None) -> Trial:
-        """Forces at ``q``, one increment after ``known``.
+        """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
         ``limits`` fixes the Coulomb limits of pairs (m,) and walls (w,) in place of ``mu f_n``.
         """
@@ -135,6 +151,7 @@ class StaticSystem:
                 q, known.q, problem.n, problem.packing.radius, contacts, contacts.shape,
                 overlap, spring if friction else None, limit if friction else None, response, force,
             )  # fmt: skip
+        force[self.held] = 0.0
         return Trial(
             configuration=Configuration(q, pair.spring, wall.spring, pair.overlap, wall.overlap),
             contact_force=force,
@@ -185,11 +202,16 @@ class StaticSystem:
         offset = np.arange(self._indptr[-1]) - np.repeat(self._indptr[:-1], lengths)
         self._indices = block_rows[np.repeat(starts, lengths) + offset]
         self._diagonal = (base[:n, None] + np.arange(d) * (stride[:n, None] + 1)).ravel()
+        if self.held.size:
+            held = place_of[self.held % n] * d + self.held // n
+            columns = [np.arange(self._indptr[k], self._indptr[k + 1]) for k in held]
+            self._held_entries = np.concatenate([*columns, np.flatnonzero(np.isin(self._indices, held))])
+            self._held_diagonal = self._diagonal[held]
         self._data = np.zeros(self._indptr[-1])
         self._storage = chosen.storage(self._indptr, self._indices)
 
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
-        """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`).
+        """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
 
         ``shift`` (scalar or (dof,)) is added to the diagonal.
         """
@@ -199,6 +221,9 @@ class StaticSystem:
             self.wall_disk, trial.wall_tangent, self._wall_base, self._wall_stride,
         )  # fmt: skip
         data = self._data.copy()
+        if self.held.size:
+            data[self._held_entries] = 0.0
+            data[self._held_diagonal] = self.problem.stiffness
         data[self._diagonal] += shift
         return sp.csc_array((data, self._indices, self._indptr), shape=(self.dof, self.dof))
 
@@ -219,11 +244,12 @@ class StaticSystem:
     def deinterleave(self, vector: FloatArray) -> FloatArray:
         """Disk by disk, in the order of the tangent, to ``[x | z | angle]``.
 
-        Nothing holds a packing with periodic sides on a smooth floor along x: as a whole it stays where it is.
+        Nothing holds a packing with periodic sides on a smooth floor along x, unless a load does: as a whole it stays
+        where it is.
         """
         result = np.empty((self.problem.n, self.problem.freedoms))
         result[self._order] = vector.reshape(-1, self.problem.freedoms)
-        if self.problem.packing.periodic and not self.problem.wall_friction:
+        if self.problem.packing.periodic and not self.problem.wall_friction and 0 not in self.problem.held.axis:
             result[:, 0] -= result[:, 0].mean()
         return result.T.ravel()
 

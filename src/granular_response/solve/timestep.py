@@ -21,6 +21,7 @@ or blow up between 1.05 and 1.7 times the limit.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -28,7 +29,7 @@ import numpy as np
 from ..contact import Law
 from ..kernels.integrators import INTEGRATORS, amplification
 from ..scene.protocol import PAPERS_TIME_STEP
-from .problem import Problem
+from .problem import Problem, static_contacts
 
 #: Part of the limit that ``time_step: auto`` takes.
 SAFETY = 0.6
@@ -77,10 +78,19 @@ def _constants(law: Law, force: float) -> Constants:
 
 
 def largest_force(problem: Problem) -> float:
-    """Estimate of the largest normal force of a contact: twice the weight of a column, for its fall, and the loads."""
+    """Estimate of the largest normal force of a contact: twice the weight of a column, for its fall, and the loads.
+
+    A displacement counts as if one contact took all of it.
+    """
     columns = max(0.5 * problem.packing.width, 1.0)
     loads = problem.scene.loads
-    return 2.0 * problem.n / columns + sum(float(np.hypot(*load.force)) for load in loads) + 1.0
+    force = 2.0 * problem.n / columns + sum(float(np.hypot(*load.force)) for load in loads) + 1.0
+    travel = sum(math.hypot(*(part or 0.0 for part in load.displacement or ())) for load in loads)
+    if travel > 0.0:
+        one, law = np.ones(1), problem.pair_law
+        contact = static_contacts(one, one, travel * one, 0.0 * one, law.shapes(one, one), law)
+        force += float(contact.normal_force[0])
+    return force
 
 
 def _at_wall(pair: Constants, wall: Constants, neighbours: int, walls: int) -> list[Motion]:

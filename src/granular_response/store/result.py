@@ -292,8 +292,8 @@ def to_labelled(solution: Solution) -> Labelled:
     """The labelled data of a solved scene.
 
     Dimension ``state``: at rest first, then one entry for each load factor, which ``state_load_factor`` gives.
-    ``floor_force``, ``floor_response`` and ``total_force`` have a dimension ``load`` only when there is more than one
-    load factor; its coordinates are those of :func:`load_coordinates`.
+    ``floor_force``, ``floor_response``, ``total_force`` and, where loads displace disks, ``reaction`` have a dimension
+    ``load`` only when there is more than one load factor; its coordinates are those of :func:`load_coordinates`.
     """
     problem = solution.problem
     packing = problem.packing
@@ -306,7 +306,7 @@ def to_labelled(solution: Solution) -> Labelled:
     disks, x = disks[by], x[by]
     at_rest = floor_force(rest, disks)
     forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
-    applied = np.array([abs(f) * solution.total_force for f in solution.load_factors] or [np.nan])
+    applied = np.array([solution.applied_force(state) for state in solution.loaded] or [np.nan])
     response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
     several = len(loaded) > 1
     dims = ("load", "floor_disk") if several else ("floor_disk",)
@@ -335,6 +335,7 @@ def to_labelled(solution: Solution) -> Labelled:
             applied if several else applied[0],
             f"total magnitude of the applied forces {FORCE}",
         ),
+        **(_reaction(solution) if loaded and len(problem.held) else {}),
         **_certificates(states, "state"),
         **_reached(states),
         **_crossings(loaded),
@@ -364,6 +365,15 @@ def to_labelled(solution: Solution) -> Labelled:
         "units": UNITS,
     }
     return Labelled(data, COORDINATES & set(data), attributes)
+
+
+def _reaction(solution: Solution) -> dict[str, Values]:
+    """What holds displaced disks, under each load."""
+    values = np.stack([solution.reaction(state) for state in solution.loaded])
+    dims = ("load_point", "axis")
+    text = f"force x, z with which each load holds its disk at its displacement {FORCE}; 0 along free directions"
+    several = len(values) > 1
+    return {"reaction": described(("load", *dims) if several else dims, values if several else values[0], text)}
 
 
 def described_forces(states: Sequence[State]) -> dict[str, Values]:

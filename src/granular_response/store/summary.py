@@ -75,6 +75,9 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
         yield _crossings(result)
     yield Text("\ncertificate", style="bold")
     yield _certificate(result)
+    if "reaction" in result:
+        yield Text("\nforce that holds displaced disks", style="bold")
+        yield _reaction(result)
     yield Text("\nfloor response", style="bold")
     yield _response(result)
 
@@ -114,6 +117,18 @@ def _certificate(result: xr.Dataset) -> Table:
             if title == "negative modes":
                 values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
             table.add_row(title, *values)
+    return table
+
+
+def _reaction(result: xr.Dataset) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for title in ("at load factor", "disk", "x", "z"):
+        table.add_column(title, justify="right")
+    values = result["reaction"].values
+    factors = result["state_load_factor"].values[1:]
+    for factor, forces in zip(factors, values.reshape(-1, *values.shape[-2:]), strict=True):
+        for disk, force in zip(result["loaded_disk"].values, forces, strict=True):
+            table.add_row(f"{factor:g}", str(disk), *(f"{part:.6g}" for part in force))
     return table
 
 

@@ -237,6 +237,7 @@ def check(solution: Solution, state: State) -> Audit:
     load = np.zeros((packing.n, 3))
     for disk, one in zip(solution.problem.load_disk, scene.loads, strict=False):
         load[disk] += state.load_factor * np.array([*one.force, one.torque])
+    np.add.at(load[:, :2], solution.problem.load_disk, solution.reaction(state))
 
     def rule(law, reference: float) -> ContactRule:
         friction = law.friction if law.stiffness_ratio > 0 else 0.0

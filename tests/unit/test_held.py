@@ -1,0 +1,265 @@
+"""Displacement-controlled loads: disks that are moved and held, and the force that this takes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from rich.console import Console
+from small_scenes import free_disks, scene
+
+import granular_response as gr
+from granular_response.paper.trials.random_scenes import check, contradiction, rounding_of
+from granular_response.scene import Load, Scene, SceneError
+from granular_response.solve import Problem, continue_solution, rest_state, solve_scene
+from granular_response.solve.dynamics import Dynamics
+from granular_response.solve.equilibrium import certify, external_force, newton, reaction
+from granular_response.solve.path import PathRecord, follow
+from granular_response.solve.system import StaticSystem
+from granular_response.store import files as store
+from granular_response.store.result import solution_from, to_dataset
+from granular_response.store.summary import summarise
+
+DISK = {"kind": "pile", "layers": 1}
+
+
+def pushed(displacement, **changes) -> Scene:
+    return scene(4, 9, loads=[{"disk": "top-centre", "displacement": displacement}], **changes)
+
+
+def travel(solution, state) -> np.ndarray:
+    """Displacement of the first loaded disk since rest."""
+    disk = int(solution.problem.load_disk[0])
+    return state.position[disk] - solution.rest.position[disk]
+
+
+def check_audit(solution) -> None:
+    """Every state is in balance, reactions included, as summed anew from its positions."""
+    for state in (solution.rest, *solution.loaded):
+        assert contradiction(state, check(solution, state), rounding_of(solution)) == ""
+        assert state.certificate.force_residual < 1e-9
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("displacement", [[None, -4e-4], [0.0, -4e-4], [2e-4, None], [2e-4, -4e-4]])
+def test_force_and_displacement_lead_to_one_state(friction, displacement):
+    """Moving a disk takes the reaction, and the reaction moves the disk there: steps of one increment both ways."""
+    moving = Problem.from_scene(pushed(displacement, contact__friction=friction))
+    rest = rest_state(moving)
+    moving = moving.with_loads(rest.position)
+    disk = int(moving.load_disk[0])
+    # a force in one direction can follow how the reaction grows
+    factors = [0.25, 0.5, 1.0] if None in displacement else [1.0]
+    record = PathRecord()
+    moved = follow(moving, rest, factors, longest_step=10.0, record=record)
+    assert record.work.increments == len(factors)
+    forces = [reaction(moving, state)[0] for state in moved]
+    free = [part is None for part in displacement]
+    assert np.hypot(*forces[-1]) > 0.05 and not forces[-1][free].any()
+
+    force = forces[-1]
+    load = [{"disk": disk, "force": force.tolist()}]
+    forcing = Problem.from_scene(moving.scene.updated({"loads": load})).with_loads(rest.position)
+    for state, other, factor in zip(
+        moved, follow(forcing, rest, [float(f @ force / (force @ force)) for f in forces], longest_step=10.0), factors,
+        strict=True,
+    ):  # fmt: skip
+        wanted = [factor * (part or 0.0) for part in displacement]
+        there, too = (one.position[disk] - rest.position[disk] for one in (state, other))
+        assert there[~np.array(free)] == pytest.approx(np.array(wanted)[~np.array(free)], abs=1e-14)
+        assert too == pytest.approx(there, abs=1e-8)
+        assert np.abs(other.position - state.position).max() < 1e-8
+        assert state.certificate.stable and state.certificate.force_residual < 1e-10
+
+
+@pytest.mark.parametrize(
+    ("friction", "changes"),
+    [
+        (0.2, {}),
+        (0.2, {"contact.law": "hertz"}),
+        (0.2, {"packing.sides": "periodic"}),
+        (0.2, {"packing.polydispersity": 0.1, "protocol.method": "stages"}),
+        (0.0, {"protocol.method": "path"}),
+        (0.0, {"packing.polydispersity": 0.1}),
+        (0.0, {"packing.sides": "periodic", "packing.lattice_constant": 1.9998}),
+    ],
+)
+def test_a_programme_of_displacements_by_every_method(friction, changes):
+    base = pushed([0.0, -1e-3], contact__friction=friction).updated(changes)
+    solution = solve_scene(base, load_factors=[0.5, 1.0, 0.0])
+    check_audit(solution)
+    slow = solve_scene(
+        base.updated({"protocol.method": "dynamics", "protocol.ramp_time": 60.0}), load_factors=[0.5, 1.0, 0.0]
+    )
+    check_audit(slow)
+    for state, other in zip(solution.loaded, slow.loaded, strict=True):
+        assert travel(solution, state) == pytest.approx([0.0, -1e-3 * state.load_factor], abs=1e-14)
+        assert travel(slow, other) == pytest.approx(travel(solution, state), abs=1e-11)
+    up, down = (solution.reaction(state)[0, 1] for state in solution.loaded[:2])
+    assert down < up < -0.2
+    for state, other in zip(solution.loaded[:2], slow.loaded[:2], strict=True):
+        assert slow.reaction(other) == pytest.approx(solution.reaction(state), rel=0.02, abs=0.02)
+
+
+@pytest.mark.parametrize("method", ["auto", "path", "dynamics", "stages"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_one_disk_on_the_floor_has_the_closed_form(method, friction):
+    """The floor pushes back with its stiffness; a disk that is lifted off the floor weighs what it weighs."""
+    scene = Scene.from_dict(
+        {
+            "packing": DISK,
+            "contact": {"friction": friction},
+            "wall": {"friction": friction},
+            "loads": [{"disk": 0, "displacement": [0.0, -0.01]}],
+            "protocol": {"method": method},
+        }
+    )
+    stiffness = scene.resolved_wall.normal_stiffness
+    solution = solve_scene(scene, load_factors=[1.0, -1.0])
+    pressed, lifted = (solution.reaction(state)[0] for state in solution.loaded)
+    assert pressed == pytest.approx([0.0, -0.01 * stiffness], abs=1e-9)
+    assert lifted == pytest.approx([0.0, 1.0], abs=1e-12)
+    assert not solution.loaded[1].walls.touching.any()
+
+
+def test_a_disk_dragged_over_a_rough_floor_rolls():
+    """It turns by what it moves, and takes no force."""
+    alone, state = free_disks([(10.0, 1.0)], wall__friction=0.3, loads=[{"disk": 0, "displacement": [0.2, None]}])
+    problem = alone.with_loads(state.position)
+    start = rest_state(alone)
+    (rolled,) = follow(problem, start, [1.0])
+    assert reaction(problem, rolled)[0] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert rolled.angle[0] == pytest.approx(-0.2, abs=1e-9)
+
+
+def test_stability_is_that_of_the_held_system():
+    """A disk balanced on another has one unstable direction, and none while both are held sideways."""
+    loads = [{"disk": disk, "displacement": [0.0, None]} for disk in (0, 1)]
+    problem, state = free_disks([(10.0, 2.0), (10.0, 5.0)], [2.0, 1.0], contact__friction=0.0, loads=loads)
+    held = problem.with_loads(state.position)
+    for system, modes in ((StaticSystem(problem, state), 1), (StaticSystem(held, state), 0)):
+        known = system.start(state)
+        trial, report = newton(system, known, external_force(system.problem, 0.0))
+        assert report.converged
+        assert system.negative_modes(trial) == modes
+
+
+def test_a_displaced_disk_that_is_not_where_it_is_held_shows_in_the_certificate():
+    solution = solve_scene(pushed([None, -1e-3], contact__friction=0.2))
+    (state,) = solution.loaded
+    assert state.certificate.force_residual < 1e-10
+    wrong = certify(solution.problem, replace(state, load_factor=0.5))
+    assert wrong.force_residual == pytest.approx(5e-4 * solution.problem.stiffness, rel=1e-6)
+
+
+@pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
+def test_dynamics_moves_a_held_disk_at_a_constant_rate_and_stops_it(integrator):
+    solution = solve_scene(pushed([1e-3, -2e-3], contact__friction=0.2), load_factors=[0.0])
+    problem, disk = solution.problem, int(solution.problem.load_disk[0])
+    dynamics = Dynamics(problem, solution.rest, integrator, 3e-4)
+    dynamics.set_ramps(load=(0.0, 2.0, 0.1))  # 333 steps and a third
+    start = solution.rest.position[disk]
+    for steps in (100, 200, 100, 100):
+        dynamics.advance(steps)
+        done = min(dynamics.time / 0.1, 1.0)
+        assert dynamics.position[disk] - start == pytest.approx([2e-3 * done, -4e-3 * done], abs=1e-13)
+    assert not dynamics.v[[disk, problem.n + disk]].any()
+    assert dynamics.state().load_factor == 2.0 and np.isfinite(dynamics.kinetic_energy())
+
+
+def test_a_mirrored_scene_has_the_mirrored_reaction():
+    right, left = (
+        solve_scene(pushed([sign * 4e-4, -6e-4], packing__layers=5, contact__friction=0.2)) for sign in (1.0, -1.0)
+    )
+    a, b = (one.reaction(one.loaded[0])[0] for one in (right, left))
+    assert b == pytest.approx([-a[0], a[1]], abs=1e-8) and abs(a[0]) > 0.1
+
+
+def test_a_displaced_disk_and_a_force_act_together():
+    """A disk that is held where it is carries what a force on another one brings to it."""
+    loads = [{"disk": "top-centre", "displacement": [0.0, 0.0]}, {"disk": {"row": 1}, "force": [0.3, -3.0]}]
+    solution = solve_scene(scene(4, 9, contact__friction=0.2, loads=loads))
+    check_audit(solution)
+    held, free = solution.reaction(solution.loaded[0])
+    assert not free.any() and held.any()
+    assert travel(solution, solution.loaded[0]) == pytest.approx([0.0, 0.0], abs=1e-14)
+    assert solution.applied_force(solution.loaded[0]) == pytest.approx(np.hypot(0.3, 3.0) + np.hypot(*held))
+
+
+def test_a_cut_programme_has_the_same_bits_and_a_file_its_reaction(tmp_path):
+    base = pushed([None, -1e-3], contact__friction=0.2)
+    whole = solve_scene(base, load_factors=[0.5, 1.0, 0.25])
+    store.write(tmp_path / "part.nc", to_dataset(solve_scene(base, load_factors=[0.5])))
+    part = solution_from(gr.open_result(tmp_path / "part.nc").to_dataset())
+    again = continue_solution(part, [1.0, 0.25])
+    for one, other in zip(whole.loaded, again.loaded, strict=True):
+        assert np.array_equal(one.position, other.position)
+        assert np.array_equal(one.pairs.tangential_force, other.pairs.tangential_force)
+
+    result = gr.solve(base, load_factors=[0.5, 1.0, 0.25])
+    result.save(tmp_path / "whole.nc")
+    stored = gr.open_result(tmp_path / "whole.nc")
+    assert stored.reaction.dims == ("load", "load_point", "axis")
+    assert np.array_equal(stored.reaction.values, [whole.reaction(state) for state in whole.loaded])
+    assert float(stored.reaction.sel(load=0.25, axis="z").squeeze()) == whole.reaction(whole.loaded[2])[0, 1]
+    forces = np.abs(stored.reaction.sel(axis="z").values[:, 0])
+    assert stored.to_dataset()["total_force"].values == pytest.approx(forces)
+    assert stored.floor_response.sum("floor_disk").values == pytest.approx(np.ones(3), abs=1e-8)
+    assert gr.open_result(tmp_path / "part.nc").reaction.dims == ("load_point", "axis")
+    console = Console(width=200, record=True, file=open(tmp_path / "shown.txt", "w"))  # noqa: SIM115
+    console.print(*summarise(tmp_path / "whole.nc"))
+    shown = console.export_text()
+    assert "force that holds displaced disks" in shown and f"{whole.reaction(whole.loaded[1])[0, 1]:.6g}" in shown
+    for what in (gr.plot.packing, gr.plot.forces):
+        what(stored)
+    with pytest.raises(ValueError, match="reaction: there is none, no load of this scene has a displacement"):
+        _ = gr.solve(scene(3, 7)).reaction
+
+
+def test_a_response_to_no_reaction_is_none():
+    result = gr.solve(pushed([None, -1e-3], contact__friction=0.0), load_factors=[0.0, 1.0])
+    assert np.isnan(result.floor_response.isel(load=0)).all()
+    assert float(result.floor_response.isel(load=1).sum()) == pytest.approx(1.0, abs=1e-8)
+
+
+def test_scenes_with_displacements_survive_yaml_and_updates():
+    base = pushed([None, -0.01])
+    assert Scene.from_text(base.to_yaml()) == base
+    assert base.loads == (Load(disk="top-centre", displacement=(None, -0.01)),)
+    assert base.to_dict()["loads"] == [
+        {"disk": "top-centre", "force": [0.0, 0.0], "displacement": [None, -0.01], "torque": 0.0}
+    ]
+    assert base.updated({"loads.0.displacement": [0.0, -0.02]}).loads[0].displacement == (0.0, -0.02)
+    assert "displacement" not in Scene().to_yaml()  # scenes stored so far keep their bytes
+
+
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        ({"disk": 0}, "loads[0].force = null: must be given, or displacement"),
+        (
+            {"disk": 0, "displacement": [None, None]},
+            "loads[0].displacement = [None, None]: must hold a direction at least",
+        ),
+        (
+            {"disk": 0, "displacement": 1.0},
+            "loads[0].displacement = 1.0: must be two finite numbers [x, z], null for a direction that is left free",
+        ),
+        (
+            {"disk": 0, "force": [0.0, -1.0], "displacement": [None, -1.0]},
+            "loads[0].force = [0.0, -1.0]: must be 0 along z, where displacement holds the disk",
+        ),
+    ],
+)
+def test_wrong_displacements(load, message):
+    with pytest.raises(SceneError) as caught:
+        Scene.from_dict({"loads": [load]})
+    assert str(caught.value) == message
+
+
+def test_two_loads_cannot_hold_one_coordinate():
+    twice = [{"disk": "top-centre", "displacement": [None, -1e-3]}, {"disk": 31, "displacement": [0.0, -2e-3]}]
+    with pytest.raises(SceneError, match=r"^loads\[1\]\.displacement: moves disk \d+ along z, and so does loads\[0\]"):
+        solve_scene(scene(4, 9, loads=[{**one, "disk": 31} for one in twice]))
+    apart = [{"disk": 31, "displacement": [None, -1e-4]}, {"disk": 31, "displacement": [1e-4, None]}]
+    both = solve_scene(scene(4, 9, loads=apart, contact__friction=0.2))
+    assert travel(both, both.loaded[0]) == pytest.approx([1e-4, -1e-4], abs=1e-14)
