@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from granular_response.machine import memory
 from granular_response.scene import FilePacking, Scene, SceneError, formats
-from granular_response.solve import solve_scene
+from granular_response.solve import solution, solve_scene
+from granular_response.solve.size import STATICS, check_memory
 from granular_response.store import files as store
 from granular_response.store.export import export
 from granular_response.store.result import to_dataset
@@ -40,6 +42,23 @@ ENDINGS["gsd"] = (".gsd", 1e-6)
 
 def test_every_format_is_tried():
     assert set(ENDINGS) == set(formats.SUFFIXES)
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_disks_that_need_more_memory_than_there_is_are_refused_once_they_are_counted(
+    result, tmp_path, name, monkeypatch
+):
+    """A lattice is refused before it is built; what a file holds is known when it has been read."""
+    path = export(result, tmp_path / f"disks{ENDINGS[name][0]}")
+    scene = Scene.from_dict({"packing": {"kind": "file", "path": str(path), "width": 6.3}})
+    started: list[object] = []
+    monkeypatch.setattr(solution, "rest_state", lambda problem, **_: started.append(problem))
+    monkeypatch.setattr(memory, "available", lambda: 5 * STATICS - 1)
+    with pytest.raises(SceneError, match=r"^packing: 5 disks need at least 2\.33e-05 GiB of memory, there are .*fewer$"):
+        solve_scene(scene)
+    assert not started
+    monkeypatch.setattr(memory, "available", lambda: 5 * STATICS)
+    check_memory(scene, 5)
 
 
 @pytest.mark.parametrize("name", ENDINGS)

@@ -174,5 +174,5 @@ def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (little, little)),
     )  # fmt: skip
     assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
-    assert "1995000 disks need at least 9.3 GiB of memory, there are " in finished.stderr
+    assert "1995000 disks need at least 9.29 GiB of memory, there are " in finished.stderr
     assert not (tmp_path / "a.nc").exists()

@@ -1,4 +1,4 @@
-"""What a scene needs at least, found before anything of its size is allocated."""
+"""What a scene needs at least: found before anything of its size is allocated, or when its table has been counted."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from ..scene import Scene, SceneError
 DYNAMICS, STATICS = 700, 5000
 
 
-def least_memory(scene: Scene) -> int:
-    """Bytes that solving the scene takes at least; 0 for a packing from a file, which is in memory once counted."""
+def least_memory(scene: Scene, disks: int) -> int:
+    """Bytes that solving the scene with so many disks takes at least."""
     static = scene.protocol.static_finish or scene.protocol.method != "dynamics"
-    return scene.packing.disk_count * (STATICS if static else DYNAMICS)
+    return disks * (STATICS if static else DYNAMICS)
 
 
-def check_memory(scene: Scene) -> None:
-    """Raise SceneError if the scene needs more memory than there is."""
-    needed, available = least_memory(scene), memory.available()
+def check_memory(scene: Scene, disks: int) -> None:
+    """Raise SceneError if the scene with so many disks needs more memory than there is."""
+    needed, available = least_memory(scene, disks), memory.available()
     if available is not None and needed > available:
         raise SceneError(
-            f"packing: {scene.packing.disk_count} disks need at least {needed / 2**30:.1f} GiB of memory, "
-            f"there are {available / 2**30:.1f} GiB; must be fewer"
+            f"packing: {disks} disks need at least {needed / 2**30:.3g} GiB of memory, "
+            f"there are {available / 2**30:.3g} GiB; must be fewer"
         )

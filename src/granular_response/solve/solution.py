@@ -106,8 +106,9 @@ def solve_scene(
         Each with one line that says what to change.
     """
     factors = load_programme(scene.protocol.load_factors if load_factors is None else load_factors)
-    check_memory(scene)
+    check_memory(scene, scene.packing.disk_count)
     problem = Problem.from_scene(scene)
+    check_memory(scene, problem.n)  # a file's disks are counted by now
     _check_loads(problem.with_loads(problem.packing.position), factors)
     rest = rest_state(problem, progress=progress)
     problem = problem.with_loads(rest.position)

@@ -1,0 +1,51 @@
+"""
+An ensemble on Dask
+===================
+
+Realizations of a disordered packing on a Dask cluster: the mean floor response and the band of its standard error. The
+cluster is made here, on this machine; with the address of any other one nothing else changes.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from distributed import LocalCluster
+
+import granular_response as gr
+from granular_response.observe.floor import smoothed_response
+
+LAYERS, DISKS, REALIZATIONS, WORKERS = 6, 21, 12, 2
+
+scene = gr.Scene().updated(
+    {
+        "packing.layers": LAYERS,
+        "packing.disks_per_row": DISKS,
+        "packing.polydispersity": 0.1,
+        "packing.lattice_constant": "touching-largest",
+        "loads.0.force": [0.0, -2.0],
+        "protocol": {"integrator": "verlet", "time_step": "auto", "stop_kinetic_energy": 1e-9},
+    }
+)
+places = np.arange(-12.0, 12.5, 0.5)
+
+
+def smoothed(result: gr.Result) -> xr.DataArray:
+    """The response over two radii: floor disks are at other places in each realization."""
+    response = result.floor_response
+    values = smoothed_response(places, response["x"].values, response.values, 2.0)
+    return xr.DataArray(values, {"x": places}, name="response")
+
+
+if __name__ == "__main__":  # the processes of the cluster read this file, too
+    with LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster:
+        keys = {"packing.realization": range(REALIZATIONS)}
+        found = gr.sweep(scene, keys, smoothed, scheduler=cluster.scheduler_address, progress=False)
+    response = found["response"]
+    mean = response.mean("realization")
+    error = response.std("realization", ddof=1) / REALIZATIONS**0.5
+
+    figure, ax = plt.subplots(figsize=(5, 3.2), layout="constrained")
+    ax.plot(places, response.values.T, color="0.85", linewidth=0.6)
+    ax.fill_between(places, mean - error, mean + error, alpha=0.3)
+    ax.plot(places, mean)
+    ax.set(xlabel="place from the load", ylabel="floor response per length")
