@@ -54,7 +54,7 @@ def test_disks_that_need_more_memory_than_there_is_are_refused_once_they_are_cou
     started: list[object] = []
     monkeypatch.setattr(solution, "rest_state", lambda problem, **_: started.append(problem))
     monkeypatch.setattr(memory, "available", lambda: 5 * STATICS - 1)
-    with pytest.raises(SceneError, match=r"^packing: 5 disks need at least 2\.33e-05 GiB of memory, there are .*fewer$"):
+    with pytest.raises(SceneError, match=r"^packing: 5 disks need at least 2\.33e-05 GiB of memory, there are "):
         solve_scene(scene)
     assert not started
     monkeypatch.setattr(memory, "available", lambda: 5 * STATICS)
