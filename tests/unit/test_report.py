@@ -1,17 +1,17 @@
 """The page: what it says agrees with the stored table, it needs no network, and a real browser shows all of it."""
 
 import base64
-import html
 import io
 import json
 import re
 import shutil
-import subprocess
+import zlib
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
+from chromium import BROWSER, Chromium
 from PIL import Image
 from xarray import Dataset
 
@@ -25,7 +25,6 @@ from granular_response.store import files as store
 from granular_response.store import generated
 from granular_response.store.result import variable
 
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))), None)
 ROOT = Path(__file__).parents[2]
 FORCES = (0.0, 1.0, 4.0, 90.0)
 
@@ -62,6 +61,7 @@ def friction_study():
         {
             "floor_response": variable((*dims, "floor_disk"), np.full((3, 3, 7), 1.0 / 7.0), "response"),
             "peak_count": variable(dims, np.full((3, 3), 2.0), "peaks"),
+            "response_at_centre": variable(dims, np.full((3, 3), 1.0 / 7.0), "response at x = 0"),
         },
         {
             "friction": variable(("friction",), np.array([0.0, 0.2, 1.0]), "friction"),
@@ -69,7 +69,10 @@ def friction_study():
             "x": variable(("floor_disk",), x, "place"),
         },
     )
-    return {"response": response, **{f"states_mu_{mu:g}": states(mu) for mu in (0.0, 0.2, 1.0)}}
+    found = {"response": response, **{f"states_mu_{mu:g}": states(mu) for mu in (0.0, 0.2, 1.0)}}
+    for dataset in found.values():
+        dataset.attrs["scene"] = "contact: {stiffness_ratio: 0.8}\nwall: {friction: 0.0}\n"
+    return found
 
 
 def sensitivity_study():
@@ -113,6 +116,8 @@ def root(tmp_path_factory):
         said[path.stem] = {"caption": f"What {path.stem} <shows>.", "alternative": "How it looks."}
         beside.write_text(json.dumps(said))
     store.write(folder / "data" / "friction_linear_range.nc", friction_study())
+    store.write(folder / "data" / "explorer.nc", {"a": added_slab(0.0, 0.0), "b": added_slab(0.25, 3.0)})
+    store.write(folder / "data" / "phase_diagram.nc", {"crossovers": crossovers()})
     store.write(folder / "data" / "sensitivity.nc", {"mu_0.2": sensitivity_study()})
     (folder / "benchmarks").mkdir()
     records = {"lammps": "some version", "runs": [{"disks": 908, "microseconds_per_step": 12.5}]}
@@ -323,23 +328,103 @@ def test_texts_are_set_with_minus_signs_powers_and_subscripts(plain, typed):
     assert typeset(plain) == typed
 
 
-def test_slider_data_are_those_of_the_states():
+def added_slab(polydispersity, width):
+    """The slab of ``states`` as the group ``explorer`` stores one."""
+    slab = states(0.2).astype(np.float32).assign(contact_status=states(0.2)["contact_status"])
+    for name in ("contact_disk", "contact_partner", "loaded_disk"):
+        slab[name] = states(0.2)[name]
+    x = np.arange(-6.0, 7.0, 2.0)
+    row = np.full((len(FORCES), 7), 1.0 / 7.0)
+    numbers = {"polydispersity": polydispersity, "friction": 0.2, "wall_friction": 0.0, "stiffness_ratio": 0.2}
+    return slab.assign(
+        x=variable(("floor_disk",), x, "place"),
+        floor_response=variable(("state", "floor_disk"), row, "response"),
+        smoothed_response=variable(("state", "floor_disk"), 0.5 * row, "response"),
+        response_at_centre=variable(("state",), np.full(len(FORCES), 0.07), "response"),
+        peak_count=variable(("state",), np.ones(len(FORCES)), "peaks"),
+        **{
+            name: variable((), value, name)
+            for name, value in {**numbers, "normal_stiffness": 3000.0, "smoothing_width": width}.items()
+        },
+    )
+
+
+def crossovers():
+    case = ("case",)
+    return Dataset(
+        {
+            "force": variable(("width", "case"), [[3.0, 20.0, 5.0, 9.0]], "force"),
+            "kind": variable(("width", "case"), [[0, 2, 1, 0]], "kind"),
+            "interval": variable(
+                ("width", "case", "level"), [[[3.0, 3.0], [20.0, np.inf], [0.0, 6.0], [8.0, 9.5]]], "interval"
+            ),
+        },
+        {
+            "width": variable(("width",), [3.0], "width"),
+            "polydispersity": variable(case, [0.0, 0.0, 0.25, 0.25], "spread"),
+            "friction": variable(case, [1.0, 0.2, 0.2, 1.0], "friction"),
+            "lattice_constant": variable(case, ["touching-largest"] * 3 + ["2.0"], "lattice"),
+        },
+    )
+
+
+def unpacked(data):
+    """Of each slab its ends of contacts, levels and sliding contacts, as the page's script takes them apart."""
+    left = zlib.decompress(base64.b64decode(data["packed"]))
+    found = []
+    for slab in data["slabs"]:
+        count, frames = slab["contacts"], len(slab["forces"])
+        size = 8 * count + frames * (count + -(-count // 8))
+        here, left = left[:size], left[size:]
+        rows = np.frombuffer(here[8 * count :], np.uint8).reshape(frames, -1)
+        levels, bits = rows[:, :count].view(np.int8), np.unpackbits(rows[:, count:], axis=1)[:, :count]
+        found.append((np.frombuffer(here[: 8 * count], "<i2").reshape(count, 4), levels, bits.astype(bool)))
+    assert not left
+    return found
+
+
+def test_explorer_data_are_those_of_the_states():
     data = explorer.payload(friction_study())
-    assert data["forces"] == [1.0, 4.0]  # at rest nothing is added, and 90 is beyond the slider
-    assert [panel["friction"] for panel in data["panels"]] == [0.0, 0.2, 1.0]
-    smooth, rough = data["panels"][0], data["panels"][2]
-    frames = [np.frombuffer(base64.b64decode(frame), np.uint8) for frame in smooth["frames"]]
-    contacts = len(smooth["lines"]) // 4
-    assert [len(frame) for frame in frames] == [contacts, contacts]
-    opened = [int((frame == explorer.OPENED).sum()) for frame in frames]
-    assert opened[0] == 0 and opened[1] == int((states(0.0)["contact_status"].values[2] == 0).sum()) > 0
+    assert [(slab["friction"], slab["ratio"]) for slab in data["slabs"]] == [(0.0, 0.8), (0.2, 0.8), (1.0, 0.8)]
+    assert all(slab["forces"] == [1.0, 4.0, 90.0] for slab in data["slabs"])  # at rest nothing is added
+    smooth, _, rough = unpacked(data)
+    opened = (smooth[1] == explorer.OPENED).sum(axis=1).tolist()
+    assert opened == [0, *[int((states(0.0)["contact_status"].values[2] == 0).sum())] * 2] and opened[1] > 0
     # every closed contact gets as much as the applied force; tangential forces add as a vector
     strongest = np.sqrt(2.0) * 1.0
     assert data["strongest"] == pytest.approx(strongest, rel=1e-6)
-    level = round(explorer.FULL * np.sqrt(1.0 / strongest))
-    assert set(frames[0]) == {level}
-    assert set(np.frombuffer(base64.b64decode(rough["frames"][0]), np.uint8)) == {explorer.FULL}
-    assert smooth["responses"] == [[0.14286] * 7] * 2
+    assert set(smooth[1][0]) == {round(explorer.FULL * np.sqrt(1.0 / strongest))}
+    assert set(rough[1][0]) == {explorer.FULL}
+    # at friction 1 the tangential forces are the normal ones, the Coulomb limit; without friction nothing slides
+    assert rough[2][0].all() and not smooth[2].any()
+    assert data["slabs"][0]["response"] == [[0.14286] * 7] * 3 and data["slabs"][0]["peaks"] == [2, 2, 2]
+    assert data["slabs"][0]["about"] == "ordered packing, µ = 0, µ_wall = 0, k_N = 3000 mg/R"
+    assert [one["friction"] for one in data["range"]] == [0.0, 0.2, 1.0]
+    assert data["range"][0]["force"] == [1.0, 4.0]  # Fig. 6 ends at 50
+
+
+def test_lost_compression_has_the_other_sign():
+    study = friction_study()
+    falling = study["states_mu_0"]
+    falling["contact_normal_force"] = 0.5 + 1.0 - 0.01 * falling["force"] + 0.0 * falling["contact_normal_force"]
+    _, levels, _ = unpacked(explorer.payload(study))[0]
+    assert (levels[0] < 0).all()
+
+
+def test_slabs_of_the_explorer_and_fig_22_stand_beside_the_others():
+    more = {"slab_0": added_slab(0.0, 0.0), "slab_1": added_slab(0.25, 3.0)}
+    data = explorer.payload(friction_study(), more, {"crossovers": crossovers()})
+    lattice, disordered = data["slabs"][3:]
+    assert (lattice["polydispersity"], lattice["ratio"], lattice["smoothed"]) == (0.0, 0.2, None)
+    # a smoothed stress times the distance of two floor disks is what one of them bears
+    assert disordered["smoothed"] == [[0.14286] * 7] * 3 and disordered["centre"] == [0.14] * 3
+    assert disordered["peaks"] is None and lattice["peaks"] == [1, 1, 1]
+    assert lattice["paper"] == [] and [one["force"] for one in data["slabs"][1]["paper"]] == [4.0, 20.0, 40.0]
+    assert data["crossovers"] == [
+        {"polydispersity": 0.0, "friction": [0.2, 1.0], "force": [20.0, 3.0], "low": [20.0, 3.0],
+         "high": [None, 3.0], "kind": [2, 0]},
+        {"polydispersity": 0.25, "friction": [0.2], "force": [5.0], "low": [None], "high": [6.0], "kind": [1]},
+    ]  # fmt: skip
 
 
 def test_no_slider_without_states(root, tmp_path):
@@ -392,88 +477,129 @@ def test_benchmarks_show_goals_and_pictures(root, tmp_path):
     assert benchmarks.goals(tmp_path) == []
 
 
-#: Put in front of the page: keeps errors, and says in the end what the browser sees.
-PROBE = """<script>
-window.problems = [];
-window.addEventListener("error", function (e) { window.problems.push(String(e.message)); }, true);
-["error", "warn"].forEach(function (kind) {
-  console[kind] = function () { window.problems.push(Array.from(arguments).join(" ")); };
-});
-window.addEventListener("load", function () {
-  const slider = document.getElementById("force"), canvas = document.getElementById("panel-0");
-  const before = canvas.toDataURL(), note = document.getElementById("note-0").textContent;
-  slider.value = slider.value === "0" ? "1" : "0";
-  slider.dispatchEvent(new Event("input"));
-  const rows = function () {
-    return Array.from(document.querySelectorAll("tr.claim")).filter(function (row) { return row.offsetHeight; }).length;
-  };
-  const filtered = ["not_measured", "derivation"].map(function (kind) {
-    document.getElementById("only-" + kind).click();
-    return rows();
-  });
-  document.getElementById("only-all").click();
-  const picture = document.querySelector(".picture img"), large = document.querySelector("dialog");
-  picture.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"}));
-  const enlarged = [large.open, large.querySelector("img").src === picture.src];
-  large.click();
-  enlarged.push(large.open);
-  large.querySelector("img").remove();
-  const seen = {
-    filtered: filtered,
-    enlarged: enlarged,
-    problems: window.problems,
-    images: Array.from(document.images, function (i) {
-      return [i.naturalWidth, i.naturalHeight, i.parentElement.clientWidth];
-    }),
-    claims: document.querySelectorAll("tr.claim").length,
-    width: document.documentElement.clientWidth,
-    content: document.documentElement.scrollWidth,
-    label: document.getElementById("force-label").textContent,
-    canvasChanged: canvas.toDataURL() !== before,
-    notes: [note, document.getElementById("note-0").textContent],
-    requests: performance.getEntriesByType("resource").map(function (r) { return r.name.slice(0, 40); })
-      .filter(function (name) { return !name.startsWith("data:"); }),
-  };
-  const out = document.createElement("pre");
-  out.id = "seen";
-  out.textContent = JSON.stringify(seen);
-  document.body.appendChild(out);
-});
-</script>"""
+@pytest.fixture(scope="module")
+def tab(tmp_path_factory):
+    if BROWSER is None:
+        pytest.skip("no Chromium or Chrome is installed (Debian: apt install chromium)")
+    with Chromium(tmp_path_factory.mktemp("profile")) as browser:
+        yield browser
 
 
-def look(path, width):
-    """What a page reports of itself in a headless browser, inside a frame of some width."""
-    frame = path.with_name(f"frame{width}.html")
-    frame.write_text(
-        f'<iframe id="f" src="{path.name}" style="width:{width}px;height:3000px;border:0"></iframe>'
-        '<pre id="copy"></pre>'
-        "<script>document.getElementById('f').onload = function () { document.getElementById('copy').textContent ="
-        " this.contentDocument.getElementById('seen').textContent; };</script>"
-    )
-    command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
-    command += ["--allow-file-access-from-files", "--window-size=1600,3200", "--virtual-time-budget=20000"]
-    command += [f"--user-data-dir={path.parent / 'profile'}", "--dump-dom", frame.as_uri()]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=180, check=True)
-    found = re.search(r'<pre id="copy">(.+?)</pre>', done.stdout, re.DOTALL)
-    assert found, done.stdout[-2000:] + done.stderr[-2000:]
-    return json.loads(html.unescape(found[1]))
+@pytest.fixture(scope="module")
+def opened(tab, root, page, tmp_path_factory):
+    """Opens the page, with its explorer ready."""
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    path.write_text(page)
+
+    def show(width, **options):
+        del tab.problems[:], tab.requests[:]
+        tab.open(path, width, **options)
+        if options.get("scripts", True):
+            tab.wait("'ready' in document.getElementById('explorer').dataset")
+        return tab
+
+    return show
 
 
-@pytest.mark.skipif(BROWSER is None, reason="no Chromium or Chrome is installed (Debian: apt install chromium)")
-@pytest.mark.parametrize("width", [390, 1280])
-def test_a_browser_shows_all_of_it(root, page, tmp_path, width):
-    path = tmp_path / "page.html"
-    path.write_text(page.replace("<head>", "<head>" + PROBE, 1))
-    seen = look(path, width)
+def force(tab):
+    return tab.run("[document.getElementById('force').getAttribute('aria-valuetext'), said.textContent]")
+
+
+def drawn(tab):
+    return tab.run("['network', 'floor', 'range', 'phase'].map(id => document.getElementById(id).toDataURL())")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1400])
+def test_a_browser_shows_all_of_it(root, opened, width, scheme):
+    tab = opened(width, scheme=scheme)
     stored = json.loads((root / "figures" / "claims.json").read_text())
-    assert seen["problems"] == [] and seen["requests"] == []
-    assert seen["claims"] == stored["counts"]["total"]
-    assert seen["filtered"] == [stored["counts"][kind] for kind in ("not_measured", "derivation")]
-    assert seen["filtered"][1] < seen["claims"]
-    assert seen["enlarged"] == [True, True, False]
-    assert len(seen["images"]) == 5
-    assert all(w > 0 and h > 0 and shown <= width for w, h, shown in seen["images"])
-    assert seen["width"] == width and seen["content"] <= width  # nothing sticks out
-    assert seen["canvasChanged"] and seen["notes"][0] != seen["notes"][1]
-    assert seen["label"] in ("F = 1 mg", "F = 4 mg")
+    assert tab.problems == [] and {Path(url).name for url in tab.requests} == {"page.html"}
+    assert tab.run("document.querySelectorAll('tr.claim').length") == stored["counts"]["total"]
+    assert tab.run("document.documentElement.scrollWidth") == tab.run("document.documentElement.clientWidth") == width
+    sizes = "i => [i.naturalWidth, i.clientWidth, i.parentElement.clientWidth]"
+    images = tab.run(f"Array.from(document.querySelectorAll('main img'), {sizes})")
+    assert len(images) == 5
+    assert all(0 < shown <= frame <= width and natural for natural, shown, frame in images)  # none scrolls sideways
+    assert tab.run("getComputedStyle(document.body).backgroundColor") == (
+        "rgb(255, 255, 255)" if scheme == "light" else "rgb(20, 24, 29)"
+    )
+    for kind in ("not_measured", "derivation"):
+        tab.run(f"document.getElementById('only-{kind}').click()")
+        rows = "Array.from(document.querySelectorAll('tr.claim')).filter(row => row.offsetHeight).length"
+        assert tab.run(rows) == stored["counts"][kind]
+
+
+def test_a_picture_is_enlarged_by_key_and_closed_by_mouse(opened):
+    tab = opened(1400)
+    tab.run("document.querySelector('.picture img').focus()")
+    tab.key("Enter", 13)
+    assert tab.run("document.querySelector('dialog').open")
+    assert tab.run("document.querySelector('dialog img').src === document.querySelector('.picture img').src")
+    tab.click(*tab.centre("dialog button")[:2])
+    assert not tab.run("document.querySelector('dialog').open")
+    assert tab.problems == []
+
+
+def test_the_explorer_follows_mouse_and_keys(opened):
+    tab = opened(1400)
+    assert force(tab)[0] == "90 mg"  # the nearest of 1, 4 and 90 to 20
+    before = drawn(tab)
+    x, y, width = tab.centre("#force")
+    tab.drag(x + 0.49 * width, y, x - 0.49 * width)
+    (said, words), now = force(tab), drawn(tab)
+    assert said == "1 mg" and words.startswith("Under 1 mg: no contacts are opened, 23 slide")
+    # the response of these slabs is the same under every force
+    assert [a != b for a, b in zip(before, now, strict=True)] == [True, False, True, True]
+    tab.key("ArrowRight", 39)
+    assert force(tab)[0] == "4 mg"
+    tab.key("End", 35)
+    assert force(tab)[0] == "90 mg" and drawn(tab) == before
+    tab.click(*tab.centre("#paper button")[:2])
+    assert force(tab)[0] == "4 mg"
+    tab.click(*tab.centre("input[name=packing][value='0.25']")[:2])
+    assert "one packing with δ = 0.25" in tab.run("document.getElementById('about').textContent")
+    assert tab.run("document.querySelector('input[name=ratio][value=\"0.8\"]').disabled")
+    tab.run("document.querySelector('input[name=packing]:checked').focus()")
+    tab.key("ArrowLeft", 37)
+    assert "ordered packing" in tab.run("document.getElementById('network').getAttribute('aria-label')")
+    tab.click(*tab.centre("input[name=friction][value='0.0']")[:2])
+    assert "µ = 0, " in tab.run("document.getElementById('network').getAttribute('aria-label')")
+    assert tab.problems == []
+
+
+def test_the_explorer_follows_a_finger(opened):
+    tab = opened(390)
+    x, y, width = tab.centre("#force")
+    tab.touch(x - 0.49 * width, y)
+    tab.wait("document.getElementById('force').getAttribute('aria-valuetext') === '1 mg'", 5.0)
+    x, y, _ = tab.centre("#paper button")
+    tab.touch(x, y)
+    tab.wait("document.getElementById('force').getAttribute('aria-valuetext') === '4 mg'", 5.0)
+    assert tab.problems == []
+
+
+def test_without_scripts_there_are_no_dead_controls(opened, tab):
+    try:
+        tab = opened(1400, scripts=False)
+        heights = tab.run(
+            "Array.from(document.querySelectorAll('button, canvas, input[type=range]'), e => e.offsetHeight)"
+        )
+        assert heights and not any(heights)
+        assert tab.run("document.body.innerText.includes('The explorer needs JavaScript')")
+    finally:
+        tab.call("Emulation.setScriptExecutionDisabled", value=False)
+
+
+def test_the_page_can_be_printed(opened):
+    tab = opened(1400, scheme="dark")
+    printed = tab.pdf()
+    assert printed.startswith(b"%PDF") and 3 <= len(re.findall(rb"/Type\s*/Page\b", printed)) <= 40
+    tab.call("Emulation.setEmulatedMedia", media="print", features=[])
+    cut = tab.run(
+        "Array.from(document.querySelectorAll('body *')).filter(e => e.offsetWidth && !['SCRIPT', 'STYLE'].includes("
+        "e.tagName) && e.getBoundingClientRect().right > document.documentElement.clientWidth + 1).length"
+    )
+    assert cut == 0
+    tab.call("Emulation.setEmulatedMedia", media="", features=[])
+    assert tab.problems == []

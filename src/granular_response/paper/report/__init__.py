@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
+import xarray as xr
 
 from granular_response import __version__
 from granular_response.store import atomic, generated
@@ -25,8 +26,9 @@ from .typeset import typeset
 #: Where the page is kept.
 OUTPUT = Path("figures") / "report.html"
 
-#: Figure group whose states the slider shows, and the one whose table the readings come from.
-EXPLORED, SENSITIVITY = "friction_linear_range", "sensitivity"
+#: Figure groups that the explorer shows, and the one whose table the readings come from.
+EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
+SENSITIVITY = "sensitivity"
 
 __all__ = ["OUTPUT", "ReportError", "page", "renew_notes", "write"]
 
@@ -83,8 +85,9 @@ def page(root: Path) -> str:
     except ValueError as error:
         raise ReportError(str(error)) from None
     data = root / "data"
-    explored, sensitivity = (data / f"{group}.nc" for group in (EXPLORED, SENSITIVITY))
-    states = explorer.payload(store.read(explored)) if explored.exists() else None
+    explored = [_stored(data / f"{group}.nc") for group in EXPLORED]
+    states = explorer.payload(*explored) if explored[0] else None
+    sensitivity = data / f"{SENSITIVITY}.nc"
     tried = readings.table(store.read(sensitivity)) if sensitivity.exists() else None
     numbers: dict[str, set[int]] = {row["group"]: set() for row in claims["table"]}
     for picture in shown.all():
@@ -103,8 +106,7 @@ def page(root: Path) -> str:
         "numbered": shown.numbered,
         "further": shown.further,
         "states": _json_in_html(states) if states else None,
-        "explored": states is not None
-        and {"forces": states["forces"], "frictions": [p["friction"] for p in states["panels"]]},
+        "explored": states and _choices(states["slabs"]),
         "readings": tried,
         "benchmarks": benchmarks.collect(root / "benchmarks"),
         "goals": benchmarks.goals(root / "benchmarks"),
@@ -119,6 +121,17 @@ def page(root: Path) -> str:
     except jinja2.UndefinedError as error:
         raise ReportError(f"{root / 'figures' / 'claims.json'}: is not a whole table of claims: {error}") from None
     return text.replace(_SIZE, f"{len(text.encode()) / 1e6:.1f} MB")
+
+
+def _stored(path: Path) -> dict[str, xr.Dataset]:
+    """The datasets of a group, none if it has not run yet."""
+    return store.read(path) if path.exists() else {}
+
+
+def _choices(slabs: Sequence[dict[str, Any]]) -> dict[str, list[float]]:
+    """What the reader chooses between."""
+    names = {"packings": "polydispersity", "frictions": "friction", "ratios": "ratio"}
+    return {plural: sorted({slab[name] for slab in slabs}) for plural, name in names.items()}
 
 
 #: Stands for the size of the page until the page is there.

@@ -1,143 +1,343 @@
-(function () {
+(async function () {
   "use strict";
   const data = JSON.parse(document.getElementById("states").textContent);
-  const slider = document.getElementById("force");
-  const label = document.getElementById("force-label");
-  let BLUE, VERMILION, GREY, INK, SOFT;
+  const byId = function (id) { return document.getElementById(id); };
+  const slider = byId("force"), label = byId("force-label"), said = byId("said"), marks = byId("marks");
+  const typed = function (value) { return String(value).replace("-", "\u2212"); };
+  const short = function (value) { return typed(Number(value.toPrecision(2))); };
 
-  const panels = data.panels.map(function (panel, index) {
-    return {
-      data: panel,
-      canvas: document.getElementById("panel-" + index),
-      note: document.getElementById("note-" + index),
-      frames: panel.frames.map(function (text) {
-        return Uint8Array.from(atob(text), function (c) { return c.charCodeAt(0); });
-      }),
-    };
-  });
-
-  let top = 0, bottom = 0;
-  data.panels.forEach(function (panel) {
-    panel.responses.forEach(function (response) {
-      response.forEach(function (value, k) {
-        if (Math.abs(panel.x[k]) <= data.reach) { top = Math.max(top, value); bottom = Math.min(bottom, value); }
+  try {
+    const zipped = Uint8Array.from(atob(data.packed), function (c) { return c.charCodeAt(0); });
+    const stream = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const bytes = await new Response(stream).arrayBuffer();
+    let start = 0;
+    data.slabs.forEach(function (slab) {
+      const count = slab.contacts, mask = Math.ceil(count / 8), view = new DataView(bytes, start, 8 * count);
+      slab.lines = Array.from({length: 4 * count}, function (_, k) { return view.getInt16(2 * k, true) / 10; });
+      start += 8 * count;
+      slab.frames = slab.forces.map(function () {
+        const levels = new Int8Array(bytes, start, count), sliding = new Uint8Array(bytes, start + count, mask);
+        start += count + mask;
+        return {levels: levels, sliding: function (k) { return (sliding[k >> 3] >> (7 - (k & 7))) & 1; }};
       });
     });
-  });
-  top = Math.ceil(top * 50) / 50;
-
-  function draw(panel, index) {
-    const canvas = panel.canvas, shown = panel.data;
-    const width = canvas.clientWidth, scale = width / (2 * data.reach + 2);
-    const network = (shown.height + 4.5) * scale, profile = Math.max(110, 0.42 * width);
-    const height = network + profile + 34, ratio = window.devicePixelRatio || 1;
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    canvas.style.height = height + "px";
-    const pen = canvas.getContext("2d");
-    pen.scale(ratio, ratio);
-    pen.clearRect(0, 0, width, height);
-    const X = function (x) { return (x + data.reach + 1) * scale; };
-    const Z = function (z) { return network - z * scale; };
-    const lines = shown.lines, levels = panel.frames[index];
-    let opened = 0;
-
-    pen.strokeStyle = GREY;
-    pen.lineWidth = 1;
-    pen.beginPath();
-    for (let k = 0; k < levels.length; k++) {
-      const x = X(lines[4 * k] / 10), z = Z(lines[4 * k + 1] / 10);
-      pen.moveTo(x + scale, z);
-      pen.arc(x, z, scale, 0, 2 * Math.PI);
-    }
-    pen.stroke();
-
-    pen.lineCap = "round";
-    for (let k = 0; k < levels.length; k++) {
-      const level = levels[k];
-      if (level === data.opened) {
-        opened += 1;
-        pen.strokeStyle = VERMILION;
-        pen.lineWidth = Math.max(1.6, 0.28 * scale);
-      } else {
-        const part = (level / data.full) * (level / data.full);
-        if (part < 0.004) { continue; }
-        pen.strokeStyle = BLUE;
-        pen.lineWidth = 2.2 * scale * part;
-      }
-      pen.beginPath();
-      pen.moveTo(X(lines[4 * k] / 10), Z(lines[4 * k + 1] / 10));
-      pen.lineTo(X(lines[4 * k + 2] / 10), Z(lines[4 * k + 3] / 10));
-      pen.stroke();
-    }
-
-    pen.strokeStyle = INK;
-    pen.fillStyle = INK;
-    pen.lineWidth = 1.4;
-    pen.beginPath();
-    pen.moveTo(0, Z(0));
-    pen.lineTo(width, Z(0));
-    pen.moveTo(X(0), Z(shown.height + 4.2));
-    pen.lineTo(X(0), Z(shown.height + 1));
-    pen.stroke();
-    pen.beginPath();
-    pen.moveTo(X(0), Z(shown.height + 0.1));
-    pen.lineTo(X(-0.9), Z(shown.height + 1.7));
-    pen.lineTo(X(0.9), Z(shown.height + 1.7));
-    pen.fill();
-
-    const start = network + 14;
-    const Y = function (value) { return start + (top - value) / (top - bottom) * profile; };
-    pen.font = "11px system-ui, sans-serif";
-    pen.lineWidth = 1;
-    pen.textBaseline = "middle";
-    pen.textAlign = "left";
-    for (let value = 0; value < top - 1e-9; value += 0.02) {
-      pen.strokeStyle = value ? GREY : SOFT;
-      pen.beginPath();
-      pen.moveTo(0, Y(value));
-      pen.lineTo(width, Y(value));
-      pen.stroke();
-      if (value) { pen.fillStyle = SOFT; pen.fillText(value.toFixed(2), 0, Y(value) - 7); }
-    }
-    pen.textAlign = "center";
-    pen.fillStyle = SOFT;
-    [-20, -10, 0, 10, 20].forEach(function (x) {
-      pen.fillText(String(x).replace("-", "\u2212"), X(x), start + profile + 11);
-    });
-    pen.textAlign = "right";
-    pen.fillText("x/R", width, start + profile + 11);
-    pen.strokeStyle = BLUE;
-    pen.fillStyle = BLUE;
-    pen.lineWidth = 1.8;
-    pen.beginPath();
-    const response = shown.responses[index];
-    let begun = false;
-    shown.x.forEach(function (x, k) {
-      if (Math.abs(x) > data.reach + 0.5) { return; }
-      if (begun) { pen.lineTo(X(x), Y(response[k])); } else { pen.moveTo(X(x), Y(response[k])); begun = true; }
-    });
-    pen.stroke();
-    shown.x.forEach(function (x, k) {
-      if (Math.abs(x) > data.reach + 0.5) { return; }
-      pen.beginPath();
-      pen.arc(X(x), Y(response[k]), 2, 0, 2 * Math.PI);
-      pen.fill();
-    });
-    const peaks = shown.peaks[index];
-    panel.note.textContent = opened + (opened === 1 ? " contact" : " contacts") + " opened, " +
-      peaks + (peaks === 1 ? " peak" : " peaks");
+  } catch (error) {
+    byId("explorer").textContent = "This browser cannot unpack the states; figures 3 to 9 show them at chosen forces.";
+    return;
   }
 
-  function show() {
+  const colour = {};
+  function readColours() {
     const style = window.getComputedStyle(document.documentElement);
-    [BLUE, VERMILION, GREY, INK, SOFT] = ["curve", "opened", "grid", "ink", "soft"].map(function (name) {
-      return style.getPropertyValue("--" + name).trim();
+    ["curve", "lost", "opened", "grid", "ink", "soft", "paper"].forEach(function (name) {
+      colour[name] = style.getPropertyValue("--" + name).trim();
     });
-    const index = Number(slider.value);
-    label.textContent = "F = " + data.forces[index] + " mg";
-    slider.setAttribute("aria-valuetext", label.textContent);
-    panels.forEach(function (panel) { draw(panel, index); });
+  }
+
+  function chosen(name) { return Number(document.querySelector("input[name=" + name + "]:checked").value); }
+  function find(packing, friction, ratio) {
+    return data.slabs.find(function (slab) {
+      return slab.polydispersity === packing && slab.friction === friction && (!friction || slab.ratio === ratio);
+    });
+  }
+
+  let slab, wanted = 20;
+  function select() {
+    const packing = chosen("packing"), friction = chosen("friction");
+    const ratios = Array.from(document.querySelectorAll("input[name=ratio]"));
+    ratios.forEach(function (input) { input.disabled = !friction || !find(packing, friction, Number(input.value)); });
+    const possible = ratios.filter(function (input) { return !input.disabled; });
+    if (possible.length && !possible.some(function (input) { return input.checked; })) { possible[0].checked = true; }
+    slab = find(packing, friction, chosen("ratio"));
+    slider.max = slab.forces.length - 1;
+    slider.value = nearest(wanted);
+    byId("about").innerHTML = "Shown: " + slab.about_set + ".";
+    mark();
+    show();
+  }
+  function nearest(force) {
+    let best = 0;
+    slab.forces.forEach(function (value, k) {
+      if (Math.abs(Math.log(value / force)) < Math.abs(Math.log(slab.forces[best] / force))) { best = k; }
+    });
+    return best;
+  }
+
+  // what the paper names, on the slider and as buttons that go there
+  function mark() {
+    marks.textContent = "";
+    const list = byId("paper");
+    list.textContent = slab.paper.length ? "The paper:" : "The paper names no force for this slab.";
+    slab.paper.forEach(function (one) {
+      const forces = slab.forces, after = Math.max(1, forces.findIndex(function (f) { return f >= one.force; }));
+      const part = Math.log(one.force / forces[after - 1]) / Math.log(forces[after] / forces[after - 1]);
+      const tick = document.createElement("i"), place = (after - 1 + part) / (forces.length - 1);
+      tick.style.left = "calc(" + 100 * place + "% + " + (0.5 - place) + "rem)";
+      marks.append(tick);
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = one.force + " mg: " + one.what + " (" + one.place + ")";
+      button.addEventListener("click", function () { slider.value = nearest(one.force); moved(); });
+      list.append(" ", button);
+    });
+  }
+
+  function sheet(id, height) {
+    const canvas = byId(id), width = canvas.clientWidth, ratio = window.devicePixelRatio || 1;
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height(width) * ratio);
+    canvas.style.height = height(width) + "px";
+    const pen = canvas.getContext("2d");
+    pen.scale(ratio, ratio);
+    pen.font = "11px system-ui, sans-serif";
+    pen.textBaseline = "middle";
+    pen.lineJoin = "round";
+    return {canvas: canvas, pen: pen, width: width, height: height(width)};
+  }
+  function text(pen, words, x, y, align, ink) {
+    pen.fillStyle = ink || colour.soft;
+    pen.textAlign = align;
+    pen.fillText(words, x, y);
+  }
+  function line(pen, points, ink, width, dashes) {
+    pen.strokeStyle = ink;
+    pen.lineWidth = width;
+    pen.setLineDash(dashes || []);
+    pen.beginPath();
+    points.forEach(function (point, k) { if (k) { pen.lineTo(point[0], point[1]); } else { pen.moveTo(point[0], point[1]); } });
+    pen.stroke();
+    pen.setLineDash([]);
+  }
+  function dot(pen, x, y, radius, ink, hollow) {
+    pen.beginPath();
+    pen.arc(x, y, radius, 0, 2 * Math.PI);
+    pen.fillStyle = hollow ? colour.paper : ink;
+    pen.fill();
+    if (hollow) { pen.strokeStyle = ink; pen.lineWidth = 1.3; pen.stroke(); }
+  }
+
+  const LEFT = 46;
+  function across(width) {  // the same x axis for contacts and floor
+    const scale = (width - LEFT) / (2 * data.reach + 2);
+    return {scale: scale, X: function (x) { return LEFT + (x + data.reach + 1) * scale; }};
+  }
+
+  function contacts(index) {
+    const place = across(byId("network").clientWidth), scale = place.scale, X = place.X;
+    const paper = sheet("network", function () { return (slab.height + 5.5) * scale + 34; });
+    const pen = paper.pen, frame = slab.frames[index], lines = slab.lines, floor = paper.height - 32;
+    const Z = function (z) { return floor - z * scale; };
+    const counts = {opened: 0, sliding: 0, most: 0, least: 0};
+    pen.strokeStyle = colour.grid;
+    pen.lineWidth = 1;
+    pen.beginPath();
+    const seen = {};
+    for (let k = 0; k < 2 * slab.contacts; k++) {
+      const x = lines[2 * k], z = lines[2 * k + 1];
+      if (seen[x + " " + z]) { continue; }
+      seen[x + " " + z] = true;
+      pen.moveTo(X(x) + scale, Z(z));
+      pen.arc(X(x), Z(z), scale, 0, 2 * Math.PI);
+    }
+    pen.stroke();
+    const widest = 2.2 * scale / data.strongest;
+    const order = Array.from(frame.levels.keys()).sort(function (a, b) { return Math.abs(frame.levels[a]) - Math.abs(frame.levels[b]); });
+    order.forEach(function (k) {
+      const level = frame.levels[k], ends = [[X(lines[4 * k]), Z(lines[4 * k + 1])], [X(lines[4 * k + 2]), Z(lines[4 * k + 3])]];
+      const middle = [(ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2];
+      if (level === data.opened) {
+        counts.opened += 1;
+        const arm = Math.max(2.2, 0.45 * scale), x = middle[0], z = middle[1];
+        line(pen, [[x - arm, z - arm], [x + arm, z + arm]], colour.opened, 1.6);
+        line(pen, [[x - arm, z + arm], [x + arm, z - arm]], colour.opened, 1.6);
+      } else {
+        const part = data.strongest * (level / data.full) * (level / data.full), width = widest * part;
+        if (level > 0) { counts.most = Math.max(counts.most, part); } else { counts.least = Math.max(counts.least, part); }
+        if (part >= 0.008) {
+          pen.lineCap = "butt";
+          if (level > 0) {
+            line(pen, ends, colour.curve, width);
+          } else {  // hollow
+            line(pen, ends, colour.lost, Math.max(width, 2.4));
+            line(pen, ends, colour.paper, Math.max(width, 2.4) - 1.6);
+          }
+        }
+      }
+      if (frame.sliding(k)) {
+        counts.sliding += 1;
+        dot(pen, middle[0], middle[1], Math.max(1.5, 0.28 * scale), colour.ink, true);
+      }
+    });
+    line(pen, [[LEFT, Z(0)], [paper.width, Z(0)]], colour.ink, 1.4);
+    line(pen, [[X(0), Z(slab.height + 4.6)], [X(0), Z(slab.height + 1.4)]], colour.ink, 1.6);
+    pen.fillStyle = colour.ink;
+    pen.beginPath();
+    pen.moveTo(X(0), Z(slab.height + 0.1));
+    pen.lineTo(X(-0.9), Z(slab.height + 1.8));
+    pen.lineTo(X(0.9), Z(slab.height + 1.8));
+    pen.fill();
+    text(pen, "F", X(1.4), Z(slab.height + 3.6), "left", colour.ink);
+    const bar = LEFT + 4, high = 12;  // a bar as wide as half of the applied force
+    line(pen, [[bar, high], [bar + 3 * scale, high]], colour.curve, 0.5 * widest);
+    text(pen, "0.5 F", bar + 3 * scale + 5, high, "left");
+    [0, 10, 20].forEach(function (z) { text(pen, String(z), LEFT - 4, Z(z), "right"); });
+    text(pen, "z/R\u0304", LEFT - 22, Z(15), "right");
+    xTicks(pen, X, floor + 12, paper.width);
+    return counts;
+  }
+  function xTicks(pen, X, y, width) {
+    [-20, -10, 0, 10, 20].forEach(function (x) { text(pen, typed(x), X(x), y, "center"); });
+    text(pen, "x/R\u0304", width, y, "right");
+  }
+
+  function response(index) {
+    const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
+    const X = across(paper.width).X, shown = function (k) { return Math.abs(slab.x[k]) <= data.reach + 0.5; };
+    let top = 0.02, bottom = 0;
+    (slab.smoothed ? slab.smoothed.concat([slab.response[index]]) : slab.response).forEach(function (row) {
+      row.forEach(function (value, k) { if (shown(k)) { top = Math.max(top, value); bottom = Math.min(bottom, value); } });
+    });
+    const Y = function (value) { return 8 + (top - value) / (top - bottom) * (paper.height - 36); };
+    const step = [0.02, 0.05, 0.1, 0.2, 0.5, 1].find(function (s) { return (top - bottom) / s < 7; }) || 2;
+    for (let tick = Math.ceil(bottom / step); tick * step <= top; tick++) {
+      line(pen, [[LEFT, Y(tick * step)], [paper.width, Y(tick * step)]], tick ? colour.grid : colour.soft, 1);
+      text(pen, typed((tick * step).toFixed(2)), LEFT - 4, Y(tick * step), "right");
+    }
+    const curve = [], values = slab.smoothed ? slab.smoothed[index] : slab.response[index];
+    slab.x.forEach(function (x, k) { if (shown(k)) { curve.push([X(x), Y(values[k])]); } });
+    line(pen, curve, colour.curve, 1.8);
+    slab.x.forEach(function (x, k) { if (shown(k)) { dot(pen, X(x), Y(slab.response[index][k]), 2.1, colour.curve, Boolean(slab.smoothed)); } });
+    xTicks(pen, X, paper.height - 10, paper.width);
+  }
+
+  // a plot with a logarithmic force axis, along x or along y
+  function logarithm(low, high, from, to) {
+    const scale = (to - from) / Math.log(high / low);
+    return function (value) { return from + Math.log(value / low) * scale; };
+  }
+
+  function range(index) {
+    const paper = sheet("range", function (width) { return Math.max(170, 0.62 * width); }), pen = paper.pen;
+    const others = slab.polydispersity
+      ? data.slabs.filter(function (one) { return one.polydispersity === slab.polydispersity; })
+        .map(function (one) { return {friction: one.friction, force: one.forces, centre: one.centre}; })
+      : data.range;
+    let top = 0.01, bottom = 0;
+    others.concat([{centre: slab.centre}]).forEach(function (one) {
+      one.centre.forEach(function (value) { top = Math.max(top, value); bottom = Math.min(bottom, value); });
+    });
+    const X = logarithm(0.1, 110, LEFT, paper.width - 40);
+    const Y = function (value) { return 8 + (top - value) / (top - bottom) * (paper.height - 44); };
+    const step = [0.02, 0.05, 0.1, 0.2].find(function (s) { return (top - bottom) / s < 7; }) || 0.5;
+    for (let tick = Math.ceil(bottom / step); tick * step <= top; tick++) {
+      line(pen, [[LEFT, Y(tick * step)], [paper.width - 40, Y(tick * step)]], colour.grid, 1);
+      text(pen, typed((tick * step).toFixed(2)), LEFT - 4, Y(tick * step), "right");
+    }
+    [0.1, 1, 10, 100].forEach(function (force) { text(pen, String(force), X(force), paper.height - 26, "center"); });
+    text(pen, "F / mg", (LEFT + paper.width) / 2, paper.height - 9, "center");
+    slab.paper.forEach(function (one) { line(pen, [[X(one.force), 8], [X(one.force), paper.height - 36]], colour.soft, 1, [2, 3]); });
+    let low = -20;
+    others.map(function (one) { return [Y(one.centre[one.centre.length - 1]), one]; })
+      .sort(function (a, b) { return a[0] - b[0]; }).forEach(function (pair) {
+        const one = pair[1];
+        low = Math.max(pair[0], low + 11);
+        line(pen, one.force.map(function (f, k) { return [X(f), Y(one.centre[k])]; }), colour.soft, 1);
+        text(pen, "\u00b5 " + short(one.friction), paper.width, low, "right");
+      });
+    line(pen, slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k])]; }), colour.curve, 2);
+    const force = slab.forces[index];
+    line(pen, [[X(force), 8], [X(force), paper.height - 36]], colour.ink, 1);
+    dot(pen, X(force), Y(slab.centre[index]), 4.5, colour.ink);
+  }
+
+  const SHAPES = [0, 4, 3, 5];
+  function polygon(pen, x, y, corners, radius, ink, filled, turn) {
+    if (!corners) { dot(pen, x, y, radius, ink, !filled); return; }
+    pen.beginPath();
+    for (let k = 0; k < corners; k++) {
+      const angle = turn + 2 * Math.PI * k / corners;
+      pen.lineTo(x + 1.25 * radius * Math.sin(angle), y - 1.25 * radius * Math.cos(angle));
+    }
+    pen.closePath();
+    pen.fillStyle = filled ? ink : colour.paper;
+    pen.fill();
+    pen.strokeStyle = ink;
+    pen.lineWidth = 1.2;
+    pen.stroke();
+  }
+  function phase(index) {
+    const paper = sheet("phase", function (width) { return Math.max(190, 0.72 * width); }), pen = paper.pen;
+    const X = function (friction) { return LEFT + 10 + friction * (paper.width - LEFT - 26); };
+    const Y = logarithm(0.03, 600, paper.height - 38, 8);
+    [0.1, 1, 10, 100].forEach(function (force) {
+      line(pen, [[LEFT, Y(force)], [paper.width, Y(force)]], colour.grid, 1);
+      text(pen, String(force), LEFT - 4, Y(force), "right");
+    });
+    [0, 0.2, 0.5, 1].forEach(function (friction) { text(pen, String(friction), X(friction), paper.height - 26, "center"); });
+    text(pen, "\u00b5", paper.width - 8, paper.height - 9, "right");
+    text(pen, "F / mg", LEFT - 4, Y(350), "right");
+    text(pen, "\u03b4", LEFT, paper.height - 9, "left");
+    data.crossovers.forEach(function (one, k) {
+      const x = LEFT + 18 + 46 * k;
+      polygon(pen, x, paper.height - 9, SHAPES[k % 4], 3.2, colour.soft, true, 0);
+      text(pen, String(one.polydispersity), x + 7, paper.height - 9, "left");
+    });
+    data.crossovers.map(function (one, k) { return [one, SHAPES[k % 4]]; }).sort(function (a, b) {
+      return (a[0].polydispersity === slab.polydispersity) - (b[0].polydispersity === slab.polydispersity);
+    }).forEach(function (pair) {
+      const one = pair[0], mine = one.polydispersity === slab.polydispersity, ink = mine ? colour.curve : colour.soft;
+      const points = one.friction.map(function (friction, k) { return [X(friction), Y(one.force[k])]; });
+      line(pen, points, ink, mine ? 2 : 1, mine ? [] : [4, 3]);
+      points.forEach(function (point, k) {
+        if (mine && one.low[k] !== one.high[k]) {
+          line(pen, [[point[0], Y(one.low[k] || 0.03)], [point[0], Y(one.high[k] || 600)]], ink, 1);
+        }
+        if (one.kind[k]) {
+          polygon(pen, point[0], point[1], 3, 3.4, ink, false, one.kind[k] === 2 ? 0 : Math.PI);
+        } else {
+          polygon(pen, point[0], point[1], pair[1], 3.2, ink, true, 0);
+        }
+      });
+    });
+    const x = X(slab.friction), y = Y(slab.forces[index]);
+    line(pen, [[LEFT, y], [paper.width, y]], colour.ink, 1);
+    line(pen, [[x, 8], [x, paper.height - 38]], colour.ink, 1);
+    dot(pen, x, y, 4.5, colour.ink);
+  }
+  function crossing() {
+    const curve = data.crossovers.find(function (one) { return one.polydispersity === slab.polydispersity; });
+    const k = curve && slab.ratio === 0.8 ? curve.friction.indexOf(slab.friction) : -1;
+    if (k < 0) { return ""; }
+    return " In Fig. 22 two peaks begin " + ["at ", "below ", "above "][curve.kind[k]] + short(curve.force[k]) + " mg.";
+  }
+
+  const plural = function (count, one, many) { return (count || "no") + " " + (count === 1 ? one : many); };
+  function show() {
+    readColours();
+    byId("range-of").textContent = slab.polydispersity ? "as in Fig. 20" : "Fig. 6";
+    const index = Number(slider.value), force = slab.forces[index], counts = contacts(index);
+    response(index);
+    range(index);
+    phase(index);
+    label.textContent = "F = " + force + " mg";
+    slider.setAttribute("aria-valuetext", force + " mg");
+    const peaks = slab.peaks ? "The response has " + plural(slab.peaks[index], "peak", "peaks") + " and is " : "The smoothed response is ";
+    said.textContent = "Under " + force + " mg: " + plural(counts.opened, "contact is", "contacts are") + " opened, " +
+      plural(counts.sliding, "slides", "slide") + "; one contact gains at most " + short(counts.most) +
+      " F, one that stays closed loses at most " + short(counts.least) + " F. " + peaks +
+      typed(slab.centre[index].toFixed(4)) + " F at x = 0." + crossing();
+    byId("network").setAttribute("aria-label", "Contacts of the slab, " + slab.about + ". " + said.textContent);
+    byId("floor").setAttribute("aria-label", "Floor response per disk against x under " + force + " mg, largest " +
+      typed(Math.max.apply(null, slab.response[index]).toFixed(3)) + ". " + peaks + typed(slab.centre[index].toFixed(4)) + " F at x = 0.");
+    byId("range").setAttribute("aria-label", "Response at x = 0 against the force, from " + typed(slab.centre[0].toFixed(4)) +
+      " at " + slab.forces[0] + " mg to " + typed(slab.centre[slab.centre.length - 1].toFixed(4)) + " at " +
+      slab.forces[slab.forces.length - 1] + " mg; the cursor is at " + force + " mg.");
+    byId("phase").setAttribute("aria-label", "Force from which there are two peaks against friction; the cursor is at friction " +
+      slab.friction + " and " + force + " mg." + crossing());
+  }
+  function moved() {
+    wanted = slab.forces[Number(slider.value)];
+    show();
   }
 
   let waiting = 0;
@@ -145,10 +345,12 @@
     window.cancelAnimationFrame(waiting);
     waiting = window.requestAnimationFrame(show);
   });
-  slider.addEventListener("input", show);
+  slider.addEventListener("input", moved);
+  document.querySelectorAll("#explorer input[type=radio]").forEach(function (input) { input.addEventListener("change", select); });
   // print is light whatever the screen is
   ["(prefers-color-scheme: dark)", "print"].forEach(function (medium) {
     window.matchMedia(medium).addEventListener("change", show);
   });
-  show();
+  select();
+  byId("explorer").dataset.ready = "";
 })();
