@@ -46,9 +46,11 @@ def test_order(integrator, damping_ratio):
     error = errors(integrator, damping_ratio, known_start=True)
     order = np.log2(error[:-1] / error[1:])
     expected = INTEGRATORS[integrator].order
+    if integrator == "leapfrog" and damping_ratio == 0.0:
+        expected = 2  # only dashpots see the velocity half a step earlier
     assert np.all(order > expected - 0.1)
     assert np.all(order < expected + 0.6)
-    assert error[0] < 1e-4
+    assert error[0] < (1e-4 if expected > 1 else 5e-3)
 
 
 def test_gear_from_rest_is_of_second_order():

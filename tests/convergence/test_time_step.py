@@ -20,7 +20,8 @@ def response(integrator: str, step: float):
 
 
 @pytest.mark.parametrize(
-    ("integrator", "step"), [("beeman", 2e-4), ("beeman", 1e-4), ("verlet", 4e-4), ("verlet", 2e-4), ("gear", 2e-4)]
+    ("integrator", "step"),
+    [("beeman", 2e-4), ("beeman", 1e-4), ("verlet", 4e-4), ("verlet", 2e-4), ("leapfrog", 2e-4), ("gear", 2e-4)],
 )
 def test_response_does_not_depend_on_step_and_integrator(integrator, step):
     assert np.abs(response("beeman", 4e-4)).max() > 0.15

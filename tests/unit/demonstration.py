@@ -51,7 +51,7 @@ class Cubic(NamedTuple):
         return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)
 
 
-class Leapfrog(NamedTuple):
+class Euler(NamedTuple):
     """Symplectic Euler: velocities first, then displacements with them."""
 
     rows: int = 1
@@ -66,4 +66,4 @@ class Leapfrog(NamedTuple):
         pass
 
 
-RECORD = Integrator(name="leapfrog", title="symplectic Euler", order=1, reference="none", scheme=Leapfrog())
+RECORD = Integrator(name="euler", title="symplectic Euler", order=1, reference="none", scheme=Euler())

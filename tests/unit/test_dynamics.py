@@ -8,7 +8,7 @@ from small_scenes import free_disks, scene
 
 from granular_response.solve import Dynamics, DynamicsError, Problem, Stop, relax
 
-INTEGRATORS = ["beeman", "verlet", "gear"]
+INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 
 
 def falling(integrator="beeman", *, steps=3000, **changes) -> Dynamics:

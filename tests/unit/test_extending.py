@@ -48,16 +48,16 @@ def test_a_law_of_ones_own_settles_and_follows_a_path():
 
 
 def test_an_integrator_of_ones_own(monkeypatch):
-    monkeypatch.setitem(INTEGRATORS, "leapfrog", RECORD)
+    monkeypatch.setitem(INTEGRATORS, "euler", RECORD)
     made = Problem.from_scene(Scene().updated({"packing": {"layers": 3, "disks_per_row": 7}}))
-    ours, paper = (Dynamics(made, made.bare_state(), name, 1e-5) for name in ("leapfrog", "beeman"))
+    ours, paper = (Dynamics(made, made.bare_state(), name, 1e-5) for name in ("euler", "beeman"))
     for dynamics in (ours, paper):
         dynamics.set_ramps()
         dynamics.advance(2000)
     moved = np.abs(paper.position - made.packing.position).max()
     assert 0 < np.abs(ours.position - paper.position).max() < 0.01 * moved
     # an undamped spring: stable up to 2 over the frequency
-    assert oscillator_limit("leapfrog", 400.0, 0.0) == pytest.approx(0.1, rel=2e-2)
+    assert oscillator_limit("euler", 400.0, 0.0) == pytest.approx(0.1, rel=2e-2)
 
 
 def test_what_comes_from_elsewhere_does_not_trouble_other_processes(tmp_path):

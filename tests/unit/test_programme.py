@@ -6,7 +6,8 @@ from small_scenes import scene
 
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import continue_solution, solve_scene
+from granular_response.solve import Problem, continue_solution, rest_state, solve_scene
+from granular_response.solve.stages import climb
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
 
@@ -109,6 +110,27 @@ def test_stages_are_a_method_of_a_scene():
         assert state.certificate.stable and state.certificate.force_residual < 1e-9
     smooth = solve_scene(slab(contact__friction=0.0, protocol__method="stages"))
     assert smooth.load_choice.method == "minimise"
+
+
+def test_rings_lead_stages_along_the_path_in_fewer_steps():
+    """The inertia of a stage's dynamics does not matter in the quasi-static limit; that of the fall is the disks'."""
+    disordered = slab(
+        contact__friction=0.2, packing__polydispersity=0.01, packing__lattice_constant="touching-largest",
+        protocol__integrator="leapfrog", protocol__time_step="auto", protocol__ramp_time=40.0,
+    )  # fmt: skip
+    (path,) = solve_scene(disordered, load_factors=[0.2]).loaded
+    steps = []
+    for inertia in ("disks", "rings"):
+        problem = Problem.from_scene(disordered.updated({"protocol.inertia": inertia}))
+        rest = rest_state(problem)
+        state, _ = climb(problem.with_loads(rest.position), rest, 0.2, statics=False)
+        assert state.certificate.stable and state.certificate.force_residual < 1e-9
+        floor = floor_disks([rest, path, state])
+        added, expected = (floor_force(one, floor) - floor_force(rest, floor) for one in (state, path))
+        assert np.abs(expected).max() > 1.0
+        assert added == pytest.approx(expected, abs=0.02)
+        steps.append(state.reached.steps)
+    assert steps[1] < 0.6 * steps[0]
 
 
 @pytest.mark.parametrize("factors", [[], [float("nan")], [1.0, float("inf")]])

@@ -104,7 +104,7 @@ MALFORMED = {
         "protocol.method = 'newton': must be auto or dynamics or path or stages or minimise"
     ),
     "protocol: {integrator: verlett}": (
-        "protocol.integrator = 'verlett': must be beeman or verlet or gear, did you mean verlet?"
+        "protocol.integrator = 'verlett': must be beeman or verlet or leapfrog or gear, did you mean verlet?"
     ),
     "protocol: {time_step: 0}": "protocol.time_step = 0: must be a number greater than 0, or auto",
     "protocol: {static_finish: no}": "protocol.static_finish = 'no': must be true or false",

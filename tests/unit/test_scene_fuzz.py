@@ -75,7 +75,8 @@ scenes = options(
     preparation=options(gravity=st.sampled_from(["at-once", "slow", "frictionless"]), ramp_time=numbers(open_low=True)),
     protocol=options(
         method=st.sampled_from(["auto", "dynamics", "path", "minimise"]),
-        integrator=st.sampled_from(["beeman", "verlet", "gear"]),
+        integrator=st.sampled_from(["beeman", "verlet", "leapfrog", "gear"]),
+        inertia=st.sampled_from(["disks", "rings"]),
         time_step=st.just("auto") | numbers(open_low=True),
         ramp_time=numbers(),
         stop_kinetic_energy=numbers(open_low=True),

@@ -17,7 +17,7 @@ def test_unstable_time_step_is_one_clear_line():
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
+@pytest.mark.parametrize("integrator", ["beeman", "verlet", "leapfrog", "gear"])
 def test_limit_separates_steps_that_settle_from_steps_that_do_not(integrator):
     problem = Problem.from_scene(scene(protocol__integrator=integrator))
     limit = stability_limit(problem)
@@ -54,6 +54,45 @@ def test_a_spring_advanced_by_the_predicted_velocity_allows_shorter_steps_than_o
     )
 
 
+def test_leapfrog_bears_twice_the_step_and_its_tangential_springs_follow_positions():
+    """Dashpots and tangential springs see the displacement of a step, over the step."""
+    assert oscillator_limit("leapfrog", 0.0, 5.0, 1.0) > 1.9 * oscillator_limit("verlet", 0.0, 5.0, 1.0)
+    for damping in (0.0, 0.05, 5.0):
+        assert oscillator_limit("leapfrog", 0.0, damping, 1.0) == pytest.approx(
+            oscillator_limit("leapfrog", 1.0, damping), rel=1e-3
+        )
+    slab = Problem.from_scene(scene(packing__polydispersity=0.25))
+    assert stability_limit(slab, "leapfrog") > 1.9 * stability_limit(slab, "verlet")
+
+
+def test_rings_take_the_same_part_of_a_limit_that_is_further():
+    disks = Problem.from_scene(scene(packing__polydispersity=0.25, protocol__integrator="leapfrog"))
+    rings = replace(disks, rings=True)
+    assert np.array_equal(rings.weight, disks.weight)
+    assert rings.inverse_mass == pytest.approx(np.concatenate([np.ones(2 * rings.n), rings.packing.radius**-2.0]))
+    longer = stability_limit(rings) / stability_limit(disks, smallest=True)
+    assert longer > 1.5
+    for step in ("auto", 2e-4):
+        disks, rings = (replace(p, scene=p.scene.updated({"protocol.time_step": step})) for p in (disks, rings))
+        assert resolve_time_step(rings) == pytest.approx(longer * resolve_time_step(disks))
+
+
+def test_the_limit_of_rings_separates_steps_that_settle_from_steps_that_do_not():
+    disks = Problem.from_scene(scene(protocol__integrator="leapfrog", packing__polydispersity=0.1))
+    problem = replace(disks, rings=True)
+    limit = stability_limit(problem)
+
+    def settles(step: float) -> bool:
+        dynamics = Dynamics(problem, problem.bare_state(), "leapfrog", step)
+        try:
+            return relax(dynamics, Stop(1e-9, maximum_steps=40_000)).reached.settled
+        except DynamicsError:
+            return False
+
+    assert settles(0.95 * limit)
+    assert not settles(2.5 * limit)
+
+
 def twisted(integrator: str, part: float) -> float:
     """Energy of a disk whose contact with the floor sticks while it twists there, per its energy at the start."""
     problem, state = free_disks(
@@ -66,14 +105,17 @@ def twisted(integrator: str, part: float) -> float:
     dynamics = Dynamics(problem, state, integrator, step)
     dynamics.set_ramps()
     before = dynamics.kinetic_energy()
-    dynamics.advance(60)
+    try:
+        dynamics.advance(60)
+    except DynamicsError:  # blown up
+        return np.inf
     return dynamics.kinetic_energy() / before
 
 
-@pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])
+@pytest.mark.parametrize("integrator", ["beeman", "verlet", "leapfrog", "gear"])
 def test_the_limit_of_a_tangential_spring_is_the_kernels_own(integrator):
     """Rolling translates and turns the disk: (1 + 2) k_T over the mass is the rate of that one motion."""
-    assert twisted(integrator, 0.97) < 1e-4
+    assert twisted(integrator, 0.97) < 1e-3
     assert twisted(integrator, 1.05) > 10.0
 
 

@@ -18,7 +18,7 @@ from granular_response.state import Reached
 
 PARAMETERS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["stability"]
 SEED = PARAMETERS["seed"]
-INTEGRATORS = ["beeman", "verlet", "gear"]
+INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 SMALL = {"packing": {"kind": "slab", "layers": 4, "disks_per_row": 7}, "loads": []}
 
 # Time steps

@@ -55,7 +55,9 @@ Counts = Annotated[
     tuple[Count, ...], _SOME, AfterValidator(_different), allowed("must be a list of different whole numbers from 1 on")
 ]
 Integrators = Annotated[
-    tuple[Integrator, ...], Field(min_length=2), allowed("must be at least two of beeman, verlet, gear, to compare")
+    tuple[Integrator, ...],
+    Field(min_length=2),
+    allowed("must be at least two of beeman, verlet, leapfrog, gear, to compare"),
 ]
 
 

@@ -22,7 +22,7 @@ LoadFactors = Annotated[
     allowed("must be a list of one or more finite numbers"),
 ]
 Method = Literal["auto", "dynamics", "path", "stages", "minimise"]
-Integrator = Literal["beeman", "verlet", "gear"]
+Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
 class Preparation(Description):
@@ -60,8 +60,15 @@ class Protocol(Description):
     )
     integrator: Integrator = Field(
         default="beeman",
-        description="Integrator of the equations of motion: Beeman, velocity Verlet, or the Gear "
-        "predictor-corrector with five values.",
+        description="Integrator of the equations of motion: Beeman, velocity Verlet, leapfrog (Verlet whose dashpots "
+        "see the velocity half a step earlier, stable for twice the step), or the Gear predictor-corrector with five "
+        "values.",
+    )
+    inertia: Literal["disks", "rings"] = Field(
+        default="disks",
+        description="Inertia in the dynamics of stages, which only tends to the quasi-static limit. disks: that of the "
+        "disks; rings: mean mass, and moment of inertia of a ring of the disk's radius, for every disk, while weights "
+        "stay as they are. Turning limits the time step less then, and the step grows with the limit.",
     )
     time_step: TimeStep | None = Field(
         default=None,

@@ -394,10 +394,14 @@ class Relaxation:
             return
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
-        touching = dynamics.touching()
-        count = dynamics.contact_count(touching)
         slow = energy < SLOW_ROLLING * stop.kinetic_energy
         look_at_rolling = (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0
+        if not (slow or look_at_rolling or self.rolling):  # far from rest, whatever touches
+            self.envelope.append(energy)
+            self.settled = False
+            return
+        touching = dynamics.touching()
+        count = dynamics.contact_count(touching)
         if look_at_rolling or (energy > stop.kinetic_energy and (slow or self.rolling)):
             rollers = dynamics.rollers(touching, count)
             if look_at_rolling:

@@ -74,6 +74,7 @@ class Problem:
     load_disk: NDArray[np.int64]
     load: FloatArray
     held: Held = NOTHING
+    rings: bool = False  #: whether disks move like rings of the mean mass; their weights stay
 
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
@@ -135,9 +136,10 @@ class Problem:
     @cached_property
     def inverse_mass(self) -> FloatArray:
         """(2 n,) or (3 n,) inverse masses and moments of inertia, in the order of ``q``."""
-        parts = [1.0 / self.packing.mass] * 2
+        packing = self.packing
+        parts = [np.ones(self.n) if self.rings else 1.0 / packing.mass] * 2
         if self.rotations:
-            parts.append(1.0 / self.packing.inertia)
+            parts.append(1.0 / (packing.radius**2 if self.rings else packing.inertia))
         return np.concatenate(parts)
 
     @cached_property

@@ -5,7 +5,8 @@ by statics costs far more than it is worth when responses are averaged over an e
 one load to the next, begins with static increments by plain Newton iterations. When these fail, or end in an
 unstable state, the paper's protocol (Sec. III.C) carries the packing over what is left of the stage: a linear ramp,
 relaxation, and the static finish. The dynamic part tends to the quasi-static path like the inverse of the ramp's
-duration.
+duration. In that limit inertia does not matter, so it may be chosen for the longest stable step
+(``protocol.inertia``).
 """
 
 from __future__ import annotations
@@ -107,6 +108,7 @@ def _dynamic(problem: Problem, start: State, factor: float, ramp_time: float, lo
             raise Collapsed(factor, height)
 
     ramp = (start.load_factor, factor, ramp_time)
+    problem = replace(problem, rings=protocol.inertia == "rings")
     return settle(problem, start, STAGE, stop, what=f"load {factor:g}", load=ramp, watch=watch)
 
 

@@ -15,6 +15,10 @@ moment of inertia 1/2 (radius 1), so that a tangential spring of stiffness k_T t
   square root of the moment of inertia;
 * *the smallest disk* alone among heavier ones of radius 1, as many as fit around it.
 
+With ``protocol.inertia: rings`` disks have mass 1 and the moment of inertia of rings, 1, in the stages between loads:
+all rates of turning are half as large, and no disk is lighter than others; neighbours then count as the mean of six and
+of as many as fit around the largest disk.
+
 The study ``stability`` measures the limit of kicked packings against this one: they settle at 0.95 of it, and cycle
 or blow up between 1.05 and 1.7 times the limit.
 """
@@ -22,6 +26,7 @@ or blow up between 1.05 and 1.7 times the limit.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -64,6 +69,9 @@ def oscillator_limit(integrator: str, stiffness: float, damping: float, spring: 
     return float(step)
 
 
+#: Moment of inertia over mass times squared radius, of a homogeneous disk and of a ring.
+DISK, RING = 0.5, 1.0
+
 #: Stiffness that follows positions, stiffness of tangential springs, and damping rate, all over the mass.
 Motion = tuple[float, float, float]
 
@@ -93,13 +101,14 @@ def largest_force(problem: Problem) -> float:
     return force
 
 
-def _at_wall(pair: Constants, wall: Constants, neighbours: int, walls: int) -> list[Motion]:
-    """Stiffest motions of a disk at one wall or two: coordinates (x, z, rotation / sqrt(2))."""
+def _at_wall(pair: Constants, wall: Constants, neighbours: float, walls: int, moment: float) -> list[Motion]:
+    """Stiffest motions of a disk at one wall or two: coordinates (x, z, rotation times sqrt(moment))."""
     kn, nun, kt, nut = pair
-    along = np.array([[1.0, 0.0, -np.sqrt(2.0)], [0.0, 1.0, -np.sqrt(2.0)]])[:walls]
+    rim = 1.0 / np.sqrt(moment)
+    along = np.array([[1.0, 0.0, -rim], [0.0, 1.0, -rim]])[:walls]
     inward = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])[:walls]
     around = np.diag([1.0, 1.0, 0.0]) * neighbours
-    turning = np.diag([1.0, 1.0, 4.0]) * neighbours
+    turning = np.diag([1.0, 1.0, 2.0 / moment]) * neighbours
     direct = kn * around + wall[0] * inward.T @ inward
     tangential = kt * turning + wall[2] * along.T @ along
     damping = nun * around + nut * turning + wall[1] * inward.T @ inward + wall[3] * along.T @ along
@@ -110,6 +119,11 @@ def _at_wall(pair: Constants, wall: Constants, neighbours: int, walls: int) -> l
     return motions
 
 
+def _around(outer: float, inner: float) -> float:
+    """How many disks of radius ``outer`` fit around one of radius ``inner``; not a whole number."""
+    return float(np.pi / np.arcsin(outer / (outer + inner)))
+
+
 def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion]:
     """Motions among which the one that limits the time step is; see the module.
 
@@ -118,14 +132,20 @@ def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion
     force = largest_force(problem)
     pair, wall = _constants(problem.pair_law, force), _constants(problem.wall_law, force)
     kn, nun, kt, nut = pair
-    z = NEIGHBOURS
-    motions: list[Motion] = [(z * kn, z * kt, z * (nun + nut)), (0.0, 4 * z * kt, 4 * z * nut)]
-    motions += _at_wall(pair, wall, ON_FLOOR, 1) + _at_wall(pair, wall, IN_CORNER, 2)
+    small, large = float(problem.packing.radius.min()), float(problem.packing.radius.max())
+    # no disk of many neighbours is heavier than others either: an edge counts with the mean of its ends
+    crowd = 0.5 + 0.5 * _around(small, large) / NEIGHBOURS if problem.rings else 1.0
+    z = crowd * NEIGHBOURS
+    moment = RING if problem.rings else DISK
+    turn = 2.0 * z / moment
+    motions: list[Motion] = [(z * kn, z * kt, z * (nun + nut)), (0.0, turn * kt, turn * nut)]
+    motions += _at_wall(pair, wall, crowd * ON_FLOOR, 1, moment) + _at_wall(pair, wall, crowd * IN_CORNER, 2, moment)
+    if problem.rings:  # none is lighter
+        return motions
     mass = float(problem.packing.mass.min())
     if smallest:
         return [(direct / mass, spring / mass, damping / mass) for direct, spring, damping in motions]
-    around = np.pi / np.arcsin(1.0 / (1.0 + float(problem.packing.radius.min())))
-    half = 0.5 * around / mass
+    half = 0.5 * _around(1.0, small) / mass
     return [*motions, (half * kn, half * kt, half * (nun + nut)), (0.0, 4 * half * kt, 4 * half * nut)]
 
 
@@ -143,12 +163,18 @@ def stability_limit(problem: Problem, integrator: str | None = None, *, smallest
 def resolve_time_step(problem: Problem) -> float:
     """The scene's time step, or the one that is taken where it gives none (see :func:`time_step_reason`).
 
+    For rings, in place of the disks that the scene has, it is the same part of the limit.
+
     Raises
     ------
     UnstableTimeStep
         When the given step exceeds the limit.
     """
     step = problem.scene.protocol.time_step
+    if problem.rings:
+        disks = replace(problem, rings=False)
+        longer = stability_limit(problem) / stability_limit(disks, smallest=True)
+        return longer * resolve_time_step(disks)
     if step is None and stability_limit(problem) >= PAPERS_TIME_STEP:
         return PAPERS_TIME_STEP
     if step is None or step == "auto":
