@@ -111,6 +111,7 @@ def root(tmp_path_factory):
         path.parent.mkdir(parents=True, exist_ok=True)
         shade = np.linspace(0, 255, size[0] * size[1] * 3).reshape(size[1], size[0], 3).astype(np.uint8)
         Image.fromarray(shade).save(path)
+        path.with_suffix(".pdf").write_bytes(b"%PDF")
         beside = path.with_name("captions.json")
         said = json.loads(beside.read_text()) if beside.exists() else {}
         said[path.stem] = {"caption": f"What {path.stem} <shows>.", "alternative": "How it looks."}
@@ -169,7 +170,7 @@ def test_the_page_needs_no_network_and_no_other_file(page):
     assert [link["href"] for link in elements.named("link")] == ["data:,"]
     assert not [script for script in elements.named("script") if "src" in script]
     assert not re.search(r"(?:https?:)?//[\w.]+\.\w+/", re.sub(r"base64,[\w+/=]+", "", page))
-    assert "url(" not in page and "@import" not in page
+    assert page.count("url(") == page.count("url(data:image/webp;base64,") == 3 and "@import" not in page
 
 
 def test_every_figure_of_the_paper_has_a_place_in_order(page):
@@ -177,12 +178,40 @@ def test_every_figure_of_the_paper_has_a_place_in_order(page):
     assert order == list(range(1, 25))
     assert page.count("Not drawn yet.") == 24 - 3
     assert page.count("<img ") == 5
-    text = page.replace("<wbr>", "")  # where a path may break
-    assert "src/granular_response/paper/groups/theory/draw.py" in text
-    assert text.index('id="figure-17"') < text.index("Further figures") < text.index("groups/numerics/draw.py")
-    assert "Numerics.</b> What numerics &lt;shows&gt;." in text
+    assert page.index('id="figure-17"') < page.index("Further figures") < page.index("numerics/numerics.pdf")
+    assert "Numerics.</b> What numerics &lt;shows&gt;." in page
     targets = set(re.findall(r'href="#([\w-]+)"', page))
     assert targets <= {e["id"] for _, e in Elements(page).found if "id" in e}
+
+
+def test_pictures_lead_to_the_files_that_are_there(root, page, tmp_path):
+    links = [a["href"] for a in Elements(page).named("a") if not a["href"].startswith("#")]
+    assert len(set(links)) == 6
+    assert all((root / "figures" / link).exists() for link in links)
+    part = page.partition('<figure id="figure-6"')[2].partition("</figure>")[0]
+    assert re.findall(r'<a href="([^#"]+)">([\w ]+)</a>', part) == [
+        ("friction_linear_range/fig06_linear_range.pdf", "PDF"),
+        ("../data/friction_linear_range.nc", "data"),
+    ]
+    elsewhere = report.write(tmp_path / "elsewhere" / "page.html", root).read_text()
+    moved = [a["href"] for a in Elements(elsewhere).named("a") if not a["href"].startswith("#")]
+    assert len(set(moved)) == 6 and all((tmp_path / "elsewhere" / link).exists() for link in moved)
+
+
+def test_a_claim_shows_its_figure_in_small(root, page):
+    for row in json.loads((root / "figures" / "claims.json").read_text())["table"]:
+        part = page.partition(f'<tr id="claim-{row["id"]}"')[2].partition("</tr>")[0]
+        drawn = [number for number in row["figures"] if number in (1, 6, 17)]
+        assert re.findall(r'class="small-picture p(\d+)" href="#figure-(\d+)"', part) == [
+            (str(number), str(number)) for number in drawn[:1]
+        ]
+
+
+def test_a_further_picture_shows_the_claims_of_its_group_that_no_figure_shows(root, page):
+    stored = json.loads((root / "figures" / "claims.json").read_text())["table"]
+    part = page.partition("<b>Numerics.</b>")[2].partition("</figure>")[0]
+    expected = [row["id"] for row in stored if row["group"] == "numerics" and not row["figures"]]
+    assert re.findall(r'<li><a href="#claim-(\w+)">', part) == expected != []
 
 
 def test_every_part_can_be_run_again(root, page):
@@ -250,7 +279,7 @@ def test_every_reading_of_the_table_is_a_variant_of_the_study():
 
 
 def test_the_same_files_give_the_same_bytes(root, tmp_path):
-    first = report.write(tmp_path / "a" / "page.html", root)
+    first = report.write(tmp_path / "a.html", root)
     second = report.write(tmp_path / "b.html", root)
     assert first.read_bytes() == second.read_bytes()
 

@@ -57,7 +57,7 @@ def write(
     folders = (Path(root) / name for name in ("figures", "data", "benchmarks"))
     used = [file for folder in folders for file in folder.rglob("*") if file.suffix != ".html"]
     atomic.check_output(target, [*used, Path(root) / "requirements.lock", *keep])
-    made = page(Path(root)).encode()
+    made = page(Path(root), target.parent).encode()
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, made)
     return target
@@ -77,8 +77,11 @@ def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".
     generated.renew(notes, readings.BLOCK, readings.markdown(datasets))
 
 
-def page(root: Path) -> str:
-    """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing."""
+def page(root: Path, folder: Path | None = None) -> str:
+    """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing.
+
+    Its links to files of the project, to those that are there, begin at ``folder``: by default ``figures/``.
+    """
     claims = _claims(root / "figures" / "claims.json")
     try:
         shown = pictures.collect(root / "figures")
@@ -104,6 +107,10 @@ def page(root: Path) -> str:
         "claims": claims,
         "verdicts": [(k["verdict"], k["verdict"].replace(" ", "_")) for k in claims["verdict_kinds"]],
         "numbered": shown.numbered,
+        "small": {figure.number: figure.pictures[0].small for figure in shown.numbered if figure.pictures},
+        "of_figure": lambda number: [row for row in claims["table"] if number in row.get("figures", ())],
+        "of_group": lambda group: [row for row in claims["table"] if row["group"] == group and not row.get("figures")],
+        "linked": lambda picture: _linked(picture, root, root / OUTPUT.parent if folder is None else folder),
         "further": shown.further,
         "states": _json_in_html(states) if states else None,
         "explored": states and _choices(states["slabs"]),
@@ -126,6 +133,12 @@ def page(root: Path) -> str:
 def _stored(path: Path) -> dict[str, xr.Dataset]:
     """The datasets of a group, none if it has not run yet."""
     return store.read(path) if path.exists() else {}
+
+
+def _linked(picture: pictures.Picture, root: Path, start: Path) -> list[tuple[str, str]]:
+    """The files of a picture that are there, in words, with their addresses from ``start``."""
+    there = [(name, root / path) for name, path in picture.files if (root / path).exists()]
+    return [(name, Path(os.path.relpath(path, start)).as_posix()) for name, path in there]
 
 
 def _choices(slabs: Sequence[dict[str, Any]]) -> dict[str, list[float]]:

@@ -16,6 +16,9 @@ from granular_response.paper import captions
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
 SHOWN = 0.62
 
+#: Largest size of a small picture, in its own pixels, and how hard it is compressed, from 0 to 100.
+SMALL, SMALL_QUALITY = (192, 128), 55
+
 #: Two figures that are not wider than this, in pixels of the page, stand beside each other.
 NARROW = 480
 
@@ -27,6 +30,7 @@ class Picture:
     stem: str
     group: str
     source: str  #: data URI
+    small: str  #: data URI of the picture in small, not as drawn
     width: int
     height: int
     shown: int  #: width on a wide screen in pixels of the page
@@ -34,8 +38,15 @@ class Picture:
     alternative: str = ""  #: what stands for it where it cannot be seen
 
     @property
-    def module(self) -> str:
-        return f"src/granular_response/paper/groups/{self.group}/draw.py"
+    def files(self) -> tuple[tuple[str, str], ...]:
+        """What belongs to it, in words, and the path from the root of the project."""
+        folder = f"src/granular_response/paper/groups/{self.group}"
+        return (
+            ("PDF", f"figures/{self.group}/{self.stem}.pdf"),
+            ("data", f"data/{self.group}.nc"),
+            ("drawing", f"{folder}/draw.py"),
+            ("folder of the group", folder),
+        )
 
     @property
     def number(self) -> int | None:
@@ -119,7 +130,20 @@ def embed(path: Path) -> Picture:
     """A drawn picture as a data URI: every pixel as drawn, in lossless WebP, less than half as large as the PNG."""
     with Image.open(path) as image:
         plain = image.convert("RGB")
+    small = plain.copy()
+    small.thumbnail(SMALL)
+    return Picture(
+        path.stem,
+        path.parent.name,
+        _webp(plain, lossless=True, quality=60),
+        _webp(small, quality=SMALL_QUALITY),
+        plain.width,
+        plain.height,
+        round(SHOWN * plain.width),
+    )
+
+
+def _webp(image: Image.Image, **options: bool | int) -> str:
     buffer = io.BytesIO()
-    plain.save(buffer, format="WEBP", lossless=True, quality=60, method=4)
-    source = "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
-    return Picture(path.stem, path.parent.name, source, plain.width, plain.height, round(SHOWN * plain.width))
+    image.save(buffer, format="WEBP", method=4, **options)
+    return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
