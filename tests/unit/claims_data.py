@@ -373,6 +373,18 @@ def superposition_study():
     }
 
 
+def influence_study():
+    power = np.full((2, 4, 1, 3), np.nan)
+    power[0, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
+    power[1] = np.array([1.86, 1.9, 1.92, 1.94])[:, None, None]
+    return {
+        "saint_venant": dataset(
+            {"polydispersity": ("case", [0.0, 0.1]), "friction": ("case", [0.0, 0.2])},
+            exponent=(("case", "realization", "separation", "fit"), power),
+        )
+    }
+
+
 def everything():
     """Datasets in which every claim of the paper that is measured holds, in every reading."""
     return {
@@ -390,4 +402,5 @@ def everything():
         "phase_diagram": phases_study(),
         "superposition": superposition_study(),
         "numerics": numerics_study(),
+        "influence": influence_study(),
     }

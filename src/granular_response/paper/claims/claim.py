@@ -196,6 +196,11 @@ class Claim:
     group: str = ""
     derivation: bool = False
 
+    @property
+    def beyond(self) -> bool:
+        """Whether the paper leaves the question to words, so that it is counted apart."""
+        return self.id.startswith("B")
+
 
 def missing(needs: str) -> Measure:
     """The measure of a claim that no stored dataset decides; ``needs`` says what would."""

@@ -20,6 +20,7 @@ from ..groups.contact_law import claims as contact_law
 from ..groups.friction_fields import claims as friction_fields
 from ..groups.friction_linear_range import claims as friction_linear_range
 from ..groups.frictionless_crossover import claims as frictionless_crossover
+from ..groups.influence import claims as influence
 from ..groups.numerics import claims as numerics
 from ..groups.phase_diagram import claims as phase_diagram
 from ..groups.pile_dip import claims as pile_dip
@@ -36,7 +37,7 @@ from .verdict import MEANINGS, Entry, Verdict, judge
 from .words import TABLE, bounds
 
 #: Kinds of claims by the first letter, in the order of the table.
-_ORDER = "AFRKSPTDUN"
+_ORDER = "AFRKSPTDUNB"
 
 
 def _place(claim: Claim) -> tuple[int, int, str]:
@@ -52,6 +53,7 @@ CLAIMS: tuple[Claim, ...] = tuple(
             *friction_fields.CLAIMS,
             *friction_linear_range.CLAIMS,
             *frictionless_crossover.CLAIMS,
+            *influence.CLAIMS,
             *numerics.CLAIMS,
             *phase_diagram.CLAIMS,
             *pile_dip.CLAIMS,
@@ -126,10 +128,11 @@ def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
     for word in TABLE:
         for factor in FACTORS:
             changed = bounds(word.name, factor)
-            verdicts = {entry.claim.id: entry.verdict for entry in entries}
+            verdicts = {entry.claim.id: entry.verdict for entry in entries if not entry.claim.beyond}
             moved = {}
             for entry in entries:
-                if entry.finding is None or not any(word.name in c.words for c in _conditions(entry)):
+                named = any(word.name in c.words for c in _conditions(entry))
+                if entry.claim.beyond or not named:
                     continue
                 now = judge(entry.claim, data, changed).verdict
                 if now != entry.verdict:
@@ -163,8 +166,9 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
         }
         for entry in entries
     }
+    papers = [entry.verdict for entry in entries if not entry.claim.beyond]
     return {
-        "counts": {**counts([entry.verdict for entry in entries]), "total": len(entries)},
+        "counts": {**counts(papers), "total": len(papers), "beyond": len(entries) - len(papers)},
         "verdicts": verdicts,
         "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
         "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
@@ -184,6 +188,7 @@ def _row(entry: Entry) -> dict[str, Any]:
         "reason": entry.reason,
         "figures": list(claim.figures),
         "group": claim.group,
+        "beyond": claim.beyond,
         "ours": finding.summary if finding else "",
         "value": None,
         "interval": None,
@@ -278,9 +283,11 @@ def sentence(found: dict[str, Any]) -> str:
         if n
     ]
     text = f"Of {judged} claims of the paper that were measured: {', '.join(parts)}."
-    algebra, missing = number["derivation"], number["not_measured"]
+    algebra, missing, beyond = number["derivation"], number["not_measured"], number.get("beyond", 0)
     if algebra:
         text += f" {algebra} more {'are' if algebra != 1 else 'is'} algebra that no simulation can fail."
+    if beyond:
+        text += f" {beyond} more {'goes' if beyond == 1 else 'go'} beyond what the paper measured."
     if missing:
         text += f" {missing} {'are' if missing != 1 else 'is'} not measured."
     return text

@@ -1,0 +1,57 @@
+"""Claim B1, beyond the paper: Saint-Venant's principle in granular packings (Sec. VI)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...claims.bootstrap import over_realizations
+from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "influence"
+#: Of the difference of two loads with the same force and torque, in an elastic body.
+ELASTIC = 2.0
+
+
+def saint_venant(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "saint_venant", "exponent", "polydispersity", "friction")
+    most = words["quite well"]
+    readings, means = [], []
+    for case in range(study.sizes["case"]):
+        one = study.isel(case=case, separation=0)
+        each = one["exponent"].values
+        each = each[np.isfinite(each[:, 0])]
+        # of a lattice there is one: the range over the rows that are fitted
+        found = over_realizations(each[:, 0], np.mean) if len(each) > 1 else Quantity.range(each[0])
+        means.append(found.value)
+        readings.append(
+            Reading(
+                f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}",
+                Condition(
+                    "power of the distance with which two equivalent loads differ less",
+                    found,
+                    (1.0 - most) * ELASTIC,
+                    (1.0 + most) * ELASTIC,
+                    ("quite well",),
+                ),
+            )
+        )
+    return Finding(
+        f"the difference of a force and its two halves falls as the power {min(means):.2g} to {max(means):.2g} of the "
+        "distance; 2 in an elastic body",
+        readings,
+        "Small loads on the disks of every row, at rest. Elastic is taken as the power 2 within a fifth",
+    )
+
+
+CLAIMS = (
+    Claim(
+        "B1",
+        "beyond the paper, VI",
+        "power of the distance with which statically equivalent small loads differ on the floor",
+        "statically equivalent loads differ little far away, as in an elastic body (Saint-Venant)",
+        saint_venant,
+        (),
+        GROUP,
+    ),
+)

@@ -1,0 +1,94 @@
+"""The influence of every disk on a slab of 6 layers, from parameters through a file to figures and the claim."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from granular_response.paper.claims.claim import Data
+from granular_response.paper.claims.verdict import judge
+from granular_response.paper.groups.influence import draw, simulate
+from granular_response.paper.groups.influence.claims import CLAIMS
+from granular_response.paper.groups.influence.parameters import Parameters
+from granular_response.scene import SceneError
+from granular_response.store import files as store
+
+PARAMETERS = {
+    "method": "auto",
+    "scene": {
+        "packing": {"layers": 6, "disks_per_row": 25, "lattice_constant": "touching-largest"},
+        "contact": {"stiffness_ratio": 0.8},
+        "protocol": {"time_step": "auto", "integrator": "verlet", "stop_kinetic_energy": 1e-9},
+    },
+    "cases": [
+        {"polydispersity": 0.0, "friction": 0.0},
+        {"polydispersity": 0.1, "friction": 0.2, "realizations": 3},
+    ],
+    "separations": [1, 2],
+    "margin": 12.0,
+    "fitted": [1.0, 6.0],
+}
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("influence") / "group.nc"
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "influence"})
+    return store.read(path)
+
+
+def test_values_are_the_stored_ones(datasets, num_regression):
+    data = datasets["saint_venant"]
+    num_regression.check(
+        {
+            "lattice": data["difference"].isel(case=0, realization=0, separation=0).values,
+            "disordered": data["difference"].isel(case=1, realization=2, separation=1).values,
+            "exponents": data["exponent"].isel(separation=0, fit=0).values.ravel(),
+        },
+        default_tolerance={"rtol": 1e-6, "atol": 1e-9},
+    )
+
+
+def test_a_force_without_friction_moves_its_whole_weight_at_least(datasets):
+    total = datasets["packings"]["total"].values
+    assert (total[0] > 1.0 - 1e-6).all()
+
+
+def test_equivalent_loads_differ_less_from_row_to_row(datasets):
+    lattice = datasets["saint_venant"]["difference"].isel(case=0, realization=0, separation=0).values
+    assert (np.diff(lattice[:4]) < 0.0).all()
+    assert np.isnan(datasets["saint_venant"]["exponent"].isel(case=0, realization=1)).all()  # a lattice has one
+
+
+def test_the_power_of_a_power_law_is_found():
+    height = np.linspace(1.0, 30.0, 30)
+    assert simulate.decay(height, 3.0 * height**-1.7, 2.0, (2.0, 8.0)) == pytest.approx([1.7] * 3)
+    assert np.isnan(simulate.decay(height, height**-1.7, 2.0, (2.0, 2.5))).all()
+
+
+def test_figures_have_their_panels(datasets):
+    figures = draw.draw(datasets)
+    assert set(figures) == {"influence_map", "influence_saint_venant"}
+    assert len(figures["influence_saint_venant"].axes) == 2
+
+
+@pytest.mark.parametrize(
+    ("lattice", "disordered", "verdict"),
+    [(2.0, 1.9, "reproduced"), (2.0, 1.2, "depends on the reading"), (1.0, 0.1, "contradicted")],
+)
+def test_the_claim_follows_the_powers(lattice, disordered, verdict):
+    exponent = np.full((2, 4, 1, 3), np.nan)
+    exponent[0, 0] = lattice
+    exponent[1] = disordered + np.array([-0.02, 0.0, 0.01, 0.02])[:, None, None]
+    study = xr.Dataset(
+        {
+            "exponent": (("case", "realization", "separation", "fit"), exponent),
+            "polydispersity": ("case", [0.0, 0.1]),
+            "friction": ("case", [0.0, 0.2]),
+        }
+    )
+    assert judge(CLAIMS[0], Data({"influence": {"saint_venant": study}})).verdict == verdict
+
+
+def test_heights_to_fit_are_two_growing_numbers():
+    with pytest.raises(SceneError, match=r"fitted = \[6.0, 1.0\]: must be two growing numbers"):
+        Parameters(**PARAMETERS | {"fitted": [6.0, 1.0]})
