@@ -282,7 +282,7 @@ def test_the_study_and_its_figures():
     drawn = figures.draw(datasets)
     assert set(drawn) == {"stability_steps", "stability_motion", "stability_scenes"}
     assert figures.RANDOM == random_scenes.OUTCOMES
-    assert tuple(name for name, _ in figures.OUTCOMES) == time_steps.OUTCOMES
+    assert figures.OUTCOMES == time_steps.OUTCOMES
 
 
 def test_a_random_scene_is_the_same_whenever_it_is_drawn():

@@ -23,8 +23,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "slab bear almost nothing along x: it has several equilibria, and little decides which one is met.",
             "Three panels on one scale. Without friction symbols and lines differ widely, with friction 1 they nearly "
             "agree.",
-            of_scene(
-                parameters.scene, force=parameters.forces, friction=parameters.friction
-            ),
+            of_scene(parameters.scene, force=parameters.forces, friction=parameters.friction),
         )
     }

@@ -6,27 +6,46 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from granular_response.paper.captions import Caption
+from granular_response.paper.captions import Caption, Value
 
 from .parameters import Parameters
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
+    crossovers = datasets["crossovers"]
+    here = crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0]
+    frictions = sorted(set(crossovers["friction"].values[here].tolist()))
+    deltas = sorted(set(crossovers["polydispersity"].values[here].tolist()))
+    given: dict[str, Value] = {
+        "friction": frictions,
+        "wall_friction": frictions,
+        "polydispersity": deltas,
+        "realizations": int(crossovers["realizations"].values[here].max()),
+        "width": parameters.widths,
+    }
+    last, rows = "abcdefghijklmnopqrstuvwxyz"[len(deltas) * len(parameters.widths) - 1], len(parameters.widths)
+    last_of_few = "abcdefghijklmnopqrstuvwxyz"[(len(deltas) - 1) * rows - 1]
     return {
         "fig22_phase_diagram": Caption(
-            "Crossover force from one peak to two against friction, for each polydispersity and two smoothing widths "
-            "(broken line: the lattice, its last point a bound). Thick and thin bars hold 68 % and 95 % of the "
-            "bootstrap draws over realizations, with an arrow head where an end lies beyond every simulated force; "
-            "open circles with an arrow are bounds of the crossover itself. Dark: two peaks, light: one, white: not "
-            "simulated.",
-            "Crossover forces that grow with friction and fall with polydispersity.",
-            {"width": parameters.widths},
+            f"(a) to ({last}) Crossover force from one peak to two against friction, measured on the responses of "
+            "Fig. 21 and of the lattice: a column for each polydispersity, a row for each smoothing width. Full "
+            "circles: crossovers of the mean response; open circles with an arrow: bounds, where the smallest force "
+            "has two peaks already, or the largest one still. Thick and thin bars hold 68 % and 95 % of "
+            f"{parameters.draws} bootstrap draws over the realizations; an end beyond every simulated force has an "
+            "arrow head at the edge. Dark: two peaks, light: one, white: not simulated, or too few packings bear the "
+            "force. Broken line: the lattice, whose last point is a bound.",
+            "Eight diagrams of force against friction. The boundary between one peak below and two above rises with "
+            "friction and lies lower the larger the polydispersity.",
+            given,
         ),
         "five_realizations": Caption(
-            f"How often the mean response of {parameters.few} slabs has as many peaks as that of all, against the "
-            "force over the crossover force, for each polydispersity, smoothing width and coefficient of friction.",
-            "Curves that dip near the crossover force.",
-            {"width": parameters.widths},
+            f"Not in the paper, which averages {parameters.few} realizations: (a) to ({last_of_few}) part of the "
+            f"means of {parameters.few} of all realizations, {parameters.draws} times drawn at random, that have as "
+            "many peaks as the mean of all, against the force per crossover force of Fig. 22 (vertical line), for "
+            "each polydispersity, smoothing width and coefficient of friction.",
+            "Six panels with curves near 1 far from the crossover force, which dip to between 0.3 and 0.7 at it.",
+            {**given, "friction": [mu for mu in frictions if mu], "wall_friction": [mu for mu in frictions if mu]}
+            | {"polydispersity": [delta for delta in deltas if delta]},
         ),
     }

@@ -60,7 +60,7 @@ def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
         name = f"$\\delta = {delta:g}$" if delta else "lattice"
         style.letter(axes, chr(ord("a") + index), place="above", text=f"{name}, $w = {width:g}\\,\\bar R$")
     for axes in panels[-1]:
-        axes.set_xlabel("$\\mu = \\mu^{\\mathrm{wall}}$")
+        axes.set_xlabel(f"${style.BOTH_FRICTIONS}$")
     for axes in panels[:, 0]:
         axes.set_ylabel(style.FORCE)
     for text, x, y in (("two peaks", 0.06, 0.76), ("one peak", 0.45, 0.42)):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from granular_response.paper.captions import Caption, of_scene
+from granular_response.paper.captions import RADIUS, Caption, of_scene
 
 from .parameters import Parameters
 
@@ -16,14 +16,24 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     given = of_scene(parameters.scene)
     return {
         "fig17_pile": Caption(
-            "A pile under gravity without and with friction: (a), (b) contact forces, (c), (d) vertical stress, "
-            "coarse-grained with a Gaussian, (e), (f) contact network. The parameters are those with friction.",
-            "Two piles beside each other, three pictures of each: force chains, a map of the stress, the contacts.",
+            "Piles of equal disks under gravity, without friction on the left and with it on the right. (a), (b) "
+            "Contact forces; lengths and widths of the lines are proportional to the force, but none is thinner than "
+            "a hairline. (c), (d) Vertical stress, coarse-grained with a Gaussian; the contours are the white lines "
+            "of the colour scale, and the broken line is the hull of the disks. Near the floor part of the Gaussian "
+            "lies outside the pile, so that the stress falls short there. (e), (f) Contacts: lines join the centres "
+            "of disks that touch. Floor and side walls are grey. The parameters are those with friction; without it "
+            "all others are the same.",
+            "Two piles beside each other, three pictures of each. Without friction the stress has two maxima beside "
+            "the middle and the lowest row pushes against the side walls; with friction it has one maximum in the "
+            "middle.",
             {**given, "width": parameters.stress_width},
         ),
         "fig17_pile_profiles": Caption(
-            f"(g) Stress at the height {parameters.dip_height:g} R, (h) forces on the floor.",
-            "Two plots against the horizontal position, of stress and of floor force.",
-            given,
+            f"Not in the paper. (g) Vertical stress at the height {parameters.dip_height:g} {RADIUS}, (h) forces of "
+            "single disks on the floor. Without friction there are two minima of the energy, mirror images of each "
+            "other.",
+            "Two plots against the horizontal position. Without friction stress and floor force dip in the middle, "
+            "with friction they are largest there.",
+            {**given, "width": parameters.stress_width},
         ),
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy.spatial import ConvexHull
 
+from granular_response.paper.captions import letters
 from granular_response.plot import style
 from granular_response.plot.field import draw_field
 from granular_response.plot.network import (
@@ -29,10 +31,8 @@ from granular_response.state import Box
 #: Cases that are drawn, left and right; of the two frictionless minima one, the other is its mirror image.
 DRAWN = {"frictionless": "without friction", "frictional": "with friction"}
 
-#: Force of the key (mg).
+#: Force of the key, in mean disk weights.
 KEY = 5.0
-
-STRESS = "$\\sigma_{zz}\\bar R/\\bar mg$"
 
 
 @style.context()
@@ -71,7 +71,7 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         draw_force_key(forces, (0.8 * width, 0.9 * top), KEY, **scale)
     bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
     bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
-    bar.set_label(STRESS)
+    bar.set_label(style.STRESS_OF_GRAVITY)
     return figure
 
 
@@ -117,13 +117,14 @@ def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         line.plot(stress["x"], one, **style.line(index), label=name)
         look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
         floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
-    line.set(xlabel=style.POSITION, ylabel=STRESS)
+    line.set(xlabel=style.POSITION, ylabel=style.STRESS_OF_GRAVITY)
     line.set_ylim(0.0, 1.32 * float(stress["profile_zz"].max()))
     line.legend(loc="upper right", borderaxespad=0.3)
-    style.letter(line, "a", text=f"$z = {float(stress['dip_height']):g}\\,\\bar R$")
-    floor.set(xlabel=style.POSITION, ylabel="floor force $/\\bar mg$")
+    first, second = itertools.islice(letters("fig17_pile_profiles"), 2)
+    style.letter(line, first, text=style.equals("z", float(stress["dip_height"]), style.RADIUS))
+    floor.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$")
     floor.set_ylim(0.0, 1.15 * float(piles["floor_force"].max()))
-    style.letter(floor, "b")
+    style.letter(floor, second)
     half = 0.5 * float(piles["width"])
     for axes in (line, floor):
         axes.set_xlim(-half, half)

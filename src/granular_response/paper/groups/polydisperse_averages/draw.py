@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from granular_response.plot import style
@@ -32,7 +31,13 @@ FloatArray = NDArray[np.float64]
 #: Fig. 21 is smoothed with this width, and shows at most so many forces of a case.
 FIG21_WIDTH, MOST_FORCES = 6.0, 4
 
-START_NAMES = {"touching-largest": "start: largest disks touch", "2.0": "start: lattice constant $2\\bar R$"}
+#: Forces of the keys of Fig. 2 in mean disk weights, at rest and added: both are drawn as the same line.
+KEYS = 20.0, 2.0
+
+START_NAMES = {"touching-largest": "largest disks touch", "2.0": "lattice constant $2\\bar R$"}
+
+#: Contacts of a disk without friction at ``delta`` = 0.01 in the paper (Sec. VII).
+PAPER_CONTACTS = 4.25
 
 
 @style.context()
@@ -42,34 +47,35 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
         "fig19_disordered_response": _response(datasets["individual"]),
-        "fig20_disordered_linear_range": _linear_range(datasets["linear_range"]),
+        "fig20_disordered_linear_range": _linear_range(datasets["linear_range"], datasets["averages"]),
         "fig21_disordered_forces": _averages(datasets["averages"]),
         "packings": _packings(datasets["packings"], datasets["averages"]),
     }
 
 
 def _forces(data: xr.Dataset) -> Figure:
-    """Fig. 2: at rest, and what the load adds; one scale for each panel."""
+    """Fig. 2: at rest, and what the load adds; the line of the key is the same, the force that it stands for is not."""
     figure, panels = style.figure(2, 1, width="double", height=3.75)
     pair, wall = _contact_forces(data)
     width, disk = float(data["width"]), int(data["loaded_disk"])
     force = float(data["force"][1])
     radius = data["radius"].values
     top = float((data["position"].values[..., 1] + radius).max())
+    at_rest = force_scale(pair[0], wall[0], longest=3.8, widest=4.2)
     for index, axes in enumerate(panels[:, 0]):
+        scale = {name: KEYS[0] / KEYS[index] * per_force for name, per_force in at_rest.items()}
         position = data["position"].values[index]
         shown = (pair[0], wall[0]) if index == 0 else (pair[1] - pair[0], wall[1] - wall[0])
-        scale = force_scale(*shown, longest=3.2 if index == 0 else 4.4, widest=3.4 if index == 0 else 4.2)
-        draw_disks(axes, position, radius, edgecolor="#C4C4C4", linewidth=0.35)
-        draw_rotations(axes, position, radius, data["angle"].values[index], color=style.SKY, linewidth=0.45)
+        draw_disks(axes, position, radius)
+        draw_rotations(axes, position, radius, data["angle"].values[index], color=style.SKY, linewidth=0.5)
         draw_box(axes, Box(width), top)
         pairs = data["contact_disk"].values, data["contact_partner"].values
         draw_force_chains(axes, pair_points(position, radius, *pairs), shown[0], **scale)
         at_wall = wall_points(position, radius, data["wall_disk"].values, data["wall_index"].values)
         draw_force_chains(axes, at_wall, shown[1], **scale)
-        name = "at rest under gravity" if index == 0 else f"added by $F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$"
+        name = "at rest under gravity" if index == 0 else f"added by {style.equals(style.F_EXT, force, style.WEIGHT)}"
         style.letter(axes, "ab"[index], place="above", text=name)
-        draw_force_key(axes, (width - 14.0, top + 2.8), 20.0 if index == 0 else 2.0, **scale)
+        draw_force_key(axes, (width - 14.0, top + 2.8), KEYS[index], **scale)
         style.no_axes(axes)
         axes.set(xlim=(-1.5, width + 1.5), ylim=(-1.5, top + 4.0))
     x, z = data["position"].values[1, disk] + [0.0, radius[disk]]
@@ -94,7 +100,7 @@ def _vectors(normal: FloatArray, data: xr.Dataset, kind: str) -> FloatArray:
 
 
 def _response(data: xr.Dataset) -> Figure:
-    """Fig. 19: every realization thin, the mean thick; a row for each start that is stored."""
+    """Fig. 19: every realization thin, the mean thick in a band of its standard error; a row for each start."""
     frictions = sorted(set(data["friction"].values.tolist()))
     starts = [name for name in START_NAMES if name in data["lattice_constant"].values]
     figure, panels = style.figure(
@@ -110,26 +116,16 @@ def _response(data: xr.Dataset) -> Figure:
                 continue
             rows = data["response"].values[case]
             rows = rows[np.isfinite(rows).all(axis=1)]
-            axes.plot(x, rows.T, color="#A8A8A8", linewidth=0.5, linestyle="-")
-            axes.plot(x, rows.mean(axis=0), color=style.BLACK, linewidth=1.8, linestyle="-")
+            mean, error = rows.mean(axis=0), rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
+            axes.plot(x, rows.T, color="#BDBDBD", linewidth=0.5, linestyle="-")
+            axes.plot(x, mean, color=style.BLACK, linewidth=1.4, linestyle="-", zorder=3)
+            axes.fill_between(x, mean - error, mean + error, color=style.VERMILION, linewidth=0.0, zorder=2.5)
             axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
-            name = f"$\\mu = {friction:g}$, {len(rows)} realizations"
-            style.letter(axes, "abcdefgh"[len(frictions) * row + column], text=name)
-            if len(starts) > 1:
-                axes.annotate(
-                    START_NAMES[start],
-                    (1.0, 1.0),
-                    (-5.0, -5.0),
-                    xycoords="axes fraction",
-                    textcoords="offset points",
-                    ha="right",
-                    va="top",
-                    fontsize=8,
-                )
-        panels[row, 0].set_ylabel("$\\sigma_{zz} R / F_{\\mathrm{ext}}$")
+            name = f"$\\mu = {friction:g}$, {START_NAMES[start]}, {len(rows)} realizations"
+            style.letter(axes, "abcdefgh"[len(frictions) * row + column], place="above", text=name)
+        panels[row, 0].set_ylabel(style.FLOOR_STRESS)
     for axes in panels[-1]:
-        axes.set(xlabel="$x/R$", xlim=(x[0], x[-1]))
-    panels[0, 0].margins(y=0.12)
+        axes.set(xlabel=style.POSITION, xlim=(x[0], x[-1]))
     return figure
 
 
@@ -142,38 +138,61 @@ def _case(data: xr.Dataset, polydispersity: float, friction: float, start: str |
     return int(found[0]) if found.size else None
 
 
-def _linear_range(data: xr.Dataset) -> Figure:
-    """Fig. 20, with the lattice (Fig. 6, smoothed alike) beside it, and the ends of the linear ranges."""
+def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
+    """Fig. 20: one packing, the means of all, the lattice, smoothed alike, and the ends of the linear ranges."""
     deltas = sorted(set(data["polydispersity"].values.tolist()), reverse=True)
-    figure, panels = style.figure(
-        1, len(deltas) + 1, width="double", height=2.7, width_ratios=[1.25] * len(deltas) + [1]
-    )
     frictions = sorted(set(data["friction"].values.tolist()))
-    colours = style.ordered_colours(len(frictions))
-    force = data["force"].values
-    for column, delta in enumerate(deltas):
-        axes = panels[0, column]
-        for k, friction in enumerate(frictions):
+    looks = {
+        friction: {**style.marked_line(k), "color": colour, "markersize": 3.0}
+        for k, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True))
+    }
+    figure, panels = style.figure(1, len(deltas) + 2, width="double", height=3.0)
+    one, means, *others = panels[0]
+    responses = [one, *others[:-1]]
+    for axes, delta in zip(responses, deltas, strict=True):
+        for friction in frictions:
             path = int(np.flatnonzero((data["polydispersity"] == delta) & (data["friction"] == friction))[0])
-            look = {**style.marked_line(k), "color": colours[k], "markersize": 2.6}
-            axes.plot(force, data["response_at_centre"].values[path], **look, label=f"{friction:g}")
-        axes.set(xscale="log", xlabel="$F_{\\mathrm{ext}}/mg$")
-        style.letter(axes, "abc"[column], place="above", text=f"$\\delta = {delta:g}$" if delta else "lattice")
-    largest = max(float(np.nanmax(data["response_at_centre"].values)), 0.0)
-    for column in range(len(deltas)):
-        panels[0, column].set_ylim(0.0, 1.05 * largest)
-    panels[0, 0].set_ylabel("$\\sigma_{zz}(x = 0) R / F_{\\mathrm{ext}}$")
-    panels[0, len(deltas) - 1].legend(title="$\\mu$", ncols=2, loc="upper right", columnspacing=1.0)
-    ends = panels[0, -1]
-    for index, delta in enumerate(deltas):
+            axes.plot(
+                data["force"],
+                data["response_at_centre"].values[path],
+                **looks[friction],
+                label=f"$\\mu = {friction:g}$",
+            )
+    _central_means(means, averages, deltas[0], float(data.attrs["width"]), looks)
+    largest = 1.05 * max(line.get_ydata().max() for axes in (*responses, means) for line in axes.get_lines())
+    for axes in (*responses, means):
+        axes.set(xscale="log", xlabel=style.FORCE, ylim=(0.0, largest), xlim=(0.04, 600.0))
+    for axes in (means, *others[:-1]):
+        axes.tick_params(labelleft=False)
+    one.set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
+    names = [f"$\\delta = {delta:g}$" if delta else "lattice" for delta in deltas]
+    titles = [f"{names[0]}, one packing", f"{names[0]}, means", *names[1:], ""]
+    for axes, letter, title in zip(panels[0], "abcdefgh", titles, strict=False):
+        style.letter(axes, letter, place="above", text=title)
+    ends = others[-1]
+    for index, (delta, name) in enumerate(zip(deltas, names, strict=True)):
         here = data["polydispersity"].values == delta
-        _range_ends(
-            ends, data.isel(path=here), style.marked_line(index), f"$\\delta = {delta:g}$" if delta else "lattice"
-        )
-    ends.set(yscale="log", xlabel="$\\mu$", ylabel="end of the linear range, $F_{\\mathrm{ext}}/mg$")
+        _range_ends(ends, data.isel(path=here), style.marked_line(index), name)
+    ends.set(yscale="log", xlabel="$\\mu$", ylabel=f"end of the linear range, {style.FORCE}")
     ends.legend(loc="lower center", bbox_to_anchor=(0.45, 0.0))
-    style.letter(ends, "abc"[len(deltas)], place="above")
+    figure.legend(*one.get_legend_handles_labels(), loc="outside upper center", ncols=len(frictions))
     return figure
+
+
+def _central_means(
+    axes: Axes, averages: xr.Dataset, delta: float, width: float, looks: Mapping[float, dict[str, Any]]
+) -> None:
+    """Mean responses at x = 0 with their standard errors, of the cases that have one of the frictions of ``looks``."""
+    smoothed = averages.isel(width=int(np.flatnonzero(averages["width"].values == width)[0]))
+    for friction, look in looks.items():
+        case = _case(averages, delta, friction, str(averages["lattice_constant"].values[0]))
+        if case is None:
+            continue
+        one = smoothed.isel(case=case)
+        force, known = one["force"].values, one["count_at_rest"].values >= 2
+        at = one.sel(x=0.0)
+        mean, error = at["mean"].values[known], at["standard_error"].values[known]
+        axes.errorbar(force[known], mean, error, elinewidth=0.8, capsize=1.5, **look)
 
 
 def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -> None:
@@ -193,7 +212,7 @@ def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -
 
 
 def _averages(data: xr.Dataset) -> Figure:
-    """Fig. 21: a panel for each polydispersity and friction, forces growing from dark to light.
+    """Fig. 21: a panel for each polydispersity and friction, all on one scale, forces growing from dark to light.
 
     A number in brackets is that of the realizations at rest, where not all of them are.
     """
@@ -202,7 +221,7 @@ def _averages(data: xr.Dataset) -> Figure:
     deltas = sorted(set(data["polydispersity"].values[keep].tolist()))
     frictions = sorted(set(data["friction"].values[keep].tolist()))
     figure, panels = style.figure(
-        len(frictions), len(deltas), width="double", height=0.6 + 1.55 * len(frictions), sharex=True
+        len(frictions), len(deltas), width="double", height=0.5 + 1.65 * len(frictions), sharex=True, sharey=True
     )
     w = int(np.flatnonzero(data["width"].values == FIG21_WIDTH)[0])
     x = data["x"].values
@@ -214,17 +233,18 @@ def _averages(data: xr.Dataset) -> Figure:
                 axes.set_axis_off()
                 continue
             _family(axes, data.isel(case=case, width=w), x)
-            style.letter(axes, chr(ord("a") + row * len(deltas) + column), text=f"$\\mu = {friction:g}$")
-            if row == 0:
-                axes.set_title(f"$\\delta = {delta:g}$", pad=4.0)
-        panels[row, 0].set_ylabel("$\\sigma_{zz} R / F_{\\mathrm{ext}}$")
+            name = f"$\\delta = {delta:g}$, $\\mu = {friction:g}$"
+            style.letter(axes, chr(ord("a") + row * len(deltas) + column), text=name)
+        panels[row, 0].set_ylabel(style.FLOOR_STRESS)
     for axes in panels[-1]:
-        axes.set_xlabel("$x/R$")
+        axes.set(xlabel=style.POSITION, xlim=(-45.0, 45.0))
+    note = f"over each panel: {style.FORCE}, in brackets the packings at rest where some collapsed"
+    figure.suptitle(note, fontsize=8)
     return figure
 
 
 def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
-    """Mean responses with bands of one standard error at a few forces of a case."""
+    """Mean responses with bands of one standard error at a few forces of a case; their key stands over the panel."""
     usable = np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
     steps = usable[np.unique(np.linspace(0, len(usable) - 1, min(MOST_FORCES, len(usable))).round().astype(int))]
     total = int(
@@ -235,17 +255,24 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
         axes.fill_between(x, mean - error, mean + error, color=colour, alpha=0.25, linewidth=0.0)
-        axes.plot(x, mean, color=colour, linestyle=style.LINE_STYLES[k], linewidth=1.0, label=label)
+        axes.plot(x, mean, color=colour, linestyle=style.LINE_STYLES[k], linewidth=1.1, label=label)
     axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
-    axes.set_xlim(-45.0, 45.0)
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.55 * (high - low))  # room for letter and legend
-    axes.legend(loc="upper right", fontsize=7, handlelength=1.6, title="$F_{\\mathrm{ext}}/mg$", title_fontsize=7)
+    axes.legend(
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=len(steps),
+        fontsize=7.5,
+        handlelength=1.9,
+        handletextpad=0.3,
+        columnspacing=0.7,
+        borderpad=0.0,
+        borderaxespad=0.2,
+    )
 
 
 def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Directions of contacts, coordination numbers, and how many packings bear a force."""
-    figure, panels = style.figure(1, 3, width="double", height=2.7)
+    figure, panels = style.figure(1, 3, width="double", height=3.0)
     directions, coordination, bearing = panels[0]
     starts = data["lattice_constant"].values
     usual = starts[0]
@@ -257,16 +284,16 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         if case is None:
             continue
         density = np.nanmean(data["contact_angle_density"].values[case], axis=0)
-        look = style.line(deltas.index(delta)) if start == usual else {"color": style.BLACK, "linestyle": ":"}
+        look = style.line(deltas.index(delta)) if start == usual else {"color": style.BLACK, "linestyle": "-"}
         name = f"$\\delta = {delta:g}$" + ("" if start == usual else ", start $2\\bar R$")
-        directions.plot(angle, density, **look, linewidth=1.0, label=name)
+        directions.plot(angle, density, **{**look, "linewidth": 1.0}, label=name)
     directions.set(
         xlabel="angle to the horizontal (degrees)",
         ylabel="contact directions per radian, $\\mu = 0$",
         xticks=range(0, 181, 60),
-        ylim=(0.0, 1.75 * directions.get_ylim()[1]),
+        ylim=(0.0, None),
     )
-    directions.legend(loc="upper right", fontsize=7)
+    directions.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
     for index, delta in enumerate(deltas):
         here = np.flatnonzero((data["polydispersity"].values == delta) & (starts == usual))
         here = here[np.argsort(data["friction"].values[here])]
@@ -277,39 +304,34 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
         look |= {"markersize": 3.5, "elinewidth": 0.8, "capsize": 2.0}
         coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=name)
-        if delta:
-            _bearing(bearing, averages, delta, usual, style.COLOURS[index])
-    coordination.set(xlabel="$\\mu = \\mu^{\\mathrm{wall}}$", ylabel="contacts per disk in the bulk")
-    coordination.legend(loc="center right", bbox_to_anchor=(1.0, 0.68))
-    bearing.set(xlabel="$F_{\\mathrm{ext}}/mg$", ylabel="part of the packings at rest", xscale="log", ylim=(0.4, 1.02))
-    bearing.legend(*_friction_key(bearing), loc="lower left", title="$\\mu$", ncols=2, columnspacing=1.0)
+    coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="contacts per disk in the bulk")
+    paper = rf"paper: {PAPER_CONTACTS:g} at $\delta = 0.01$, $\mu = 0$"
+    style.paper_value(coordination, PAPER_CONTACTS, paper, along="y")
+    coordination.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
+    _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), deltas)
+    bearing.set(xlabel=style.FORCE, ylabel="part of the packings at rest", xscale="log", ylim=(0.0, 1.05))
+    bearing.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
     for axes, name in zip(panels[0], "abc", strict=True):
         style.letter(axes, name, place="above")
     return figure
 
 
-def _bearing(axes: Axes, averages: xr.Dataset, delta: float, start: str, colour: str) -> None:
-    """The part of the packings at rest against the force: colour by polydispersity, line style by friction."""
-    here = (averages["polydispersity"].values == delta) & (averages["lattice_constant"].values == start)
-    cases = np.flatnonzero(here)
-    for index, case in enumerate(cases[np.argsort(averages["friction"].values[cases])]):
+def _bearing(axes: Axes, averages: xr.Dataset, deltas: list[float]) -> None:
+    """The part of the packings at rest against the force with its standard error, where some of them collapse."""
+    number = 0
+    for case in np.lexsort((averages["friction"].values, averages["polydispersity"].values)):
         one = averages.isel(case=int(case))
         used = np.isfinite(one["force"].values)
+        at_rest = one["count_at_rest"].values[used]
         total = sum(one[f"count_{name}"].values[used] for name in ("at_rest", "collapsed", "failed", "not_reached"))
-        part = one["count_at_rest"].values[used] / total
-        label = f"{float(one['friction']):g}"
-        axes.plot(
-            one["force"].values[used],
-            part,
-            color=colour,
-            linestyle=style.LINE_STYLES[index],
-            linewidth=0.9,
-            label=label,
+        if np.all(at_rest == total):
+            continue
+        delta, friction = float(one["polydispersity"]), float(one["friction"])
+        look = {**style.marked_line(number), "color": style.COLOURS[deltas.index(delta)], "markersize": 4.0}
+        look |= {"markeredgewidth": 0.8, "markerfacecolor": "white", "elinewidth": 0.8, "capsize": 1.5}
+        part = at_rest / total
+        error = np.sqrt(part * (1.0 - part) / total)
+        axes.errorbar(
+            one["force"].values[used], part, error, **look, label=f"$\\delta = {delta:g}$, $\\mu = {friction:g}$"
         )
-
-
-def _friction_key(axes: Axes) -> tuple[list[Line2D], list[str]]:
-    """One black line for each friction."""
-    names = sorted({str(line.get_label()) for line in axes.get_lines()}, key=float)
-    keys = [Line2D([], [], color=style.BLACK, linewidth=0.9, linestyle=style.LINE_STYLES[k]) for k in range(len(names))]
-    return keys, names
+        number += 1

@@ -1,4 +1,4 @@
-"""Where the dynamics stops working: maps of the time step, energy, rolling, and what became of random scenes."""
+"""Where the dynamics stops working: limits of the time step, energy, rolling, and what became of random scenes."""
 
 from __future__ import annotations
 
@@ -8,37 +8,38 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from granular_response.plot import style
 
-#: Outcomes of a kick in the order of their codes, with colours that differ in lightness too.
-OUTCOMES = (
-    ("settles", style.SKY),
-    ("cycles", style.ORANGE),
-    ("blows up", style.VERMILION),
-    ("no rest state", style.FAINT),
-)
-#: Axes of the maps with their labels.
+FloatArray = NDArray[np.float64]
+
+#: Outcomes of a kick in the order of their codes.
+OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
+SETTLES, BLOWS_UP = OUTCOMES.index("settles"), OUTCOMES.index("blows up")
+#: Axes of the study of time steps with their labels.
 AXES = {
-    "normal_stiffness": r"$k_N$ [$mg/R$]",
-    "stiffness_ratio": r"$k_T/k_N$",
+    "normal_stiffness": style.STIFFNESS,
+    "stiffness_ratio": f"${style.STIFFNESS_RATIO}$",
     "damping_ratio": r"damping ratio $\zeta$",
-    "friction": r"friction $\mu$",
-    "wall_friction": "friction of walls",
-    "wall_stiffness": r"$k_N$ of walls [$mg/R$]",
-    "polydispersity": r"polydispersity $\delta$",
-    "load": r"load $F$ [$mg$]",
+    "friction": f"${style.FRICTION}$",
+    "wall_friction": f"${style.WALL_FRICTION}$",
+    "wall_stiffness": f"{style.STIFFNESS} of walls",
+    "polydispersity": f"${style.POLYDISPERSITY}$",
+    "load": style.FORCE,
 }
+#: Markers without a line.
+DOTS: dict[str, Any] = {"linestyle": "none", "markersize": 4.5}
+
 #: Outcomes of random scenes in the order of their codes.
 RANDOM = ("certified", "uncertified", "not settled", "no equilibrium", "time step refused", "scene refused", "wrong")
 
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``stability_steps`` (one map per integrator and axis), ``stability_motion`` and ``stability_scenes``."""
+    """``stability_steps`` (a panel for each property of the scene), ``stability_motion`` and ``stability_scenes``."""
     return {
         "stability_steps": _steps(datasets),
         "stability_motion": _motion(datasets),
@@ -47,49 +48,54 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 
 def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
-    """Two blocks of maps, one above the other: a row for each integrator, a column for each axis."""
+    """A panel for each property of the scene: where settling ends for each integrator, and where energy explodes."""
     names = [name for name in AXES if f"time_step_{name}" in datasets]
     integrators = [str(i) for i in datasets[f"time_step_{names[0]}"]["integrator"].values]
-    columns = -(-len(names) // 2)
-    rows = len(integrators)
-    figure, axes = style.figure(2 * rows, columns, width="double", height=2.4 * rows + 0.6, sharey=True)
-    for panel in axes.flat:
-        panel.set_visible(False)
-    colours = ListedColormap([colour for _, colour in OUTCOMES])
-    for k, name in enumerate(names):
-        top, column = rows * (k // columns), k % columns
-        for row, integrator in enumerate(integrators):
-            panel = axes[top + row, column]
-            panel.set_visible(True)
-            _map(panel, datasets[f"time_step_{name}"].sel(integrator=integrator), name, colours)
-            if row == rows - 1:
-                panel.set_xlabel(AXES[name])
-            else:
-                panel.tick_params(labelbottom=False)
-            if column == 0:
-                panel.set_ylabel(f"{integrator.capitalize()}\nstep / limit")
-    handles: list[Any] = [Patch(facecolor=colour, label=name) for name, colour in OUTCOMES[:3]]
-    handles.append(axes[0, 0].get_lines()[0])
-    figure.legend(handles=handles, loc="outside upper center", ncols=4)
+    columns = min(4, len(names))
+    rows = -(-len(names) // columns)
+    figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharey=True)
+    for axes in panels.flat[len(names) :]:
+        axes.set_axis_off()
+    for index, (axes, name) in enumerate(zip(panels.flat, names, strict=False)):
+        study = datasets[f"time_step_{name}"]
+        for k, integrator in enumerate(integrators):
+            outcome = study["outcome"].sel(integrator=integrator).transpose(name, "ratio").values
+            shift = 0.22 * (k - 0.5 * (len(integrators) - 1))
+            _limits(axes, study["ratio"].values, outcome, shift, style.marked_line(k), integrator.capitalize())
+        axes.axhline(1.0, color=style.BLACK, linestyle="-", linewidth=0.8, zorder=0, label="predicted limit")
+        axes.set(yscale="log", xlabel=AXES[name], xlim=(-0.6, study.sizes[name] - 0.4), ylim=(0.7, 4.6))
+        axes.set_xticks(range(study.sizes[name]), [_short(value) for value in study[name].values], rotation=90)
+        axes.set_yticks([1.0, 2.0, 4.0], ["1", "2", "4"])
+        axes.minorticks_off()
+        axes.tick_params(axis="x", top=False, length=2.0)
+        style.letter(axes, chr(ord("a") + index), place="above")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("time step / limit")
+    handles, labels = panels.flat[0].get_legend_handles_labels()
+    handles.append(Line2D([], [], linestyle="none", marker="x", color=style.BLACK))
+    figure.legend(handles, [*labels, "blows up from here"], loc="outside upper center", ncols=len(handles))
     return figure
 
 
-def _map(panel: Axes, study: xr.Dataset, name: str, colours: ListedColormap) -> None:
-    """Cells of equal width; the time step in units of its predicted limit on a logarithmic axis."""
-    ratio, values = study["ratio"].values, study[name].values
-    middle = np.sqrt(ratio[1:] * ratio[:-1])
-    edges = np.concatenate([[ratio[0] ** 2 / middle[0]], middle, [ratio[-1] ** 2 / middle[-1]]])
-    norm = BoundaryNorm(np.arange(len(OUTCOMES) + 1) - 0.5, len(OUTCOMES))
-    outcome = study["outcome"].transpose("ratio", name).values
-    panel.pcolormesh(
-        np.arange(len(values) + 1), edges, outcome, cmap=colours, norm=norm, edgecolor="white", linewidth=0.4
-    )
-    panel.axhline(1.0, color=style.BLACK, linestyle="-", linewidth=1.0, label="predicted limit")
-    panel.set_yscale("log")
-    panel.set_yticks([0.5, 1.0, 2.0, 4.0], ["0.5", "1", "2", "4"])
-    panel.minorticks_off()
-    panel.set_xticks(np.arange(len(values)) + 0.5, [_short(value) for value in values], rotation=90)
-    panel.tick_params(top=False, right=False, length=2.0)
+def _limits(
+    axes: Axes, ratio: FloatArray, outcome: NDArray[Any], shift: float, look: dict[str, Any], name: str
+) -> None:
+    """Brackets of the step up to which all settle; a cross at the smallest step that blows up.
+
+    ``outcome`` (value, ratio) are codes of :data:`OUTCOMES` for growing ``ratio``. There is no bracket where the
+    smallest step does not settle, or the largest does.
+    """
+    settled = np.logical_and.accumulate(outcome == SETTLES, axis=1).sum(axis=1)
+    here = (settled > 0) & (settled < len(ratio))
+    low, high = ratio[settled[here] - 1], ratio[settled[here]]
+    middle = np.sqrt(low * high)
+    bars = np.stack([middle - low, high - middle])
+    at = np.flatnonzero(here) + shift
+    axes.errorbar(at, middle, bars, **{**look, "linestyle": "none", "markersize": 4.5}, elinewidth=1.2, label=name)
+    for index, row in enumerate(outcome):
+        exploding = np.flatnonzero(row == BLOWS_UP)
+        if exploding.size:
+            axes.plot(index + shift, ratio[exploding[0]], marker="x", color=look["color"], markersize=4.5)
 
 
 def _short(value: float) -> str:
@@ -111,7 +117,7 @@ def _drift(panel: Axes, study: xr.Dataset) -> None:
     for k, integrator in enumerate(study["integrator"].values):
         one = study.sel(integrator=integrator, system="slab")
         panel.plot(one["time"], 1e3 * one["energy_change"], label=str(integrator).capitalize(), **style.line(k))
-    panel.set_xlabel(r"time [$\sqrt{R/g}$]")
+    panel.set_xlabel(f"time [${style.TIME_UNIT}$]")
     panel.set_ylabel(r"energy change [$10^{-3}$]")
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.3 * (high - low))
@@ -121,10 +127,13 @@ def _drift(panel: Axes, study: xr.Dataset) -> None:
 def _sliding(panel: Axes, study: xr.Dataset) -> None:
     for k, integrator in enumerate(study["integrator"].values):
         one = study.sel(integrator=integrator, system="slab with friction")
-        panel.plot(one["time"], one["energy_change"], label=str(integrator).capitalize(), **style.line(k))
+        look = style.marked_line(k)
+        place = slice(1 + 5 * k, None, 15)  # at other times, as the curves cover each other
+        panel.plot(one["time"], one["energy_change"], color=look["color"], linestyle="-", linewidth=0.9)
+        panel.plot(one["time"][place], one["energy_change"][place], label=str(integrator).capitalize(), **look | DOTS)
     panel.axhline(0.0, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=0)
     panel.set_ylim(-1.15, 0.25)
-    panel.set_xlabel(r"time [$\sqrt{R/g}$]")
+    panel.set_xlabel(f"time [${style.TIME_UNIT}$]")
     panel.set_ylabel("energy change")
     panel.legend(title="the same with friction", loc="center right")
 
@@ -148,17 +157,18 @@ def _rolling(panel: Axes, study: xr.Dataset) -> None:
     for k in range(study.sizes["start"]):
         one = study.isel(start=k)
         time = one["time"] * 3.0 * friction / abs(float(one["speed"]) + float(one["spin"]))
-        label = f"$v$ = {float(one['speed']):g}, $R\\omega$ = {float(one['spin']):g}"
-        colour = style.COLOURS[k]
-        panel.plot(time, one["velocity"], color=colour, linestyle="-", label=label)
-        panel.plot(time, one["rim_speed"], color=colour, linestyle="--")
+        label = f"$v = {float(one['speed']):g}$, $R\\omega = {float(one['spin']):g}$"
+        look = style.marked_line(k)
+        panel.plot(time, one["velocity"], color=look["color"], linestyle="-")
+        panel.plot(time, one["rim_speed"], color=look["color"], linestyle="--")
         some = slice(4, None, 8)
-        panel.plot(time[some], one["exact_velocity"][some], color=colour, marker="o", linestyle="none")
-        panel.plot(time[some], one["exact_rim_speed"][some], color=colour, marker="s", linestyle="none", mfc="w")
+        panel.plot(time[some], one["exact_velocity"][some], label=label, **look | DOTS)
+        hollow = {"markerfacecolor": "white", "markeredgewidth": 0.8}
+        panel.plot(time[some], one["exact_rim_speed"][some], **look | DOTS | hollow)
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.15 * (high - low))
     panel.set_xlabel("time / time of sliding")
-    panel.set_ylabel(r"velocity (–), rim speed (– –) [$\sqrt{gR}$]")
+    panel.set_ylabel(r"velocity (–), rim speed (– –) [$\sqrt{g\bar R}$]")
     panel.legend(title="at first", loc="lower right")
 
 
@@ -169,26 +179,30 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     code = study["outcome"].values
     count = [int((code == k).sum()) for k in range(len(RANDOM))]
     place = np.arange(len(RANDOM))[::-1]
-    outcomes.barh(place, count, color=[style.SKY, style.SKY, *[style.ORANGE] * 4, style.VERMILION])
+    bars = outcomes.barh(place, count, color=[style.SKY, style.SKY, *[style.ORANGE] * 4, style.VERMILION])
+    for bar in bars[2:]:
+        bar.set(hatch="////", edgecolor="white", linewidth=0.0)
     for y, number in zip(place, count, strict=True):
         outcomes.annotate(str(number), (number, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=8)
     outcomes.set_yticks(place, RANDOM)
-    outcomes.set_xlim(0, 1.3 * max(count))
+    step = 250 if max(count) > 500 else 10
+    outcomes.set(xlim=(0, step * np.ceil(1.2 * max(count) / step)))
     outcomes.tick_params(axis="y", length=0.0)
     outcomes.set_xlabel("random scenes")
     certified = study["force_residual"].values[code == 0]
     bins = np.logspace(-16, -3, 53)
     residuals.hist(np.maximum(certified, 1e-16), bins=bins, color=style.SKY)
     residuals.axvline(1e-9, color=style.MUTED, linewidth=0.8, linestyle="--")
-    residuals.set_xscale("log")
-    residuals.set_xlabel(r"unbalanced force [$mg$]")
+    residuals.set(xscale="log", xlim=(1e-16, 1e-4 if certified.max(initial=0.0) < 1e-4 else 1e-2))
+    residuals.set_xticks([1e-16, 1e-13, 1e-10, 1e-7, 1e-4])
+    residuals.set_xlabel(f"unbalanced force [${style.WEIGHT}$]")
     residuals.set_ylabel("certified scenes")
     disturbed = datasets["rounding"]
     rows = np.arange(disturbed.sizes["case"])[::-1]
     for k in range(disturbed.sizes["kick"]):
         rounding.plot(disturbed["response_change"].isel(kick=k), rows, "o", color=style.BLUE)
     rounding.axvline(float(disturbed["displacement"]), color=style.MUTED, linewidth=0.8, linestyle="--")
-    rounding.set_xscale("log")
+    rounding.set(xscale="log", xlim=(1e-13, 1.0), xticks=[1e-12, 1e-9, 1e-6, 1e-3, 1.0])
     names = [str(case).replace(", ", ",\n", 1) for case in disturbed["case"].values]
     rounding.set_yticks(rows, names, fontsize=7, linespacing=0.9)
     rounding.set_ylim(-0.7, len(rows) - 0.3)

@@ -17,8 +17,8 @@ from granular_response.plot import style
 #: Ratios whose simulated profiles are drawn, and those of the elastic bodies; others are in the dataset.
 DRAWN = (0.0, 0.1, 0.2, 0.25, 0.3, 0.6, 1.0)
 ELASTIC = (0.1, 0.2, 0.3, 0.6)
-#: The crossover in the paper's simulations (Fig. 10), and that of its half plane (Sec. V.C).
-PAPER = {"simulation": 0.3, "half plane": 0.2915}
+#: The crossover of the paper's half plane (Sec. V.C), and that of its simulations (Fig. 10).
+PAPER = 0.2915, 0.3
 
 
 @style.context()
@@ -42,7 +42,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     for ratio in shown:
         one = response["floor_response"].sel(stiffness_ratio=ratio)
         simulated.plot(response["x"], one, **look[ratio], label=f"{ratio:g}")
-    style.letter(simulated, "a", place="above", text=f"simulation, $F_{{\\mathrm{{ext}}}} = {force:g}\\,\\bar mg$")
+    style.letter(simulated, "a", place="above", text=f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}")
 
     profile = elastic["profile"].sel(rotations="free")
     marks: dict[str, dict[str, Any]] = {
@@ -67,7 +67,10 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         axes.set(xlabel=style.POSITION, xlim=(-reach, reach), ylim=(-0.012 * top / 0.11, top))
     simulated.set_ylabel(style.RESPONSE)
     figure.legend(
-        *simulated.get_legend_handles_labels(), title="$k_T/k_N$", loc="outside upper center", ncols=len(shown)
+        *simulated.get_legend_handles_labels(),
+        title=f"${style.STIFFNESS_RATIO}$",
+        loc="outside upper center",
+        ncols=len(shown),
     )
     return {"fig10_stiffness_ratio": figure, **draw_spring_model()}
 
@@ -86,22 +89,14 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
         panel.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")
         panel.plot(fine, dip.sel(body="smooth floor"), **style.line(2), label="slab")
         panel.plot(ratio, response["central_dip"], **simulated, label="simulation")
-    axes.set(xlabel="$k_T/k_N$", ylabel="dip at $x = 0$ per largest response", xlim=(-0.03, 1.03))
+    axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylabel="dip at $x = 0$ per largest response", xlim=(-0.03, 1.03))
     axes.legend(loc="upper right", borderaxespad=0.3)
     inset.set(xlim=(0.24, 0.41), ylim=(-0.012, 0.045))
     inset.tick_params(labelsize=7)
-    for name, value in PAPER.items():
-        inset.axvline(value, color=style.MUTED, linewidth=0.8, linestyle="-" if name == "simulation" else ":")
-        side = 1.0 if name == "simulation" else -1.0
-        inset.annotate(
-            f"{value:g}",
-            (value, 0.045),
-            (1.5 * side, 2.0),
-            textcoords="offset points",
-            ha="left" if side > 0.0 else "right",
-            fontsize=7,
-            color=style.MUTED,
-        )
+    for value, side in zip(PAPER, ("right", "left"), strict=True):
+        style.paper_value(inset, value)
+        place: dict[str, Any] = {"ha": side, "textcoords": "offset points"}
+        inset.annotate(f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), **place, fontsize=7, color=style.PAPER)
 
 
 def _among(available: np.ndarray, wanted: tuple[float, ...]) -> list[float]:

@@ -8,25 +8,47 @@ import xarray as xr
 
 from granular_response.paper.captions import Caption, of_scene
 
+from .draw import FORCES, LINEAR_UNTIL
 from .parameters import Parameters
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    shared = of_scene(parameters.scene)
-    both = (
-        "The response to two loads and the sum of the responses to each, disk by disk, for several distances d."
+    given = of_scene(parameters.scene)
+    diameters = [2 * offset for offset in parameters.offsets]
+    panels = ", ".join(f"({'abcdefgh'[k]}) d = {d:g} diameters" for k, d in enumerate(diameters))
+    compared = (
+        "Forces of single disks on the floor, not smoothed, per force of one load, in one realization of the "
+        "disorder. Left, Right: the response to a load to the left or right of the middle of the top, (Left+Right): "
+        "to both at once, (Left)+(Right): the sum of the two single ones. Arrows: the loads, their distance d being "
+        f"{panels}. Figs. 23 and 24 share realization and scale."
     )
-    seen = "Panels with curves of two loads and of their sum, which cover each other."
-    return {
-        "fig23_superposition": Caption(both, seen, {**shared, "force": 0.2}),
-        "fig24_superposition": Caption(both, seen, {**shared, "force": 1.0}),
-        "fig24b_superposition_error": Caption(
-            "Difference of the two, root mean square relative to both, against the force for (e) the floor and (f) all "
-            "contacts, and (g) against depth. Means of the realizations with standard errors. Dotted: change of the "
-            "contact forces per force under a single load, relative to the smallest. Shaded: where the linear range of "
-            "the middle half of the realizations ends; broken line: its median.",
-            "Three plots of the difference, which grows with the force and falls with the depth.",
-            {**shared, "realizations": parameters.pair_realizations},
-        ),
+    found = {
+        stem: Caption(
+            compared,
+            f"Four panels for growing distances under loads of {force:g}. Circles of the sum {how} the line of both "
+            "loads; far apart the response has two peaks.",
+            {**given, "force": force, "distance": [2.0 * d for d in diameters]},
+        )
+        for (stem, force), how in zip(FORCES.items(), ("lie on", "nearly lie on"), strict=True)
     }
+    linear = datasets["linear_range"].sizes["realization"]
+    found["fig24b_superposition_error"] = Caption(
+        "Not in the paper: how far both loads at once are from the sum of each alone, root mean square relative to "
+        "both, against the force for (e) the floor forces and (f) all contact forces, and (g) against the depth, for "
+        "contacts between neighbouring rows. Means of the realizations with bands of one standard error. Black dots: "
+        "change of the contact forces per force under a single load, relative to the smallest one. Grey band: where "
+        f"the linear range of the middle half of {linear} realizations ends (response at x = 0, smoothed with w = "
+        f"{parameters.width:g}, changed by {100.0 * parameters.tolerance:g} %), broken line: the median; dotted: "
+        f"{LINEAR_UNTIL:g}, up to which the paper finds this system linear.",
+        "Three plots on one logarithmic scale. The difference grows with the force and is the smaller the farther "
+        "apart the loads are, from a tenth at two diameters to a hundredth at twenty under the largest force of Fig. "
+        "24.",
+        {
+            **given,
+            "force": parameters.forces,
+            "distance": [2.0 * d for d in diameters],
+            "realizations": parameters.pair_realizations,
+        },
+    )
+    return found

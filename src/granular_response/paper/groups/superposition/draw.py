@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from granular_response.paper.captions import letters
 from granular_response.plot import style
 
 FloatArray = NDArray[np.float64]
@@ -96,7 +98,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
         for k, distance in enumerate(distances):
             _mean_with_error(axes, force, errors[name].values[:, k], k, colours[k], f"{distance:g}")
-        axes.axvline(LINEAR_UNTIL, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=1)
+        style.paper_value(axes, LINEAR_UNTIL, f"paper: {LINEAR_UNTIL:g}", at=0.2)
         axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
     change = linear["contact_change"].values.mean(axis=0)[1:]  # zero at the first force, by definition
     (dotted,) = contacts.plot(linear["force"].values[1:], change, color=style.BLACK, linestyle=(0, (1.2, 1.2)))
@@ -105,7 +107,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     profiles = errors["row_error"].sel(force=last).values
     for k in range(len(distances)):
         _mean_with_error(deep, errors["gap"].values, profiles[:, k], k, colours[k], "")
-    deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel="depth below the loads $/\\bar R$", xlim=(0.0, None))
+    deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel=rf"depth below the loads$\,/\,{style.RADIUS}$", xlim=(0.0, None))
     handles, names = floor.get_legend_handles_labels()
     deep.legend(
         [*handles, dotted],
@@ -116,9 +118,10 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
         ncols=2,
         columnspacing=0.8,
     )
-    style.letter(floor, "a", text="floor forces")
-    style.letter(contacts, "b", text="all contact forces")
-    style.letter(deep, "c", text=f"contacts between rows, $F_{{\\mathrm{{ext}}}} = {last:g}\\,\\bar mg$")
+    first, second, third = itertools.islice(letters("fig24b_superposition_error"), 3)
+    style.letter(floor, first, text="floor forces")
+    style.letter(contacts, second, text="all contact forces")
+    style.letter(deep, third, text=f"contacts between rows, {style.equals(style.F_EXT, last, style.WEIGHT)}")
     return figure
 
 

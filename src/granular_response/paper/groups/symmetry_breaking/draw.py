@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from granular_response.paper.captions import letters
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 
@@ -19,6 +20,16 @@ MARGIN = 0.05
 REACH = 30.0
 #: Most copies of the packing in one panel.
 COPIES = 4
+#: The force at which the paper sees the symmetry lost, in mean disk weights (Sec. V.E).
+PAPER = 91.0
+#: Legends stand over their panel.
+OVER: dict[str, Any] = {
+    "loc": "lower center",
+    "bbox_to_anchor": (0.5, 1.11),
+    "fontsize": 7.5,
+    "labelspacing": 0.2,
+    "borderaxespad": 0.0,
+}
 
 
 @style.context()
@@ -27,21 +38,20 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     states, copies = datasets["states"], datasets["copies"]
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1
-    figure, axes = style.figure(
-        rows, 2, width="double", height=2.6 + 2.4 * (rows - 1), height_ratios=[1.25, 1.0][:rows]
-    )
+    figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
+    names = letters("fig16s_symmetry_breaking")
     _protocols(axes[0, 0], datasets["runs"], datasets["held"])
-    style.letter(axes[0, 0], "a", place="above", text="after loading to one force")
+    style.letter(axes[0, 0], next(names), place="above", text="after loading to one force")
     _copies(axes[0, 1], copies)
     force = float(copies["force"])
-    style.letter(axes[0, 1], "b", place="above", text=rf"copies of the packing, $F_\mathrm{{ext}}={force:g}\,mg$")
+    style.letter(axes[0, 1], next(names), place="above", text=f"copies, {_load(force)}")
     handles: dict[str, Any] = {}
     if with_states:
         for index in (0, 1):
             panel, loaded = axes[1, index], states.isel(state=index + 1)
             _network(panel, states.isel(state=0), loaded, handles)
             force = float(loaded["force"])
-            style.letter(panel, "cd"[index], place="above", text=rf"$F_\mathrm{{ext}}={force:.4g}\,mg$")
+            style.letter(panel, next(names), place="above", text=_load(force))
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     return {"fig16s_symmetry_breaking": figure}
 
@@ -78,10 +88,9 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
         label=f"path, then displaced by {_power(size)}",
     )
     panel.set_yscale("log")
-    panel.set(xlabel=r"$F_\mathrm{ext}/mg$", ylabel="asymmetry of the floor response")
-    low, high = panel.get_ylim()
-    panel.set_ylim(low * (low / high) ** 0.62, high)  # room for the legend
-    panel.legend(loc="lower right", fontsize=7)
+    style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.8)
+    panel.set(xlabel=style.FORCE, ylabel="asymmetry of the floor response")
+    panel.legend(**OVER)
 
 
 def _copies(panel: Axes, copies: xr.Dataset) -> None:
@@ -94,10 +103,8 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
         look["markeredgewidth"] = 0.0 if index < 2 else 0.8
         panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=names[k], **look)
     panel.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-    panel.set(xlabel="$x/R$", ylabel=r"floor response$\,/\,F_\mathrm{ext}$", xlim=(-REACH, REACH))
-    low, high = panel.get_ylim()
-    panel.set_ylim(low - 0.62 * (high - low), high)  # room for the legend
-    panel.legend(loc="lower center", fontsize=7)
+    panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
+    panel.legend(**OVER)
 
 
 def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset, handles: dict[str, Any]) -> None:
@@ -108,7 +115,12 @@ def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset, handles: dict[st
     handles.update({names.get(kind, kind): line for kind, line in drawn.items()})
 
 
+def _load(force: float) -> str:
+    return style.equals(style.F_EXT, round(force, 2), style.WEIGHT)
+
+
 def _power(value: float) -> str:
     """A power of ten as mathematics, another number as it is."""
     exponent = np.log10(value)
-    return rf"$10^{{{exponent:.0f}}}R$" if abs(exponent - round(exponent)) < 1e-9 else rf"${value:g}R$"
+    whole = abs(exponent - round(exponent)) < 1e-9
+    return rf"$10^{{{exponent:.0f}}}\,{style.RADIUS}$" if whole else rf"${value:g}\,{style.RADIUS}$"

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from granular_response.paper.captions import letters
 from granular_response.plot import style
 from granular_response.plot.network import (
     draw_disks,
@@ -21,7 +22,7 @@ from granular_response.plot.network import (
     pair_points,
 )
 
-#: Force of the key (mg).
+#: Force of the key, in mean disk weights.
 KEY = 5.0
 
 
@@ -81,16 +82,17 @@ def _reach(data: xr.Dataset) -> Figure:
     }
     changes = np.concatenate([data[name].values[turned].ravel() for name in panel_of])
     limits = 0.6 * float(changes[changes > 0.0].min()), 1.6 * float(changes.max())
-    for index, (axes, (name, text)) in enumerate(zip(panels[0], panel_of.items(), strict=True)):
+    named = zip(panels[0], letters("fig18_torque_reach"), panel_of.items(), strict=False)
+    for axes, letter, (name, text) in named:
         for number, k in enumerate(turned):
             look = {**style.marked_line(number), "color": colours[number]}
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
-        axes.set(xlabel="distance from the load $/\\bar R$", xlim=(0.0, None), yscale="log", ylim=limits)
-        style.letter(axes, chr(ord("a") + index), place="above", text=text)
+        axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None), yscale="log", ylim=limits)
+        style.letter(axes, letter, place="above", text=text)
     panels[0, 0].set_ylabel("relative change by the torque")
-    panels[0, 2].legend(title="torque $/\\bar mg\\bar R$", loc="upper right")
+    panels[0, 2].legend(title=rf"torque$\,/\,{style.TORQUE_UNIT}$", loc="upper right")
     return figure
 
 
 def _torque(value: float) -> str:
-    return "no torque" if value == 0.0 else f"torque ${value:g}\\,\\bar mg\\bar R$"
+    return "no torque" if value == 0.0 else rf"torque ${value:g}\,{style.TORQUE_UNIT}$"
