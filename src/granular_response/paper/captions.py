@@ -10,6 +10,7 @@ by the letters that :func:`letters` gives: those of a figure of several pictures
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -117,10 +118,15 @@ def values(given: Value) -> str:
     if isinstance(given, str):
         return given
     many = [given] if isinstance(given, float | int) else list(given)
-    texts = [f"{value:g}" for value in many]
+    texts = [_number(value) for value in many]
     if len(texts) > 8:
         return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
     return " and ".join([", ".join(texts[:-1]), texts[-1]]) if len(texts) > 1 else texts[0]
+
+
+def _number(value: float) -> str:
+    exponent = round(math.log10(value)) if value >= 1e5 else 0
+    return f"1e{exponent}" if exponent and value == 10.0**exponent else f"{value:g}"
 
 
 def letters(stem: str) -> Iterator[str]:

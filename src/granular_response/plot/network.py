@@ -18,7 +18,7 @@ from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike, NDArray
 
 from granular_response.plot import style
-from granular_response.state import OPEN, Box, foot_points
+from granular_response.state import FLOOR, OPEN, Box, foot_points
 
 FloatArray = NDArray[np.float64]
 
@@ -91,8 +91,8 @@ def draw_contacts(
 
 #: How each kind of contact of :func:`draw_contact_changes` is drawn, and its name in a legend.
 CONTACT_LINES: dict[str, dict[str, Any]] = {
-    "unchanged": {"color": style.BLACK, "linewidth": 0.35, "zorder": 2},
-    "sliding": {"color": style.ORANGE, "linewidth": 1.3, "zorder": 3},
+    "unchanged": {"color": style.BLACK, "linewidth": 0.45, "zorder": 2},
+    "sliding": {"color": style.ORANGE, "linewidth": 1.4, "zorder": 3},
     "closed": {"color": style.BLUE, "linewidth": 1.8, "zorder": 4},
     "opened": {"color": style.VERMILION, "linewidth": 2.0, "zorder": 5},
 }
@@ -116,21 +116,25 @@ def draw_contact_changes(
     slides now, ``unchanged`` touches before and after without sliding (thin black). Kinds that do not
     occur are left out of the returned collections, which are labelled for a legend.
     """
-    before, now = np.asarray(touching_before, dtype=bool), np.asarray(touching, dtype=bool)
-    slides = np.zeros(len(now), dtype=bool) if sliding is None else np.asarray(sliding, dtype=bool) & now
     i, j = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
-    masks = {
-        "unchanged": before & now & ~slides,
-        "sliding": before & slides,
-        "closed": ~before & now,
-        "opened": before & ~now,
-    }
     drawn = {}
-    for name, mask in masks.items():
+    for name, mask in _changes(touching_before, touching, sliding).items():
         if mask.any():
             look = {**CONTACT_LINES[name], "label": name, **lines}
             drawn[name] = draw_contacts(axes, position, i[mask], j[mask], box=box, **look)
     return drawn
+
+
+def _changes(before: ArrayLike, now: ArrayLike, sliding: ArrayLike | None = None) -> dict[str, np.ndarray]:
+    """(m,) masks of what became of contacts."""
+    touched, touches = np.asarray(before, dtype=bool), np.asarray(now, dtype=bool)
+    slides = np.zeros(len(touches), dtype=bool) if sliding is None else np.asarray(sliding, dtype=bool) & touches
+    return {
+        "unchanged": touched & touches & ~slides,
+        "sliding": touched & slides,
+        "closed": ~touched & touches,
+        "opened": touched & ~touches,
+    }
 
 
 def draw_state_changes(
@@ -138,15 +142,16 @@ def draw_state_changes(
 ) -> dict[str, LineCollection]:
     """Figs. 4, 8, 9 and 16: the central third of a slab, what a load changes in its contacts, the load and the floor.
 
-    ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts. Returns what
-    :func:`draw_contact_changes` does.
+    ``rest`` and ``loaded`` are states of a study's dataset, ``sliding`` (m,) marks contacts. Contacts with the floor
+    are lines down to it. Returns what :func:`draw_contact_changes` does.
     """
     position, disk = loaded["position"].values, int(rest["loaded_disk"])
     radius, width = float(rest["radius"].values[disk]), float(rest["width"])
     first, second = rest["contact_disk"].values, rest["contact_partner"].values
     x, z = position[disk]
     left, right = x - width / 6.0, x + width / 6.0
-    inside = np.abs(position[:, 0] - x) <= width / 6.0 + 0.5
+    # lines that cross the edges of the picture are cut there
+    inside = np.abs(position[:, 0] - x) <= width / 6.0 + 2.0
     shown = inside[first] & inside[second]
     drawn = draw_contact_changes(
         axes,
@@ -157,10 +162,15 @@ def draw_state_changes(
         touching=loaded["contact_status"].values[shown] != OPEN,
         sliding=np.asarray(sliding)[shown],
     )
+    on_floor = rest["wall_index"].values == FLOOR
+    centre = position[rest["wall_disk"].values[on_floor]]
+    before, now = (state["wall_status"].values[on_floor] != OPEN for state in (rest, loaded))
+    for name, mask in _changes(before, now).items():
+        _segments(axes, centre[mask], centre[mask] * (1.0, 0.0), CONTACT_LINES[name])
     draw_loaded_disk(axes, (float(x), float(z)), radius)
     draw_load(axes, (float(x), float(z) + radius), length=3.5)
     draw_box(axes, Box(width), float(position[:, 1].max()), between=(left, right))
-    axes.set(xlim=(left - 1.0, right + 1.0), ylim=(-0.6, float(z) + radius + 4.0))
+    axes.set(xlim=(left, right), ylim=(-0.6, float(z) + radius + 4.0))
     style.no_axes(axes)
     return drawn
 

@@ -19,7 +19,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``contact_law`` from the dataset ``responses`` of the study of the same name."""
     data = datasets["responses"]
     frictions, forces = data["friction"].values, data["force"].values
-    figure, (panels,) = style.figure(1, len(frictions), width="double", height=2.7, sharey=True)
+    figure, (panels,) = style.figure(1, len(frictions), width="double", height=2.9, sharey=True)
     x = data["x"].values
     shown = np.abs(x) <= REACH
     for index, axes in enumerate(panels):
@@ -27,13 +27,17 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         for k, force in enumerate(forces):
             linear, power = one["floor_response"].isel(force=k).values
             difference = float(one["difference"][k])
-            axes.plot(x[shown], linear[shown], color=style.COLOURS[k], linewidth=1.0)
+            look = style.line(k) | {"linewidth": 1.0}
+            axes.plot(x[shown], linear[shown], **look)
             axes.plot(
                 x[shown], power[shown], color=style.COLOURS[k], linestyle="none", marker=style.MARKERS[k],
-                markersize=3.0, markerfacecolor="none", label=f"{force:g} $mg$: {100 * difference:.1f} % apart",
+                markersize=3.0, markerfacecolor="none",
             )  # fmt: skip
-        style.letter(axes, "abc"[index], place="above", text=f"µ = {frictions[index]:g}")
-        axes.set_xlabel("$x/R$")
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
-    panels[0].set_ylabel(r"floor response$\,/\,F_\mathrm{ext}$")
+            # one entry for the line and the symbols of a force
+            name = f"${force:g}\\,{style.WEIGHT}$: {100 * difference:.1f} % apart"
+            axes.plot([], [], **look, marker=style.MARKERS[k], markersize=3.0, markerfacecolor="none", label=name)
+        style.letter(axes, "abc"[index], place="above", text=style.equals(style.FRICTION, frictions[index]))
+        axes.set_xlabel(style.POSITION)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), handlelength=3.0)
+    panels[0].set_ylabel(style.RESPONSE)
     return {"contact_law": figure}

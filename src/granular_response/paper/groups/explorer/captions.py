@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from granular_response.paper.captions import Caption
+from granular_response.paper.captions import RADIUS, Caption
 
 from .parameters import Parameters
 
@@ -16,8 +16,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     return {
         "explorer": Caption(
             "Not in the paper: response at x = 0 of the slabs of the explorer that no other figure shows. (a) Ordered "
-            "slabs with a small k_T/k_N, and (b) single disordered slabs, smoothed with w = 3 R, up to the last force "
-            "before they collapse.",
+            "slabs with a small k_T/k_N, and (b) single disordered slabs, smoothed with "
+            f"w = {parameters.width:g} {RADIUS}, up to the last force before they collapse.",
             "Two plots of the response at x = 0 against the force, a curve for each slab.",
         )
     }

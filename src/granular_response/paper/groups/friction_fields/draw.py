@@ -44,7 +44,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def _force_chains(data: xr.Dataset) -> Figure:
     """The central third of the slab; one scale for all panels."""
     frictions = data["friction"].values
-    figure, panels = style.figure(len(frictions), 1, width="single", height=2.15 * len(frictions) + 0.2)
+    figure, panels = style.figure(len(frictions), 1, width="single", height=2.4 * len(frictions) + 0.1)
     width, disk = float(data["width"]), int(data["loaded_disk"])
     added, at_wall = data["contact_added_force"].values, data["wall_added_force"].values
     scale = force_scale(added.reshape(-1, 2), longest=4.6, widest=4.6)
@@ -55,7 +55,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
         pairs = data["contact_disk"].values, data["contact_partner"].values
         walls = data["wall_disk"].values, data["wall_index"].values
         inside = np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
-        draw_disks(axes, position[inside], radius[inside], edgecolor="#E0E0E0")
+        draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT)
         for point, force in (
             (pair_points(position, radius, *pairs), added[index]),
             (wall_points(position, radius, *walls), at_wall[index]),
@@ -67,75 +67,89 @@ def _force_chains(data: xr.Dataset) -> Figure:
         draw_load(axes, top)
         draw_box(axes, Box(width), top[1], between=(width / 3.0, 2.0 * width / 3.0))
         style.no_axes(axes)
-        axes.set(xlim=(width / 3.0 - 0.5, 2.0 * width / 3.0 + 0.5), ylim=(-0.8, top[1] + 4.2))
+        axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-0.8, top[1] + 4.2))
         style.letter(axes, chr(ord("a") + index), text=_friction(frictions[index]))
-    last = panels[-1, 0]
-    magnitude = _round(float(data["force"]) / 5.0)
-    draw_force_key(last, (2.0 * width / 3.0 - 8.0, top[1] + 2.5), magnitude, **scale)
+        magnitude = _round(float(data["force"]) / 5.0)
+        draw_force_key(axes, (2.0 * width / 3.0 - 8.0, top[1] + 2.5), magnitude, **scale)
     return figure
 
 
 def _vertical_stress(data: xr.Dataset) -> Figure:
-    """Maps on one scale, the harmonic lattice last."""
+    """Maps on one scale, the harmonic lattice last, and beside them how far they are off it."""
     frictions = data["friction"].values
+    lattice = data["stress_zz_lattice"].values
     maps = [(field, _friction(mu)) for field, mu in zip(data["stress_zz"].values, frictions, strict=True)]
-    maps.append((data["stress_zz_lattice"].values, "isotropic harmonic lattice"))
-    rows = (len(maps) + 1) // 2
+    rows, letters = len(maps) + 1, [chr(ord("a") + k) for k in range(2 * len(maps) + 1)]
     figure, panels = style.figure(rows, 2, width="double", height=1.62 * rows + 0.3, sharex=True, sharey=True)
-    x, z = data["x"].values, data["z"].values
+    x, z, width = data["x"].values, data["z"].values, float(data["stress_width"])
     half = min(MAP_HALF_WIDTH, float(x.max()))
-    largest = max(float(field.max()) for field, _ in maps)
-    # the stress falls like 1/depth: equal steps of its square root show the lower part of the slab too
-    norm = root_norm(largest)
-    levels = largest * np.array(LEVELS)
-    for index, (axes, (field, name)) in enumerate(zip(panels.ravel(), maps, strict=False)):
-        image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=levels)
+    largest = max(float(field.max()) for field in (*data["stress_zz"].values, lattice))
+    furthest = max(float(np.abs(field - lattice)[:, np.abs(x) <= half].max()) for field, _ in maps)
+    norm, signed = root_norm(largest), root_norm(furthest, signed=True)
+    for index, (field, name) in enumerate([*maps, (lattice, "isotropic harmonic lattice")]):
+        axes = panels[index, 0]
+        image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=largest * np.array(LEVELS))
+        style.letter(axes, letters[index], place="above", text=name)
+    for index, (field, name) in enumerate(maps):
+        axes = panels[index, 1]
+        # white where there is no difference
+        change = draw_field(axes, x, z, field - lattice, norm=signed, cmap=style.SIGNED)
+        style.letter(axes, letters[rows + index], place="above", text=f"{name}, less ({letters[len(maps)]})")
+    for axes in [*panels[:, 0], *panels[:-1, 1]]:
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
-        style.letter(axes, chr(ord("a") + index), place="above", text=name)
-    for axes in panels.ravel()[len(maps) :]:
-        axes.set_axis_off()
-    for axes in panels[-1]:
-        axes.set_xlabel("$x/R$")
+        axes.axhspan(0.0, width, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
+        axes.axhline(width, color=style.MUTED, linewidth=0.5)
+    for axes in (panels[-1, 0], panels[-2, 1]):
+        axes.set_xlabel(style.POSITION)
+        axes.tick_params(labelbottom=True)
     for axes in panels[:, 0]:
-        axes.set_ylabel("$z/R$")
-    bar = figure.colorbar(image, ax=panels, shrink=0.9, aspect=25, pad=0.02)
-    bar.set_label("$\\sigma_{zz} R / F_{\\mathrm{ext}}$")
-    bar.set_ticks([t for t in (0.0, 0.005, 0.02, 0.05, 0.1, 0.15) if t <= largest])
-    bar.ax.yaxis.set_major_formatter("{x:g}")
-    bar.ax.tick_params(which="minor", size=0)
+        axes.set_ylabel(style.HEIGHT)
+    empty = panels[-1, 1]
+    empty.set_axis_off()
+    steps, both = (0.0, 0.005, 0.02, 0.05, 0.1, 0.15), (-0.02, -0.01, -0.002, 0.0, 0.002, 0.01, 0.02)
+    for place, mapped, label, ticks in (
+        (0.62, image, style.STRESS, [t for t in steps if t <= largest]),
+        (0.16, change, f"difference of {style.STRESS}", [t for t in both if abs(t) <= furthest]),
+    ):
+        bar = figure.colorbar(mapped, cax=empty.inset_axes((0.05, place, 0.9, 0.09)), orientation="horizontal")
+        bar.set_label(label)
+        bar.set_ticks(ticks)
+        bar.ax.xaxis.set_major_formatter("{x:g}")
+        bar.ax.tick_params(which="minor", size=0)
     return figure
 
 
 def _force_profiles(data: xr.Dataset) -> Figure:
     frictions, depths = data["friction"].values, data["depth"].values
-    figure, panels = style.figure(1, len(frictions), width="double", height=2.9, sharex=True)
+    figure, panels = style.figure(1, len(frictions), width="double", height=3.1, sharex=True, sharey=True)
     colours = style.ordered_colours(len(depths))
     for index, axes in enumerate(panels[0]):
         for row, depth in enumerate(depths):
             axes.plot(
                 data["contact_x"].values[index, row],
                 data["magnitude"].values[index, row],
-                linestyle="-",
+                linestyle=style.LINE_STYLES[row % len(style.LINE_STYLES)],
                 linewidth=0.8,
                 color=colours[row],
                 marker=style.MARKERS[row % len(style.MARKERS)],
                 markersize=2.8,
                 markeredgewidth=0.0,
-                label=f"${depth:.1f}\\,R$",
+                label=f"${depth:.1f}\\,{style.RADIUS}$",
             )
         half = PROFILE_HALF_WIDTH
-        axes.set(xlabel="$x/R$", xlim=(-half, half))
-        axes.set_ylim(0.0, 1.06 * float(np.nanmax(data["magnitude"].values[index])))
-        style.letter(axes, chr(ord("a") + index), text=_friction(frictions[index]))
-    panels[0, 0].set_ylabel("$|\\mathbf{f}|/mg$")
+        axes.set(xlabel=style.POSITION, xlim=(-half, half))
+        style.letter(axes, chr(ord("a") + index), place="above", text=_friction(frictions[index]))
+    # small forces far from the middle are seen beside the largest ones
+    panels[0, 0].set_yscale("function", functions=(lambda y: np.sqrt(np.maximum(y, 0.0)), np.square))
+    panels[0, 0].set_ylim(0.0, 1.06 * float(np.nanmax(data["magnitude"].values)))
+    panels[0, 0].set_yticks([0.0, 1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0])
+    panels[0, 0].set_ylabel(style.CONTACT_FORCE)
     panels[0, -1].legend(title="depth", loc="upper right")
     return figure
 
 
 def _friction(value: float) -> str:
-    if value == 0.0:
-        return "$\\mu = 0$"
-    return f"$\\mu = \\mu^{{\\mathrm{{wall}}}} = {value:g}$"
+    return style.equals(style.FRICTION if value == 0.0 else style.BOTH_FRICTIONS, value)
 
 
 def _round(value: float) -> float:

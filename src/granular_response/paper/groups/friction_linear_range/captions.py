@@ -8,7 +8,18 @@ import xarray as xr
 
 from granular_response.paper.captions import WEIGHT, Caption, of_scene, values
 
-from .draw import AXIS_FRICTIONS, DYNAMIC_FORCES, LARGE_FORCES, PROFILE_FORCES, at_forces, at_frictions, contact_forces
+from .draw import (
+    AXIS_FRICTIONS,
+    DYNAMIC_FORCES,
+    LARGE_FORCES,
+    PAPER_CROSSOVER,
+    PAPER_SYMMETRIC,
+    PAPER_THIRD_PEAK,
+    PROFILE_FORCES,
+    at_forces,
+    at_frictions,
+    contact_forces,
+)
 from .parameters import Parameters
 
 
@@ -16,23 +27,23 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     response = datasets["response"]
     frictions = response["friction"].values.tolist()
-    reached = response["response_at_centre"].notnull()
-    ends = {mu: float(response["force"].values[reached.sel(friction=mu)].max()) for mu in frictions}
-    early = [mu for mu in frictions if ends[mu] < max(parameters.forces)]
-    stops = "".join(f" At µ = {mu:g} it was followed up to {ends[mu]:g} {WEIGHT}." for mu in early)
+    stops = "".join(
+        f" The curve of µ = {end.friction:g} ends at {end.force:g} {WEIGHT} to save time; the slab bears more."
+        for end in parameters.ends
+    )
     found = {
         "fig06_linear_range": Caption(
             "Response at x = 0 of ordered slabs per force, against the force, for several coefficients of friction. "
             "It is level in the linear range, which friction extends. Dotted: the forces at which the paper sees the "
             f"first contact open, without friction, at µ = 0.2 and at µ = 1.{stops}",
-            "Curves against the force on a logarithmic axis, level at 0.071 for small forces; they leave it the later "
-            "the larger the friction, most of them downwards, that of µ = 1 upwards.",
-            of_scene(parameters.scene, force=parameters.forces, friction=frictions),
+            "Curves against the force on a logarithmic axis, level and equal for small forces; they leave the level "
+            "the later the larger the friction, most of them downwards, that of µ = 1 upwards.",
+            of_scene(parameters.scene, force=response["force"].values.tolist(), friction=frictions),
         ),
         "fig07_friction_response": Caption(
-            "Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2: one peak becomes two near "
-            "20 mg, as the paper says. (b) µ = 1: one peak, which sharpens; the symbols of each curve are at other "
-            "disks, as the curves nearly cover each other.",
+            f"Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2; the paper sees the crossover "
+            f"from one peak to two near {PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. Each "
+            "curve has its symbols at other disks, as some nearly cover each other.",
             "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
             of_scene(
                 parameters.scene,
@@ -69,9 +80,10 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         left = at_forces(response.sel(friction=0.2), LARGE_FORCES)["force"].values
         found["fig16_large_forces"] = Caption(
             f"Floor response of ordered slabs under large forces. (a) µ = 0.2, F_ext = {values(left.tolist())} "
-            f"{WEIGHT}; the paper sees the crossover near 20 {WEIGHT} and a third peak at x = 0 from 40 {WEIGHT} on. "
-            f"(b) µ = 1, dynamics from rest to F_ext = {values(beyond.tolist())} {WEIGHT}; in the paper symmetry is "
-            f"lost beyond 91 {WEIGHT}, and at 95 {WEIGHT} the response is the mirror image of another.",
+            f"{WEIGHT}; the paper sees the crossover near {PAPER_CROSSOVER:g} {WEIGHT} and a third peak at x = 0 from "
+            f"{PAPER_THIRD_PEAK:g} {WEIGHT} on. (b) µ = 1, dynamics from rest to F_ext = {values(beyond.tolist())} "
+            f"{WEIGHT}; in the paper symmetry is lost beyond {PAPER_SYMMETRIC:g} {WEIGHT}, and at 95 {WEIGHT} the "
+            "response is the mirror image of another.",
             "(a) A plateau, then two peaks with a third one between them. (b) One symmetric bell and three lopsided "
             "curves with a sharp negative dip to the left or the right of the middle.",
             of_scene(

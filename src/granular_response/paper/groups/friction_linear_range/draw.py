@@ -25,6 +25,14 @@ AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 #: Part of the slab that profiles show, to both sides of the load (radii): beyond it the walls matter.
 REACH = 40.0
 
+#: Symbols of a profile stand at every so many disks; half of the width of the enlarged part of Fig. 7b.
+SPREAD, CLOSE = 3, 8.0
+
+#: What the paper says, in mean disk weights: forces that open the first contact, by friction (Sec. V.B), crossover and
+#: third peak at friction 0.2, and the last symmetric response at friction 1 (Sec. V.E).
+PAPER_OPENINGS = {0.0: 0.75, 0.2: 4.0, 1.0: 6.0}
+PAPER_CROSSOVER, PAPER_THIRD_PEAK, PAPER_SYMMETRIC = 20.0, 40.0, 91.0
+
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
@@ -46,7 +54,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def _linear_range(response: xr.Dataset) -> Figure:
     """Fig. 6."""
-    figure, axes = style.figure(height=2.6)
+    figure, axes = style.figure(height=3.0)
     panel = axes[0, 0]
     frictions = response["friction"].values
     for index, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True)):
@@ -55,20 +63,27 @@ def _linear_range(response: xr.Dataset) -> Figure:
         panel.plot(curve["force"], curve, label=f"{friction:g}", **look)
     panel.set_xscale("log")
     panel.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    panel.set_ylim(bottom=0.0)
-    panel.set(xlabel=style.FORCE, ylabel=r"response at $x=0$, per $F_\mathrm{ext}$")
-    panel.legend(title=r"$\mu$", loc="lower left")
+    panel.set_ylim(bottom=0.0, top=1.1 * float(response["response_at_centre"].max()))
+    for friction, force in PAPER_OPENINGS.items():
+        name = f"paper, $\\mu = {friction:g}$: {force:g}"
+        style.paper_value(panel, force, name, side="behind" if force == max(PAPER_OPENINGS.values()) else "before")
+    panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE)
+    panel.legend(title=f"${style.FRICTION}$", loc="lower left", ncols=2, columnspacing=1.0)
     return figure
 
 
 def _profiles(response: xr.Dataset) -> Figure:
     """Fig. 7."""
-    figure, axes = style.figure(1, 2, width="double", height=2.5, sharey=True)
+    figure, axes = style.figure(1, 2, width="double", height=2.7, sharey=True)
     extents = []
     for panel, name, friction in zip(axes[0], "ab", PROFILE_FRICTIONS, strict=True):
         curves = at_forces(response.sel(friction=friction), PROFILE_FORCES)
         extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), style.FORCE))
-        style.letter(panel, name, text=rf"$\mu={friction:g}$")
+        style.letter(panel, name, place="above", text=style.equals(style.FRICTION, friction))
+        if friction == 1.0:
+            _enlarge(panel, curves)
+        else:
+            style.paper_note(panel, f"paper:\n{PAPER_CROSSOVER:g} crossover")
     _fit(axes[0, 0], *extents)
     axes[0, 0].set_ylabel(style.RESPONSE)
     return figure
@@ -78,21 +93,23 @@ def _friction_axis(axis: xr.Dataset) -> Figure:
     """Fig. 12."""
     figure, axes = style.figure(height=2.6)
     curves = axis.sel(friction=at_frictions(axis, AXIS_FRICTIONS))
-    _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), r"$\mu$"))
+    _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), f"${style.FRICTION}$"))
     axes[0, 0].set_ylabel(style.RESPONSE)
     return figure
 
 
 def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
-    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    figure, axes = style.figure(1, 2, width="double", height=2.9)
     left, right = axes[0]
     curves = at_forces(response.sel(friction=0.2), LARGE_FORCES)
     _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), style.FORCE))
-    style.letter(left, "a", text=r"$\mu=0.2$")
+    style.paper_note(left, f"paper:\n{PAPER_CROSSOVER:g} crossover\n{PAPER_THIRD_PEAK:g} third peak")
+    style.letter(left, "a", place="above", text=style.equals(style.FRICTION, 0.2))
     curves = at_forces(dynamic, DYNAMIC_FORCES)
     _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), style.FORCE, categorical=True))
-    style.letter(right, "b", text=rf"$\mu={float(dynamic['friction']):g}$")
+    style.paper_note(right, f"paper:\n{PAPER_SYMMETRIC:g} symmetric")
+    style.letter(right, "b", place="above", text=style.equals(style.FRICTION, float(dynamic["friction"])))
     right.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)
@@ -132,11 +149,12 @@ def _plot_profiles(
     colours = style.ordered_colours(len(labels))
     dimension = next(str(dim) for dim in curves["floor_response"].dims if dim != "floor_disk")
     for index, (label, colour) in enumerate(zip(labels, colours, strict=True)):
+        # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
         look: dict[str, Any] = style.marked_line(index, colour=None if categorical else colour)
-        look["markersize"] = 2.6
+        look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD), "linestyle": style.line(index)["linestyle"]}
         panel.plot(curves["x"], curves["floor_response"].isel({dimension: index}), label=label, **look)
     panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
-    panel.legend(title=title, loc="upper right")
+    panel.legend(title=title, loc="upper right", handlelength=2.8)
     shown = curves["floor_response"].where(abs(curves["x"]) <= REACH)
     return float(shown.min()), float(shown.max())
 
@@ -147,10 +165,23 @@ def _fit(panel: Axes, *extents: tuple[float, float]) -> None:
     panel.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
 
 
+def _enlarge(panel: Axes, curves: xr.Dataset) -> None:
+    """The tops of curves that nearly cover each other, in the upper left corner."""
+    inside = panel.inset_axes((0.09, 0.5, 0.28, 0.46))
+    near = curves.isel(floor_disk=np.flatnonzero(np.abs(curves["x"].values) <= CLOSE))
+    for index, (values, colour) in enumerate(
+        zip(near["floor_response"].values, style.ordered_colours(near.sizes["force"]), strict=True)
+    ):
+        look = {**style.marked_line(index), **style.line(index), "color": colour, "markersize": 2.6}
+        inside.plot(near["x"], values, **look)
+    inside.set_xlim(-CLOSE, CLOSE)
+    inside.tick_params(labelsize=6)
+
+
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
     stored, shown = states["force"].values, contact_forces(states)
-    figure, axes = style.figure(len(shown), 1, height=2.15 * len(shown))
+    figure, axes = style.figure(len(shown), 1, height=2.5 * len(shown) + 0.3)
     rest = states.isel(state=0)
     handles: dict[str, Any] = {}
     for index, force in enumerate(shown):
@@ -158,8 +189,7 @@ def _contacts(states: xr.Dataset, friction: float) -> Figure:
         panel = axes[index, 0]
         drawn = draw_state_changes(panel, rest, loaded, loaded["contact_status"].values == SLIDING)
         handles.update({name: line for name, line in drawn.items() if name not in handles})
-        style.letter(
-            panel, "abcdefgh"[index], place="above", text=rf"$\mu={friction:g}$, $F_\mathrm{{ext}}={force:g}\,mg$"
-        )
+        text = f"{style.equals(style.FRICTION, friction)}, {style.equals(style.F_EXT, force, style.WEIGHT)}"
+        style.letter(panel, "abcdefgh"[index], place="above", text=text)
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)
     return figure

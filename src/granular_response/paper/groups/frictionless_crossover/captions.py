@@ -28,9 +28,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "Ordered slab without friction under a growing force. (a) Floor response per force in the interior of the "
             "slab: one peak splits into two. (b) Response at x = 0 and its largest value against the force; broken "
             "lines: forces at which the first contact opens, two peaks appear and the region of open contacts reaches "
-            "the floor.",
+            "the floor; dotted: first opening in the paper.",
             "(a) Curves from a single bell at small forces to two sharp peaks at large ones. (b) Both measures agree "
-            "up to 3 mg, then the response at x = 0 falls to a seventh and the largest grows.",
+            "until there are two peaks, then the response at x = 0 falls and the largest grows.",
             {**slab, "force": drawn(PROFILE_FORCES, "response")},
         ),
         "fig04_frictionless_contacts": Caption(
@@ -45,7 +45,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "Depth (left) and largest width (right) of the region of open contacts below the force, for slabs of "
             f"several depths at k_N = {stiffnesses} {WEIGHT}/{RADIUS}, (a), (b) above and (c), (d) below. A curve "
             "ends where the region reaches the floor (open symbol). In 60 layers of the paper's stiffness gravity "
-            "compresses the slab so far that its horizontal contacts carry eight times as much as in stiff slabs: "
+            "compresses the slab so far that its horizontal contacts carry far more than those of stiff slabs: "
             "the first one opens late and the region stays small, which is not the effect of size that the paper "
             "shows. Of stiff disks 60 layers are like the others.",
             "Curves that grow with the force, deeper slabs a little later; with soft disks that of 60 layers stays "
@@ -57,7 +57,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "stiffest disks; shaded: 2 % from 1000 to 1e5, as the paper says. (f) Depth and largest width of the "
             "region of open contacts; dotted: 2000, from which the paper sees it saturate. (g) Forces at which the "
             "first contact opens, two peaks appear and the region reaches the floor. Stiffnesses at which gravity "
-            "alone rearranges the lattice are left out in (f) and (g).",
+            "alone rearranges the lattice are left out.",
             "Three plots against the stiffness on a logarithmic axis; all curves level off beyond 2000.",
             {**slab, "force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses},
         ),

@@ -1,7 +1,7 @@
 """Figs. 3, 4 and 5 and the stiffness study: ordered slabs without friction under a growing force.
 
 Profiles are drawn in the interior of the slab, ten radii from its side walls. The curves of Fig. 5 end where the
-region of opened contacts reaches the floor (open marker). The grey band of ``fig05b_stiffness`` is the change of
+region of opened contacts reaches the floor (open marker). The band of ``fig05b_stiffness`` is the change of
 2 % that Sec. IV.C speaks of; stiffnesses for which gravity alone rearranges the lattice are left out there.
 """
 
@@ -16,6 +16,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, MultipleLocator, NullFormatter
 
+from granular_response.paper.captions import letters
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
@@ -33,8 +34,9 @@ EVENTS = {
     "crossover": "one peak to two",
     "teardrop_reaches_floor": "region at the floor",
 }
-FORCE_LABEL = "$F_{\\mathrm{ext}}/mg$"
-RESPONSE_LABEL = "$F_{\\mathrm{floor}}/F_{\\mathrm{ext}}$"
+#: What the paper says: first opening (Sec. V.B); the response changes by 2 % between two stiffnesses, and the region
+#: saturates from a third one on (Sec. IV.C).
+PAPER_OPENING, PAPER_CHANGE, PAPER_STIFFNESSES, PAPER_SATURATION = 0.75, 0.02, (1e3, 1e5), 2e3
 
 
 @style.context()
@@ -75,8 +77,8 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
             label=f"{float(one['force']):g}",
         )
     profiles.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-    profiles.set(xlabel="$x/R$", ylabel=RESPONSE_LABEL, xlim=(x[0], x[-1]))
-    profiles.legend(title=FORCE_LABEL, loc="upper right")
+    profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
+    profiles.legend(title=style.FORCE, loc="upper right")
 
     centre.plot(data["force"], data["response_at_centre"], **style.marked_line(0), label="at $x=0$")
     centre.plot(data["force"], data["peak_height"], **style.marked_line(1), label="largest")
@@ -98,8 +100,9 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
                 fontsize=7,
                 color=style.MUTED,
             )
+    style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
-    centre.set(xscale="log", xlabel=FORCE_LABEL, ylabel=RESPONSE_LABEL)
+    centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
     centre.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
     style.letters(np.array([profiles, centre]), place="above")
@@ -119,7 +122,7 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
         one = states.isel(force=chosen[at])
         handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
         force = float(one["force"])
-        style.letter(axes, chr(ord("a") + at), place="above", text=f"$F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$")
+        style.letter(axes, chr(ord("a") + at), place="above", text=style.equals(style.F_EXT, force, style.WEIGHT))
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     return figure
 
@@ -132,14 +135,20 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
     for row, stiffness in zip(panels, stiffnesses, strict=True):
         slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
         for axes, name, label in zip(
-            row, ("teardrop_depth", "teardrop_width"), ("depth$/R$", "width$/R$"), strict=True
+            row, ("teardrop_depth", "teardrop_width"), (style.DEPTH, style.WIDTH), strict=True
         ):
             _growth(axes, slabs, name, lambda one: f"{int(one['layers'])}")
             axes.set_ylabel(label)
         row[0].legend(title="layers", loc="upper right")
-        row[0].annotate(f"$k_N = {_power(stiffness)}\\,mg/R$", (0.03, 0.86), xycoords="axes fraction", fontsize=8)
+        row[0].annotate(
+            style.equals("k_N", stiffness, style.STIFFNESS_UNIT), (0.03, 0.86), xycoords="axes fraction", fontsize=8
+        )
+    panels[0, 1].annotate(
+        "open: region at the floor", (1.0, 1.0), (-5.0, -5.0), xycoords="axes fraction", textcoords="offset points",
+        ha="right", va="top", fontsize=8, color=style.MUTED,
+    )  # fmt: skip
     for axes in panels[-1]:
-        axes.set_xlabel(FORCE_LABEL)
+        axes.set_xlabel(style.FORCE)
         axes.xaxis.set_major_locator(MultipleLocator(5.0))
     style.letters(panels)
     return figure
@@ -176,9 +185,16 @@ def _stiffness(data: xr.Dataset) -> Figure:
         response = data["response_at_centre"].isel(force=index).values
         look = style.marked_line(at)
         centre.plot(k[held], (response / response[-1])[held], **look, label=f"{data['force'].values[index]:g}")
-    centre.fill_between([1e3, 1e5], 0.98, 1.02, color=style.FAINT, alpha=0.6, linewidth=0.0, zorder=0)
-    centre.set_ylabel("response at $x=0$, over that of the stiffest")
-    centre.legend(title=FORCE_LABEL)
+    low, high = PAPER_STIFFNESSES
+    centre.fill_between(
+        [low, high], 1.0 - PAPER_CHANGE, 1.0 + PAPER_CHANGE, color=style.PAPER_BAND, linewidth=0.0, zorder=0
+    )
+    centre.annotate(
+        f"paper: {PAPER_CHANGE:.0%}".replace("%", " %"), (high, 1.0 + PAPER_CHANGE), (0.0, 1.5),
+        textcoords="offset points", ha="right", fontsize=7, color=style.PAPER,
+    )  # fmt: skip
+    centre.set_ylabel(f"{style.RESPONSE_AT_CENTRE},\nover that of the stiffest")
+    centre.legend(title=style.FORCE)
 
     for at, index in enumerate(nearest(data["force"].values, TEARDROP_FORCES)):
         force = data["force"].values[index]
@@ -190,23 +206,25 @@ def _stiffness(data: xr.Dataset) -> Figure:
                 k[held],
                 data[f"teardrop_{name}"].isel(force=index).values[held],
                 **look,
-                label=f"{name}, $F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$",
+                label=f"{name}, {style.equals(style.F_EXT, force, style.WEIGHT)}",
             )
-    size.set_ylabel("size of the region$/R$")
-    size.legend()
+    size.set_ylabel(f"size of the region$\\,/\\,{style.RADIUS}$")
+    style.paper_value(size, PAPER_SATURATION, f"paper: {PAPER_SATURATION:g}")
+    size.set_ylim(top=1.28 * size.get_ylim()[1])
+    size.legend(loc="lower right")
 
     for at, (name, label) in enumerate(EVENTS.items()):
         bracket = data[f"{name}_bracket"].values
         known = held & np.isfinite(bracket).all(axis=1)
         events.plot(k[known], bracket[known].mean(axis=1), **style.marked_line(at), label=label)
-    events.set(ylabel=f"force of the event, {FORCE_LABEL}", yscale="log")
+    events.set(ylabel=f"force of the event, {style.FORCE}", yscale="log")
     events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
     events.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     events.yaxis.set_minor_formatter(NullFormatter())
     events.legend()
     for axes in (centre, size, events):
-        axes.set(xscale="log", xlabel="$k_N R/mg$")
-    style.letters(np.array([centre, size, events]), place="above")
+        axes.set(xscale="log", xlabel=style.STIFFNESS)
+    style.letters(np.array([centre, size, events]), first=next(letters("fig05b_stiffness")), place="above")
     return figure
 
 
@@ -215,7 +233,7 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     stiffnesses = np.unique(sizes["normal_stiffness"].values)
     stiffest = widths.isel(slab=np.flatnonzero(widths["normal_stiffness"].values == stiffnesses[-1]))
     _growth(box, stiffest, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
-    box.set(xlabel=FORCE_LABEL, ylabel="depth$/R$")
+    box.set(xlabel=style.FORCE, ylabel=style.DEPTH)
     box.legend(title="layers $\\times$ disks", loc="lower right", fontsize=7)
 
     softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
@@ -232,7 +250,8 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
             linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
             label=f"{int(one['layers'])}",
         )
-    profiles.set(xlabel="$x/h$", ylabel="$(F_{\\mathrm{floor}}/F_{\\mathrm{ext}})\\,h/R$", xlim=(-1.5, 1.5))
+    label = f"{style.RESPONSE}$\\,\\times\\,h/{style.RADIUS}$"
+    profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
 
     index = 0
@@ -245,25 +264,18 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
                 slabs["layers"].values[known],
                 bracket[known].mean(axis=1),
                 **style.marked_line(index),
-                label=f"{EVENTS[name]}, $k_N = {_power(stiffness)}$",
+                label=f"{EVENTS[name]}, {style.equals('k_N', stiffness)}",
             )
             index += 1
-    events.set(xlabel="layers", ylabel=f"force of the event, {FORCE_LABEL}")
+    events.set(xlabel="layers", ylabel=f"force of the event, {style.FORCE}")
     events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
     events.legend(fontsize=7, loc="upper left")
     force = float(at_force["force"])
-    style.letter(box, "a", place="above", text=f"$k_N = {_power(stiffnesses[-1])}$")
+    soft, stiff = (style.equals("k_N", k, style.STIFFNESS_UNIT) for k in (stiffnesses[0], stiffnesses[-1]))
+    names = letters("fig05c_depth_and_width")
+    style.letter(box, next(names), place="above", text=stiff)
     style.letter(
-        profiles,
-        "b",
-        place="above",
-        text=f"$F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$, $k_N = {_power(stiffnesses[0])}$",
+        profiles, next(names), place="above", text=f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}"
     )
-    style.letter(events, "c", place="above")
+    style.letter(events, next(names), place="above")
     return figure
-
-
-def _power(value: float) -> str:
-    """A number for a label: 3000, 10^5."""
-    exponent = round(np.log10(value))
-    return f"10^{{{exponent}}}" if value >= 1e4 and np.isclose(value, 10.0**exponent) else f"{value:g}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -13,22 +14,20 @@ from granular_response.plot import style
 #: What the paper says: floor forces within 1 %, energy after a restart below 1e-22, nu = sqrt(k) half of critical.
 FORCE_ERROR, RESTART_ENERGY, PAPER_RATIO = 1e-2, 1e-22, 0.5
 
+#: Legends stand below their panels.
+BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.2), "handlelength": 2.4}
+
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """One figure with three panels."""
-    figure, axes = style.figure(1, 3, width="double", height=2.5)
+    figure, axes = style.figure(1, 3, width="double", height=2.9)
     stop, restart, damping = axes[0]
     _stop_energy(stop, datasets["stop_energy"])
     _restart(restart, datasets["restart"])
     _damping(damping, datasets["damping"])
-    style.letters(axes)
+    style.letters(axes, place="above")
     return {"numerics": figure}
-
-
-def _limit(panel: Axes, value: float, text: str, *, vertical: bool = False) -> None:
-    line = panel.axvline if vertical else panel.axhline
-    line(value, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), label=text, zorder=0)
 
 
 def _stop_energy(panel: Axes, study: xr.Dataset) -> None:
@@ -40,34 +39,30 @@ def _stop_energy(panel: Axes, study: xr.Dataset) -> None:
             panel.loglog(
                 curves["stop_kinetic_energy"],
                 curves[name],
-                label=rf"$\mu={friction:g}$, {text}",
+                label=f"{style.equals(style.FRICTION, friction)}, {text}",
                 **style.marked_line(index),
             )
             index += 1
-    _limit(panel, FORCE_ERROR, "1 %")
-    low, high = panel.get_ylim()
-    panel.set_ylim(low, high * 300.0)
-    panel.set(xlabel=r"$E_\mathrm{stop}/\overline{m}g\overline{R}$", ylabel="error, per largest")
-    panel.legend(loc="upper right", handlelength=1.6)
+    style.paper_value(panel, FORCE_ERROR, "paper: 1 %", along="y", at=0.45)
+    panel.set(xlabel=rf"$E_\mathrm{{stop}}/{style.ENERGY_UNIT}$", ylabel="error, per largest")
+    panel.legend(**BELOW)
 
 
 def _restart(panel: Axes, study: xr.Dataset) -> None:
     for index, load in enumerate(study["load"].values):
         curve = study["kinetic_energy"].isel(load=index)
-        panel.semilogy(study["step"] / 1e3, curve, label=rf"$F_\mathrm{{ext}}={load:g}\,mg$", **style.line(index))
-    _limit(panel, RESTART_ENERGY, "paper")
-    low, _ = panel.get_ylim()
-    panel.set_ylim(low, RESTART_ENERGY * 1e6)
-    panel.set(xlabel="thousands of time steps", ylabel=r"$E_k/\overline{m}g\overline{R}$ per disk")
-    panel.legend(loc="upper right", handlelength=1.6)
+        name = style.equals(style.F_EXT, load, style.WEIGHT)
+        panel.semilogy(study["step"] / 1e3, curve, label=name, **style.line(index))
+    style.paper_value(panel, RESTART_ENERGY, "paper: below $10^{-22}$", along="y")
+    panel.set_ylim(top=RESTART_ENERGY * 100.0)
+    panel.set(xlabel="thousands of time steps", ylabel=f"$E_k/{style.ENERGY_UNIT}$ per disk")
+    panel.legend(**BELOW)
 
 
 def _damping(panel: Axes, study: xr.Dataset) -> None:
     study = study.sortby("damping_ratio")
     settled = study["settled"].values.astype(bool)
     panel.plot(study["damping_ratio"][settled], study["relaxation_time"][settled], **style.marked_line(0))
-    _limit(panel, PAPER_RATIO, r"$\nu=\sqrt{k}$", vertical=True)
-    _, high = panel.get_ylim()
-    panel.set_ylim(0.0, high * 1.1)
-    panel.set(xlabel=r"$\nu/\nu_\mathrm{c}$", ylabel=r"time to rest$\,/\sqrt{\overline{R}/g}$")
-    panel.legend(loc="upper right", handlelength=1.6)
+    style.paper_value(panel, PAPER_RATIO, r"paper: $\nu=\sqrt{k}$", side="behind")
+    panel.set_ylim(bottom=0.0)
+    panel.set(xlabel=r"$\nu/\nu_\mathrm{c}$", ylabel=rf"time to rest$\,/{style.TIME_UNIT}$")

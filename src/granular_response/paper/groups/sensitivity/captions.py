@@ -17,7 +17,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         "sensitivity": Caption(
             "How much each reading of the paper changes the floor response, one changed at a time: largest difference "
             "from the reference per applied force. The table of readings has the numbers.",
-            "Two marks for each reading on a logarithmic axis, from below 1e-6 to 3e-2.",
+            "Two marks for each reading on a logarithmic axis, over several powers of ten.",
             of_scene(parameters.scene, force=parameters.force, friction=parameters.friction),
         )
     }

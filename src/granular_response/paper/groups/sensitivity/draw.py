@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -15,14 +16,16 @@ from granular_response.plot import style
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """Largest difference of the floor response from the reference, for every variant and friction."""
     figure, ((axes,),) = style.figure(width="double", height=3.2)
-    names = [str(text) for text in next(iter(datasets.values()))["text"].values[1:]]
+    # powers of ten as such
+    texts = [str(text) for text in next(iter(datasets.values()))["text"].values[1:]]
+    names = [re.sub(r"1e(-?\d+)", r"$10^{\1}$", text) for text in texts]
     places = np.arange(len(names))[::-1]
     for index, (group, data) in enumerate(datasets.items()):
         look = style.marked_line(index) | {"linestyle": "none"}
-        label = f"µ = {group.removeprefix('mu_')}"
+        label = style.equals(style.FRICTION, float(group.removeprefix("mu_")))
         axes.plot(data["largest_difference"].values[1:], places, label=label, **look)
-    axes.set(xscale="log", xlabel="largest change of the floor response, per applied force", yticks=places)
+    axes.set(xscale="log", xlabel=f"largest change of the {style.RESPONSE}", yticks=places)
     axes.set_yticklabels(names)
     axes.grid(axis="y", linewidth=0.3)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes.legend(loc="upper right", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
     return {"sensitivity": figure}

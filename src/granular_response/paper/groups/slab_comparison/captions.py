@@ -18,7 +18,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     return {
         "fig01b_slab_comparison": Caption(
             "Not in the paper: simulated slabs beside the elastic slab with their moduli and floor. (c) Floor "
-            "pressure of a thin slab (open symbols) and of a deep one (dots), each with its elastic slab. (d) "
+            "pressure of a thin slab (open symbols) and of a deep one (small ones), each with its elastic slab. (d) "
             "Largest distance of the two, per largest response, as the number of layers grows; 8 wide: eight disks "
             "of a row for each layer; rough: as much friction on floor and walls as between disks; slow: gravity "
             "grows slowly. Two things keep packings from the elastic slab: beside smooth walls gravity opens "

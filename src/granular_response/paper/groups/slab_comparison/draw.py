@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from granular_response.paper.captions import letters
 from granular_response.plot import style
+
+STEM = "fig01b_slab_comparison"
 
 #: What tells cases apart.
 _KEYS = ("friction", "floor", "gravity", "disks_per_layer")
@@ -24,9 +28,12 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig01b_slab_comparison`` from the dataset ``slabs`` of the study of the same name."""
     data = datasets["slabs"]
     figure, ((profiles, distances),) = style.figure(1, 2, width="double", height=3.5)
+    first, second = islice(letters(STEM), 2)
     _profiles(profiles, data)
+    style.letter(profiles, first, place="above", text="response and elastic slab")
     _distances(distances, data)
-    return {"fig01b_slab_comparison": figure}
+    style.letter(distances, second, place="above", text="distance")
+    return {STEM: figure}
 
 
 def _cases(data: xr.Dataset) -> list[tuple[tuple, np.ndarray]]:
@@ -46,7 +53,7 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
     shown = [next(slabs for case, slabs in cases if case[1] == floor) for floor in ("smooth", "rough")]
     for index, slabs in enumerate(shown):
         friction, floor = float(data["friction"][slabs[0]]), str(data["floor"].values[slabs[0]])
-        for k, marker in zip((slabs[0], slabs[-1]), ("o", "."), strict=True):
+        for k, marker in zip((slabs[0], slabs[-1]), ("o.", "sx")[index], strict=True):
             layers = int(data["layers"][k])
             height = np.sqrt(3.0) * layers
             x = data["x"].values[k] / height
@@ -54,15 +61,14 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
             # a floor disk covers a length of 2
             pressure = 0.5 * height * data["floor_response"].values[k]
             look: dict[str, Any] = {"color": style.COLOURS[index], "linestyle": "none", "marker": marker, "zorder": 3}
-            look |= {"markersize": 4.5, "markerfacecolor": "none"} if marker == "o" else {"markersize": 3.5}
+            look |= {"markersize": 4.5, "markerfacecolor": "none"} if marker in "os" else {"markersize": 3.0}
             name = f"µ = {friction:g}, {floor}, {layers} layers"
             axes.plot(x[near], pressure[near], **look, label=name)
         elastic = 0.5 * height * data["elastic"].values[k]
         axes.plot(x[near], elastic[near], **style.line(index), label=f"elastic slab, {floor}")
     axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-    axes.set(xlabel="$x/h$", ylabel="pressure on the floor, $p\\,h/F_{\\mathrm{ext}}$", xlim=(-2.0, 2.0))
+    axes.set(xlabel=style.SCALED_POSITION, ylabel=style.PRESSURE, xlim=(-2.0, 2.0))
     axes.legend(**_BELOW)
-    style.letter(axes, "a", place="above", text="response and elastic slab")
 
 
 def _distances(axes: Axes, data: xr.Dataset) -> None:
@@ -93,4 +99,3 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
     axes.set_xticks(ticks, [f"{n:g}" for n in ticks])
     axes.minorticks_off()
     axes.legend(**_BELOW)
-    style.letter(axes, "b", place="above", text="distance")

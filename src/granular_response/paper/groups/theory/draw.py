@@ -14,7 +14,7 @@ from granular_response.plot import style
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig01_predictions`` from the dataset ``predictions`` of the study of the same name."""
     data = datasets["predictions"]
-    figure, ((elliptic, hyperbolic),) = style.figure(1, 2, width="double", height=2.5, sharex=True)
+    figure, ((elliptic, hyperbolic),) = style.figure(1, 2, width="double", height=2.7, sharex=True, sharey=True)
 
     x = data["x"].values
     elliptic.plot(x, data["slab_rough"], **style.line(0), label="slab, rough floor")
@@ -26,13 +26,13 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     colours = style.ordered_colours(len(depths))
     for index, (depth, colour) in enumerate(zip(depths, colours, strict=True)):
         look = {"color": colour, "linestyle": style.LINE_STYLES[index % len(style.LINE_STYLES)]}
-        hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=f"$h = {depth:g}\\,R$")
+        hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=style.equals("h", depth, style.RADIUS))
     style.letter(hyperbolic, "b", text="hyperbolic")
 
     for axes in (elliptic, hyperbolic):
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-        axes.set(xlabel="$x/h$", xlim=(x[0], x[-1]))
+        axes.set(xlabel=style.SCALED_POSITION, xlim=(x[0], x[-1]))
         axes.margins(y=0.08)
         axes.legend(loc="upper right")
-    elliptic.set_ylabel("pressure on the floor, $p\\,h/F_{\\mathrm{ext}}$")
+    elliptic.set_ylabel(style.PRESSURE)
     return {"fig01_predictions": figure}
