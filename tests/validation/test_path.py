@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from small_scenes import scene
+from small_scenes import free_disks, scene
 from solved import slab
 
 from granular_response.observe.floor import floor_force
 from granular_response.solve import (
     Dynamics,
+    PathError,
     PathRecord,
     Problem,
     Stop,
@@ -65,6 +66,19 @@ def test_a_path_back_leads_elsewhere_with_friction_and_back_within_the_reversibl
     first, _, again = follow(problem, rest, [1e-4, 2e-4, 1e-4])
     change = np.abs(floor_force(first, FLOOR) - floor_force(rest, FLOOR)).max()
     assert np.abs(floor_force(first, FLOOR) - floor_force(again, FLOOR)).max() < 0.02 * change
+
+
+def test_an_equilibrium_that_is_left_slowly_is_not_called_stable():
+    """A disk balanced on another, displaced by 1e-6, needs seconds to move: a look at once sees it at rest."""
+    load = [{"disk": 1, "force": [0.0, -0.1]}]
+    problem, state = free_disks([(10.0, 2.0), (10.0, 5.0)], [2.0, 1.0], contact__friction=0.0, loads=load)
+    problem = problem.with_loads(state.position)
+    balanced = finish(problem, state)
+    assert balanced.certificate.negative_modes == 1
+    record = PathRecord()
+    with pytest.raises(PathError, match="no equilibrium beyond load factor 0"):
+        follow(problem, balanced, [1.0], record=record)
+    assert record.stability_trials >= 1
 
 
 def test_every_state_is_certified(settled):

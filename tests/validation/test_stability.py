@@ -159,6 +159,19 @@ def test_a_scene_with_a_right_answer_is_certified_and_so_is_its_twin(tmp_path):
     assert trial.twin_difference < random_scenes.TWINS
 
 
+def test_a_table_of_disks_has_twins_too(tmp_path):
+    """Mirrored, in another order and another unit; forces and displacements alike."""
+    third = 1.0 + np.sqrt(3.0)
+    table = np.array([(2.0, 1.0, 1.0), (4.0, 1.0, 1.0), (6.2, 1.1, 1.1), (3.0, third, 1.0), (5.1, third + 0.1, 0.9)])
+    random_scenes.write_table(tmp_path / "packing.csv", table)
+    described = {**DESCRIPTION, "packing": {"kind": "file", "path": "packing.csv", "width": 8.0}}
+    loads = [{"disk": 3, "force": [0.1, -1.0]}, {"disk": 4, "displacement": [1e-4, None]}]
+    for load in loads:
+        trial = random_scenes.attempt({**described, "loads": [load]}, str(tmp_path), twin=True)
+        assert (trial.outcome, trial.message) == ("certified", "")
+        assert trial.twin_difference < random_scenes.TWINS
+
+
 def test_a_twin_that_answers_otherwise_is_caught(tmp_path, monkeypatch):
     solve = random_scenes.solve_scene
     calls = []

@@ -47,6 +47,8 @@ MOST_WORK = 1000
 BALANCED, ROUNDING = 1e-8, 16.0
 #: Displacement after which an equilibrium that was displaced a little counts as left.
 LEFT = 2e-5
+#: Least time of such a trial, in sqrt(R/g): it starts at rest, so that nothing moves at first on any slope.
+TRIAL_TIME = 20.0
 
 
 class PathError(RuntimeError):
@@ -241,7 +243,7 @@ class _Path:
         beside = nudged(self.problem, state, self.system, self.trial)
         dynamics = Dynamics(self.problem, beside, options.integrator, time_step)
         self.record.stability_trials += 1
-        stop = Stop(1e-11, maximum_steps=min(200_000, options.maximum_steps))
+        stop = Stop(1e-11, maximum_steps=min(200_000, options.maximum_steps), least_time=TRIAL_TIME)
         settled = relax(dynamics, stop, load=(self.factor, self.factor, 0.0))
         return bool(np.abs(settled.position - state.position).max() > LEFT)
 

@@ -37,7 +37,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
 
     Parameters
     ----------
-    problem : of the state; its loads do not matter.
+    problem : of the state; its loads do not matter, but a disk that they displace is held, and bears what is put on it.
     state : a stable state of static equilibrium.
     disks : (k,) the floor disks.
     sliding : "refuse" a state with contacts at the Coulomb limit, or let them "stick".
@@ -72,11 +72,12 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     factor, transposed = system.transposed_factor(trial)
     n, freedoms = problem.n, problem.freedoms
     result = np.zeros((len(disks), n, freedoms))
+    held = np.isin(np.arange(system.dof), system.held)
     for row, disk in enumerate(disks):
         here = np.flatnonzero((system.wall_disk == disk) & (system.wall == FLOOR))
         force = np.zeros((freedoms, n))
         force[:, disk] = trial.wall_tangent[here, 1, :freedoms].sum(axis=0)
-        right = system.interleave(force.ravel())
+        right = system.interleave(np.where(held, 0.0, force.ravel()))
         y = factor.solve(right)
         y += factor.solve(right - transposed @ y)  # the tangent was held by a tiny stiffness
         result[row] = system.deinterleave(y).reshape(freedoms, n).T

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from granular_response.paper.trials.audit import Audit, ContactRule, audit
-from granular_response.scene import Scene, SceneError
+from granular_response.scene import Load, Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Solution, solve_scene
 from granular_response.solve.choice import finishes_statically
 from granular_response.state import FLOOR, State
@@ -32,6 +32,8 @@ TWIN_EVERY, SAME_REST, TWINS = 4, 1e-6, 1e-4
 #: Stiffnesses (weights per radius) from soft to nearly rigid.
 STIFFNESS = ((1.0, 1e2), (1e2, 1e4), (1e4, 1e6), (1e6, 1e9))
 METHODS = ("auto", "dynamics", "path", "minimise", "stages")
+#: What a mirror turns over along x in a load.
+_VECTORS = ("force", "displacement")
 #: Least time of a fall over that of the closed form.
 FALL_ROOM = 0.9
 
@@ -193,7 +195,7 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
     try:
         scene = Scene.from_dict(description, folder=folder)
         solution = solve_scene(scene)
-        if twin and description["packing"]["kind"] != "file":
+        if twin:
             difference = twin_difference(description, solution, folder)
     except (SceneError, *SOLVE_ERRORS) as error:
         outcome, message = _ERRORS[type(error).__name__], str(error)
@@ -308,7 +310,7 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
         write_table(Path(folder, "twin.csv"), disks)
         sides = "periodic" if packing.periodic else "walls"
         loads = [
-            {"disk": int(where[disk]), "force": [sign * load.force[0], load.force[1]], "torque": sign * load.torque}
+            {"disk": int(where[disk]), **_mirrored(load, sign)}
             for disk, load in zip(solution.problem.load_disk, scene.loads, strict=True)
         ]
         file = {"kind": "file", "path": "twin.csv", "width": float(width), "sides": sides}
@@ -325,8 +327,15 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
         return float("nan")
     response = max(np.abs((a - floor[0][0]) - (b - floor[0][1])).max() for a, b in floor[1:])
     largest = max(abs(factor) for factor in scene.protocol.load_factors)
-    size = largest * sum(float(np.hypot(*load.force)) + abs(load.torque) for load in scene.loads)
+    size = max(solution.applied_force(state) for state in solution.loaded)
+    size += largest * sum(abs(load.torque) for load in scene.loads)
     return float(response) / size if size > 0.0 else float("nan")
+
+
+def _mirrored(load: Load, sign: float) -> dict[str, Any]:
+    """A load in a packing as it is (``sign`` 1) or mirrored (-1), its disk left out."""
+    both = {name: value and (value[0] and sign * value[0], value[1]) for name, value in load if name in _VECTORS}
+    return {**both, "torque": sign * load.torque}
 
 
 def _floor(state: State) -> np.ndarray:
