@@ -32,9 +32,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         "fig14_vertical_stress": Caption(
             "Vertical stress of the forces of Fig. 13, coarse-grained with a Gaussian: "
             f"{lettered([*each, 'the isotropic '])}harmonic lattice, with contours at {values(LEVELS)} of the largest "
-            "stress. (e) to (g) Differences of (a) to (c) to (d). The colours of all maps are in equal steps of the "
-            "square root. Hatched: the layer of one width w at the floor, in which part of the Gaussian lies outside "
-            "the slab, so that the stress falls short.",
+            "stress. (e) to (g) Differences of (a) to (c) to (d), contours broken where it is negative. The colours "
+            "of all maps are in equal steps of the square root. Hatched: the layer of one width w at the floor, in "
+            "which part of the Gaussian lies outside the slab, so that the stress falls short.",
             "Maps of the stress: two lobes without friction, one broad lobe at the largest friction, nearly that of "
             "the isotropic lattice.",
             {**given, "width": parameters.stress_width},

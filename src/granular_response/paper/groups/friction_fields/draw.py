@@ -27,6 +27,8 @@ from granular_response.state import Box
 MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
 #: Contours of the stress maps, per largest stress.
 LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
+#: Contours of the differences, of both signs, per largest difference.
+DIFFERENCE_LEVELS = (0.05, 0.3)
 
 
 @style.context()
@@ -92,8 +94,13 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         style.letter(axes, letters[index], place="above", text=name)
     for index, (field, name) in enumerate(maps):
         axes = panels[index, 1]
-        # white where there is no difference
-        change = draw_field(axes, x, z, field - lattice, norm=signed, cmap=style.SIGNED)
+        # white where there is no difference; lines tell the sign without colours, broken where it is negative
+        off = field - lattice
+        change = draw_field(axes, x, z, off, norm=signed, cmap=style.SIGNED)
+        levels = [sign * level * furthest for sign in (-1.0, 1.0) for level in DIFFERENCE_LEVELS]
+        lines = sorted(level for level in levels if off.min() < level < off.max())
+        if lines:
+            axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
         style.letter(axes, letters[rows + index], place="above", text=f"{name}, less ({letters[len(maps)]})")
     for axes in [*panels[:, 0], *panels[:-1, 1]]:
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))

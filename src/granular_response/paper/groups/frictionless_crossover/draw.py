@@ -210,8 +210,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
             )
     size.set_ylabel(f"size of the region$\\,/\\,{style.RADIUS}$")
     style.paper_value(size, PAPER_SATURATION, f"paper: {PAPER_SATURATION:g}")
-    size.set_ylim(top=1.28 * size.get_ylim()[1])
-    size.legend(loc="lower right")
+    size.set_ylim(top=1.9 * size.get_ylim()[1])
+    size.legend(loc="upper right", handlelength=1.2, handletextpad=0.5, borderaxespad=0.3)
 
     for at, (name, label) in enumerate(EVENTS.items()):
         bracket = data[f"{name}_bracket"].values
