@@ -162,7 +162,7 @@ def simulate(
             "fit": variable("fit", list(FITS), "rows of loads that are used"),
             "separation": variable(
                 "separation", np.array(parameters.separations), "of the halves from the disk, in places of the row"
-            )
+            ),
         },
     )
     saint_venant.attrs.update({"fitted": list(parameters.fitted), "margin": parameters.margin})

@@ -19,10 +19,10 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "Piles of equal disks under gravity, without friction on the left and with it on the right. (a), (b) "
             "Contact forces; lengths and widths of the lines are proportional to the force, but none is thinner than "
             "a hairline. (c), (d) Vertical stress, coarse-grained with a Gaussian; the contours are the white lines "
-            "of the colour scale, and the broken line is the hull of the disks. Near the floor part of the Gaussian "
-            "lies outside the pile, so that the stress falls short there. (e), (f) Contacts: lines join the centres "
-            "of disks that touch. Floor and side walls are grey. The parameters are those with friction; without it "
-            "all others are the same.",
+            "of the colour scale, and the broken line is the hull of the disks. Hatched: the layer of one width w at "
+            "the floor, in which part of the Gaussian lies outside the pile, so that the stress falls short. (e), "
+            "(f) Contacts: lines join the centres of disks that touch. Floor and side walls are grey. The parameters "
+            "are those with friction; without it all others are the same.",
             "Two piles beside each other, three pictures of each. Without friction the stress has two maxima beside "
             "the middle and the lowest row pushes against the side walls; with friction it has one maximum in the "
             "middle.",

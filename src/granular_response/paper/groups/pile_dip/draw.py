@@ -59,6 +59,8 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         field = fields.sel(case=case)
         image = draw_field(map_axes, stress["x"], stress["z"], field, norm=Normalize(0.0, largest), levels=levels)
         _outline(map_axes, one)
+        near = float(stress["stress_width"])
+        map_axes.axhspan(0.0, near, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
         map_axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT if column == 0 else "")
         style.letter(map_axes, "cd"[column], place="above", text="$\\sigma_{zz}$")
         _network(network, one)
