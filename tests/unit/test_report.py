@@ -15,11 +15,11 @@ from chromium import BROWSER, Chromium
 from PIL import Image
 from xarray import Dataset
 
-from granular_response.paper import report
+from granular_response.paper import groups, report
 from granular_response.paper.claims import table as claims
 from granular_response.paper.claims.claim import Data
 from granular_response.paper.groups.sensitivity import simulate as sensitivity
-from granular_response.paper.report import benchmarks, explorer, pictures, readings
+from granular_response.paper.report import against, benchmarks, explorer, pictures, readings
 from granular_response.paper.report.typeset import typeset
 from granular_response.store import files as store
 from granular_response.store import generated
@@ -272,6 +272,54 @@ def test_the_notes_hold_the_stored_sensitivities():
     text = (ROOT / "docs" / "reproduction-notes.md").read_text()
     fresh = generated.replace(text, readings.BLOCK, readings.markdown(store.read(stored)))
     assert fresh == text, "make quote"
+
+
+def test_the_document_holds_the_parameters_of_the_stored_datasets():
+    missing = [group for group in {row.group for row in against.ROWS} if not (ROOT / "data" / f"{group}.nc").exists()]
+    if missing:
+        pytest.skip(f"not simulated yet: {', '.join(sorted(missing))}")
+    text = (ROOT / "docs" / "figures.md").read_text()
+    assert generated.replace(text, against.BLOCK, against.markdown(ROOT / "data")) == text, "make quote"
+
+
+def test_every_figure_with_parameters_stands_beside_its_caption():
+    assert [row.figure for row in against.ROWS] == sorted(row.figure for row in against.ROWS)
+    assert {row.figure for row in against.ROWS} == set(range(1, 25)) - {11}  # a drawing of springs
+    assert {row.group for row in against.ROWS} <= set(groups.NAMES)
+
+
+@pytest.mark.parametrize(
+    ("paper", "remark", "said"),
+    [
+        ((1.0, 4.0), "", "yes"),
+        ((4.0,), "as in Fig. 3", "yes; as in Fig. 3"),
+        ((5.0,), "a reason", "no: a reason"),
+        ((), "on the plots only", "on the plots only"),
+    ],
+)
+def test_a_parameter_is_the_papers_or_has_a_reason(tmp_path, monkeypatch, paper, remark, said):
+    store.write(tmp_path / "theory.nc", {"one": friction_study()["response"]})
+    row = against.Row(3, "(a)", "F_ext, mg", paper, "theory/one:force", remark)
+    monkeypatch.setattr(against, "ROWS", (row,))
+    last = against.markdown(tmp_path).splitlines()[-1]
+    given = ", ".join(f"{value:g}" for value in paper) or "–"
+    assert last == f"| 3 | (a) | F_ext, mg | {given} | 1, 4, 90 | {said} | `theory/one:force` |"
+
+
+def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):
+    store.write(tmp_path / "data" / "theory.nc", {"one": friction_study()["response"]})
+    monkeypatch.setattr(against, "ROWS", (against.Row(3, "(a)", "F_ext", (5.0,), "theory/one:force"),))
+    with pytest.raises(report.ReportError, match=r"figure 3, F_ext: 1, 4, 90 where the paper has 5, and nothing says"):
+        report.renew_figures(tmp_path / "figures.md", tmp_path)
+
+
+def test_parameters_are_read_from_variables_scenes_and_attributes():
+    data = {"one": friction_study()["response"].assign_attrs(width=3.0)}
+    found = [
+        against.Row(1, "", "", (), f"theory/one{source}").stored(data).tolist()
+        for source in (":friction", "@contact.stiffness_ratio", "@wall.friction", "#width")
+    ]
+    assert found == [[0.0, 0.2, 1.0], [0.8], [0.0], [3.0]]
 
 
 def test_every_reading_of_the_table_is_a_variant_of_the_study():

@@ -422,7 +422,7 @@ def claims(
     epilog=_examples(
         "granular-response report",
         "granular-response report -o page.html",
-        "granular-response report --notes docs/reproduction-notes.md",
+        "granular-response report --notes docs/reproduction-notes.md --figures docs/figures.md",
     )
 )
 def report(
@@ -431,15 +431,21 @@ def report(
     notes: Annotated[
         Path | None, typer.Option(help="Renew the table of readings in this file.", show_default=False)
     ] = None,
+    figures: Annotated[
+        Path | None,
+        typer.Option(help="Renew the table of the captions' parameters in this file.", show_default=False),
+    ] = None,
 ) -> None:
     """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
     from ..paper import report as reporting
 
     _loaded()
 
-    typer.echo(str(reporting.write(output, root, keep=[notes] if notes else [])))
+    typer.echo(str(reporting.write(output, root, keep=[file for file in (notes, figures) if file])))
     if notes is not None:
         reporting.renew_notes(notes, root)
+    if figures is not None:
+        reporting.renew_figures(figures, root)
 
 
 @app.command(

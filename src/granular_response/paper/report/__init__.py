@@ -20,7 +20,7 @@ from granular_response import __version__
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
-from . import benchmarks, explorer, pictures, readings
+from . import against, benchmarks, explorer, pictures, readings
 from .typeset import typeset
 
 #: Where the page is kept.
@@ -30,7 +30,7 @@ OUTPUT = Path("figures") / "report.html"
 EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
 SENSITIVITY = "sensitivity"
 
-__all__ = ["OUTPUT", "ReportError", "page", "renew_notes", "write"]
+__all__ = ["OUTPUT", "ReportError", "page", "renew_figures", "renew_notes", "write"]
 
 
 class ReportError(Exception):
@@ -75,6 +75,25 @@ def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".
     """
     datasets = store.read(Path(root) / "data" / f"{SENSITIVITY}.nc")
     generated.renew(notes, readings.BLOCK, readings.markdown(datasets))
+
+
+def renew_figures(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the table of the captions' parameters in ``document`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    ReportError
+        If a parameter is not the paper's and nothing says why.
+    granular_response.generated.GeneratedError
+        If the file cannot be read or has no place for the table.
+    granular_response.store.StoreError
+        If a dataset is missing or cannot be read.
+    """
+    try:
+        lines = against.markdown(Path(root) / "data")
+    except ValueError as error:
+        raise ReportError(str(error)) from None
+    generated.renew(document, against.BLOCK, lines)
 
 
 def page(root: Path, folder: Path | None = None) -> str:
