@@ -100,6 +100,47 @@ def sensitivity_study():
     return {"mu_0.2": one, "mu_1": one.copy(deep=True)}
 
 
+def preparation_study():
+    """Gravity at once, grown slowly and without friction first; in each, events where the claims want them."""
+    ways = [("at-once", 100.0, 0.5), ("slow", 20.0, 0.5), ("frictionless", 100.0, 0.5), ("at-once", 100.0, 0.25)]
+    cases = [(0.0, 0.0, ways[0]), *((mu, 0.0, way) for mu in (0.2, 1.0) for way in ways), (1.0, 1.0, ways[1])]
+    comes = {
+        "first_opening": {0.0: (0.67, 0.69), 0.2: (3.9, 3.92), 1.0: (5.6, 5.62)},
+        "linear_range": {0.0: (0.88, 0.9), 0.2: (5.4, 5.5), 1.0: (7.2, 7.3)},
+        "crossover": {0.0: (3.0, 3.1), 0.2: (20.1, 20.2), 1.0: (50.0, np.nan)},
+        "reaches_floor": {0.0: (3.5, 3.6), 0.2: (19.0, 19.1), 1.0: (10.9, 11.0)},
+        "third_peak": {0.0: (50.0, np.nan), 0.2: (38.0, 38.1), 1.0: (50.0, np.nan)},
+        "loss_of_symmetry_path": {0.0: (50.0, np.nan), 0.2: (50.0, np.nan), 1.0: (91.2, 92.0)},
+    }
+
+    def labels(dimension, rows):
+        friction, wall, way = zip(*rows, strict=True)
+        gravity, ramp, damping = zip(*way, strict=True)
+        return {
+            "gravity": (dimension, list(gravity)),
+            "ramp_time": (dimension, list(ramp)),
+            "damping_ratio": (dimension, list(damping)),
+            "friction": (dimension, list(friction)),
+            "wall_friction": (dimension, list(wall)),
+        }
+
+    rows = [(case, name) for case in cases for name in comes]
+    table = dataset(
+        name=("event", [name for _, name in rows]),
+        low=("event", [comes[name][case[0]][0] for case, name in rows]),
+        high=("event", [comes[name][case[0]][1] for case, name in rows]),
+        **labels("event", [case for case, _ in rows]),
+    )
+    force = np.array([1.0, 15.0, 30.0, 50.0])
+    turns = {0.0: 3.1, 0.2: 20.2, 1.0: np.inf}
+    response = dataset(
+        {"force": force},
+        double_peaked=(("case", "force"), np.array([force > turns[mu] for mu, _, _ in cases], float)),
+        **labels("case", cases),
+    )
+    return {"response": response, "events": table}
+
+
 def ratio_study():
     ratio = np.array([0.0, 0.2, 0.3, 0.35, 0.4, 0.6, 0.8, 1.0])
     centre = np.array([0.01, 0.05, 0.064, 0.068, 0.073, 0.075, 0.076, 0.074])
@@ -391,6 +432,7 @@ def everything():
         "frictionless_crossover": frictionless_study(),
         "friction_linear_range": friction_study(),
         "symmetry_breaking": breaking_study(),
+        "preparation": preparation_study(),
         "sensitivity": sensitivity_study(),
         "slab_comparison": comparison_study(),
         "stiffness_ratio_crossover": ratio_study(),

@@ -11,7 +11,7 @@ import xarray as xr
 import yaml
 from claims_data import STARTS, dataset, everything, pile_study
 
-from granular_response.paper.claims import table, words
+from granular_response.paper.claims import preparations, table, words
 from granular_response.paper.claims.bootstrap import over_realizations
 from granular_response.paper.claims.claim import (
     Claim,
@@ -27,6 +27,7 @@ from granular_response.paper.claims.claim import (
 )
 from granular_response.paper.claims.verdict import MEANINGS, judge, verdict_of
 from granular_response.paper.groups import NAMES
+from granular_response.paper.groups.frictionless_crossover import claims as slab_claims
 from granular_response.store import files as store
 from granular_response.store import generated
 
@@ -106,6 +107,30 @@ def slowly_two_peaks(groups):
     return groups
 
 
+def prepared(name, friction, low, high, gravity="slow", damping=0.5):
+    """An event at another force in the slabs to which gravity came in this way."""
+
+    def change(data):
+        here = (data["name"].values == name) & (data["friction"].values == friction)
+        here &= (data["gravity"].values == gravity) & (data["damping_ratio"].values == damping)
+        assert here.any()
+        data["low"].values[here], data["high"].values[here] = low, high
+        return data
+
+    return lambda groups: changed(groups, "preparation", "events", change)
+
+
+def two_peaks_without_friction_first(groups):
+    """Two peaks at friction 1 and 50 mg in the slab that settled without friction."""
+
+    def change(data):
+        here = (data["friction"].values == 1.0) & (data["gravity"].values == "frictionless")
+        data["double_peaked"].values[here, -1] = 1.0
+        return data
+
+    return changed(groups, "preparation", "response", change)
+
+
 def start(group, name, variable, which, values):
     """New values for the cases of one start."""
 
@@ -175,7 +200,6 @@ PLANTED = [
     ("R2a", slowly_two_peaks, "depends on the reading"),
     ("R2b", put(FRICTION, "response", "half_maximum_width", 28.0), "contradicted"),
     ("R3a", moved(FRICTION, "crossover", 0.2, 12.0, 12.1), "contradicted"),
-    ("R3a", slowly_two_peaks, "depends on the reading"),
     ("R3b", moved(FRICTION, "reaches_floor", 0.2, 12.0, 12.1), "contradicted"),
     ("R4a", moved(FRICTION, "third_peak", 0.2, 80.0, NAN), "contradicted"),
     ("R4b", scaled(FRICTION, "response", "third_peak_prominence", 5.0), "contradicted"),
@@ -272,8 +296,34 @@ def test_without_data_nothing_is_measured_and_the_reason_names_what_is_missing()
         assert re.match(r"data/\w+\.nc is missing|needs \w+", entry.reason)
 
 
+#: Wrong in other preparations than that of the study itself.
+PREPARED = [
+    ("F2", prepared("first_opening", 0.2, 1.0, 1.2), "depends on the reading"),
+    ("R1", prepared("linear_range", 0.2, 0.9, 1.0), "depends on the reading"),
+    ("R1", prepared("first_opening", 1.0, 3.0, 4.0, "frictionless"), "undecided"),
+    ("R1", prepared("linear_range", 0.2, 0.9, 1.0, "at-once", 0.25), "reproduced"),  # other dashpots: no reading
+    ("A1", prepared("first_opening", 1.0, 1.0, 1.2), "depends on the reading"),
+    ("R2a", two_peaks_without_friction_first, "depends on the reading"),
+    ("R3a", prepared("crossover", 0.2, 0.0, 0.1), "depends on the reading"),
+    ("R3a", prepared("crossover", 0.2, 24.0, 26.0, "frictionless"), "undecided"),
+    ("R3b", prepared("reaches_floor", 0.2, 9.0, 10.0), "depends on the reading"),
+    ("R4a", prepared("third_peak", 0.2, 50.0, NAN), "depends on the reading"),
+    ("R5a", prepared("loss_of_symmetry_path", 1.0, 400.0, NAN), "depends on the reading"),
+    ("R8a", prepared("reaches_floor", 0.2, 9.0, 10.0), "depends on the reading"),
+    ("R9", prepared("crossover", 0.2, 0.0, 0.1), "depends on the reading"),
+    ("R11", prepared("reaches_floor", 0.2, 4.0, 4.5), "depends on the reading"),
+]
+
+
 @pytest.mark.parametrize(("id_", "change", "expected"), PLANTED, ids=[f"{p[0]}-{p[2]}" for p in PLANTED])
 def test_planted_data_changes_the_verdict(good, id_, change, expected):
+    # without other preparations, so that what is planted is all there is
+    entry = judge(CLAIM[id_], Data({k: v for k, v in change(good).items() if k != preparations.GROUP}))
+    assert (entry.verdict, bool(entry.reason)) == (expected, True), entry.reason
+
+
+@pytest.mark.parametrize(("id_", "change", "expected"), PREPARED, ids=[f"{p[0]}-{p[2]}" for p in PREPARED])
+def test_other_preparations_are_readings(good, id_, change, expected):
     entry = judge(CLAIM[id_], Data(change(good)))
     assert (entry.verdict, bool(entry.reason)) == (expected, True), entry.reason
 
@@ -441,6 +491,12 @@ def test_the_readme_quotes_the_stored_table():
     found = json.loads(stored.read_text())
     quoted = f"{table.sentence(found)}\n{table.firmness(found)}"
     assert generated.replace(text, table.BLOCK, quoted) == text, "make quote"
+
+
+def test_each_deeper_slab_is_compared_with_the_thinnest():
+    slabs = dataset(layers=("slab", [15, 15, 30, 40, 60]), disks_per_row=("slab", [61, 121, 62, 62, 242]))
+    assert slab_claims._deep_and_shallow(slabs, "width grows with depth") == [(0, 2), (0, 3), (0, 4)]
+    assert slab_claims._deep_and_shallow(slabs, "same width") == [(0, 2), (0, 3)]
 
 
 def test_the_stages_read_every_group_of_the_pipeline():

@@ -35,6 +35,9 @@ FloatArray = NDArray[np.float64]
 #: Whether it slides is lost in the last vibrations before rest, which take it off the limit by a little.
 MARGINS = (0.01, 0.05)
 
+#: The linear range ends where the response at x = 0 differs by this fraction from that to the smallest force.
+LINEARITY = 0.01
+
 #: What :meth:`Measures.scalars` gives, with long names.
 SCALARS = {
     "response_at_centre": "floor response below the loaded disk",
@@ -277,6 +280,40 @@ def locate(
         )
         low, high, evaluations = bracket.low, bracket.high, bracket.evaluations
     return Event(name, path.scene.contact.friction, low, high, tolerance, evaluations, definition)
+
+
+def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, tuple[Callable[[State], bool], str]]:
+    """What is looked for along a load path, by name: whether it has happened in a state, and its definition.
+
+    ``smallest`` is the state under the smallest force; ``asymmetry`` is that from which symmetry is lost.
+    """
+    linear, force = measures.centre(smallest), abs(smallest.load_factor)
+    return {
+        "first_opening": (
+            lambda state: measures.opened(state) > 0,
+            "a contact of disks in the central third of the slab is open that touches at rest",
+        ),
+        "linear_range": (
+            lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY,
+            f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}",
+        ),
+        "crossover": (
+            measures.double_peaked,
+            "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
+        ),
+        "reaches_floor": (
+            lambda state: measures.region(state).reaches_floor,
+            "the region of opened contacts below the load contains a contact of the bottom row",
+        ),
+        "third_peak": (
+            measures.third_peak,
+            "the double-peaked floor response has a further peak at x = 0",
+        ),
+        "loss_of_symmetry_path": (
+            lambda state: measures.asymmetry(state) > asymmetry,
+            f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}",
+        ),
+    }
 
 
 def events_dataset(found: Sequence[Event]) -> xr.Dataset:

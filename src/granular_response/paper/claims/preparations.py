@@ -1,25 +1,31 @@
-"""Floor responses at 15 mg under other readings of how a slab is prepared and loaded (the study ``sensitivity``)."""
+"""Other readings of how a slab is prepared and loaded, for claims that hang on them.
+
+The text says neither how gravity comes nor how long the force grows, and its equation for the spring differs from its
+words. What other ways to bring gravity change is in the group ``preparation``; the group ``sensitivity`` has responses
+at 15 mg under other readings of the loading.
+"""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 
 import numpy as np
+import xarray as xr
 
 from granular_response.observe.peaks import central_dip
 
 from .claim import Condition, Data, Quantity, Reading
 from .words import Bounds
 
-GROUP = "sensitivity"
+GROUP, LOADING = "preparation", "sensitivity"
 
-#: Readings that the text leaves open, by variant: it says neither how gravity comes nor how long the force grows, and
-#: its equation for the spring differs from its words.
+#: Readings that the text leaves open, by variant of ``sensitivity``.
 OPEN = {
     "slow_gravity": "gravity grown slowly",
     "ramp_80": "force grown over 80 sqrt(R/g)",
     "path": "quasi-static path",
     "literal_friction": "the spring's equation as printed",
+    "unloading_friction": "the spring frozen at the limit, free to unload",
 }
 
 #: Distance from the side walls within which peaks do not count (mean radii).
@@ -28,7 +34,7 @@ WALL = 10.0
 
 def dips(data: Data, friction: float) -> dict[str, float]:
     """Central dip of the floor response at 15 mg, per largest response, by reading."""
-    study = data.get(GROUP, f"mu_{friction:g}", "variant", "x", "floor_response")
+    study = data.get(LOADING, f"mu_{friction:g}", "variant", "x", "floor_response")
     x, names = study["x"].values, study["variant"].values.tolist()
     inside = np.abs(x) < np.abs(x).max() - WALL
     return {
@@ -38,20 +44,9 @@ def dips(data: Data, friction: float) -> dict[str, float]:
     }
 
 
-def crossovers(data: Data, friction: float) -> dict[str, Quantity]:
-    """By reading, that the crossover comes before 15 mg where the response there has two peaks; none without the study.
-
-    A response with one peak says only that it comes later, if at all, and is left out.
-    """
-    if GROUP not in data.groups:
-        return {}
-    before = math.nextafter(15.0, 0.0)
-    return {name: Quantity.bracket(0.0, before) for name, dip in dips(data, friction).items() if dip > 0.0}
-
-
 def one_peak_at_15(data: Data, friction: float, words: Bounds) -> list[Reading]:
     """That the response at 15 mg has one peak, in each of the other readings; none without the study."""
-    if GROUP not in data.groups:
+    if LOADING not in data.groups:
         return []
     return [
         Reading(
@@ -62,3 +57,69 @@ def one_peak_at_15(data: Data, friction: float, words: Bounds) -> list[Reading]:
         )
         for name, dip in dips(data, friction).items()
     ]
+
+
+def events(data: Data, name: str, friction: float, wall_friction: float = 0.0) -> dict[str, Quantity]:
+    """The brackets of an event for each other way to bring gravity; none without the study.
+
+    Dashpots are the paper's: those that differ are no reading of the text. Without friction rest is one minimum,
+    whatever came before, and there is none.
+    """
+    if GROUP not in data.groups:
+        return {}
+    found = data.get(GROUP, "events", "name", "low", "high", *_LABELS)
+    here = (found["name"].values == name) & _cases(found, friction, wall_friction)
+    return {
+        _text(found, k): Quantity.bracket(float(found["low"].values[k]), float(found["high"].values[k]))
+        for k in np.flatnonzero(here).tolist()
+        if _text(found, k) != _text(found, 0)
+    }
+
+
+def readings(
+    data: Data, name: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]]
+) -> list[Reading]:
+    """A reading for each other way to bring gravity of which the event is stored at all ``frictions``.
+
+    ``conditions`` makes its conditions of the brackets in that order.
+    """
+    found = [events(data, name, friction) for friction in frictions]
+    return [
+        Reading(way, *conditions(*(brackets[way] for brackets in found)))
+        for way in found[-1]
+        if all(way in brackets for brackets in found)
+    ]
+
+
+def curves(data: Data, friction: float, variable: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Forces and what is measured there, for each other way to bring gravity; none without the study."""
+    if GROUP not in data.groups:
+        return {}
+    study = data.get(GROUP, "response", "force", variable, *_LABELS)
+    found = {}
+    for k in np.flatnonzero(_cases(study, friction, 0.0)).tolist():
+        values = study[variable].transpose("case", "force").values[k]
+        known = np.isfinite(values)
+        if _text(study, k) != _text(study, 0):
+            found[_text(study, k)] = study["force"].values[known], values[known]
+    return found
+
+
+_LABELS = ("gravity", "ramp_time", "damping_ratio", "friction", "wall_friction")
+
+
+def _cases(found: xr.Dataset, friction: float, wall_friction: float) -> np.ndarray:
+    """Where the friction is this and the dashpots are those of the first case."""
+    damping = found["damping_ratio"].values
+    return (
+        np.isclose(found["friction"].values, friction)
+        & np.isclose(found["wall_friction"].values, wall_friction)
+        & (damping == damping[0])
+    )
+
+
+def _text(found: xr.Dataset, k: int) -> str:
+    gravity = str(found["gravity"].values[k])
+    if gravity == "slow":
+        return f"gravity grown over {float(found['ramp_time'].values[k]):g} sqrt(R/g)"
+    return {"at-once": "gravity at once", "frictionless": "gravity without friction first"}[gravity]

@@ -70,7 +70,7 @@ CLAIMS: tuple[Claim, ...] = tuple(
 )
 
 #: Figure groups whose datasets the claims read.
-GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP}))
+GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING}))
 
 #: Where the table of claims is kept.
 OUTPUT = Path("figures") / "claims.json"

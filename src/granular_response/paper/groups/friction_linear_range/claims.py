@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
@@ -31,7 +33,12 @@ def first_opening(friction: float, paper: float) -> Measure:
         event = data.event(GROUP, "first_opening", friction)
         return Finding(
             f"opens at {event.text('mg')}",
-            [Reading("the first sampled force at or above it", sampled("first opening", event, paper, words))],
+            [
+                Reading("the first sampled force at or above it", sampled("first opening", event, paper, words)),
+                *preparations.readings(
+                    data, "first_opening", (friction,), lambda end: [sampled("first opening", end, paper, words)]
+                ),
+            ],
         )
 
     return measure
@@ -59,26 +66,34 @@ def _ranges(data: Data, frictions: tuple[float, ...]) -> dict[str, list[Quantity
 
 
 def linear_range(data: Data, words: Bounds) -> Finding:
+    def asked(ratios: Sequence[Quantity]) -> list[Condition]:
+        return [
+            Condition(f"times larger at friction {mu:g}", ratio, (1.0 - words["almost"]) * 10.0, 10.0, ("almost",))
+            for mu, ratio in zip((0.2, 1.0), ratios, strict=True)
+        ]
+
     readings, texts = [], []
     for name, ends in _ranges(data, (0.0, 0.2, 1.0)).items():
         ratios = [end.per(ends[0]) for end in ends[1:]]
         texts.append(f"{ratios[0].value:.3g} and {ratios[1].value:.3g} times ({name})")
-        readings.append(
-            Reading(
-                name,
-                *(
-                    Condition(
-                        f"times larger at friction {mu:g}", ratio, (1.0 - words["almost"]) * 10.0, 10.0, ("almost",)
-                    )
-                    for mu, ratio in zip((0.2, 1.0), ratios, strict=True)
-                ),
+        readings.append(Reading(name, *asked(ratios)))
+    for name, event in _OTHERWISE.items():
+        without = data.event(GROUP, event, 0.0)
+        readings += [
+            Reading(f"{name}, {reading.name}", *reading.conditions)
+            for reading in preparations.readings(
+                data, event, (0.2, 1.0), lambda *ends, without=without: asked([end.per(without) for end in ends])
             )
-        )
+        ]
     return Finding(
         "at friction 0.2 and 1: " + ", ".join(texts),
         readings,
-        "The paper does not say how far off a response is no longer linear",
+        "The paper does not say how far off a response is no longer linear, nor how gravity came",
     )
+
+
+#: Ends of the linear range that other preparations have too, by event.
+_OTHERWISE = {"response 1 % off": "linear_range", "first opening": "first_opening"}
 
 
 def range_grows(data: Data, words: Bounds) -> Finding:
@@ -87,7 +102,19 @@ def range_grows(data: Data, words: Bounds) -> Finding:
     return Finding(
         f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
         + "; ".join(f"{name} at {', '.join(f'{e.value:.3g}' for e in ends)} mg" for name, ends in found.items()),
-        [Reading(name, rises("range", ends)) for name, ends in found.items()],
+        [
+            *(Reading(name, rises("range", ends)) for name, ends in found.items()),
+            *(
+                Reading(f"{name}, {reading.name}", *reading.conditions)
+                for name, event in _OTHERWISE.items()
+                for reading in preparations.readings(
+                    data,
+                    event,
+                    tuple(frictions[1:]),
+                    lambda *ends, without=found[name][0]: [rises("range", [without, *ends])],
+                )
+            ),
+        ],
         "It grows up to friction 0.2 or 0.5 and is shorter at 1; at the paper's own three frictions the first opening "
         "grows",
     )
@@ -137,6 +164,17 @@ def single_peak(data: Data, words: Bounds) -> Finding:
                 "gravity at once",
                 Condition("forces up to 50 mg with two peaks", Quantity.exact(int(np.count_nonzero(double))), most=0.0),
             ),
+            *(
+                Reading(
+                    way,
+                    Condition(
+                        "forces up to 50 mg with two peaks",
+                        Quantity.exact(int(np.count_nonzero(values[force <= 50.0]))),
+                        most=0.0,
+                    ),
+                )
+                for way, (force, values) in preparations.curves(data, 1.0, "double_peaked").items()
+            ),
             *preparations.one_peak_at_15(data, 1.0, words),
         ],
     )
@@ -172,12 +210,8 @@ def crossover_at_20(data: Data, words: Bounds) -> Finding:
         f"two peaks from {event.text('mg')}",
         [
             Reading("gravity at once", about("crossover", event, 20.0, words, "mg")),
-            *(
-                Reading(name, about("crossover", before, 20.0, words, "mg"))
-                for name, before in preparations.crossovers(data, 0.2).items()
-            ),
+            *preparations.readings(data, "crossover", (0.2,), lambda end: [about("crossover", end, 20.0, words, "mg")]),
         ],
-        "Other preparations were looked at under 15 mg alone, where some have two peaks already",
     )
 
 
@@ -185,7 +219,15 @@ def floor_at_20(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "reaches_floor", 0.2)
     return Finding(
         f"open region at the floor from {event.text('mg')}",
-        [Reading("gravity at once", about("open region at the floor", event, 20.0, words, "mg"))],
+        [
+            Reading("gravity at once", about("open region at the floor", event, 20.0, words, "mg")),
+            *preparations.readings(
+                data,
+                "reaches_floor",
+                (0.2,),
+                lambda end: [about("open region at the floor", end, 20.0, words, "mg")],
+            ),
+        ],
     )
 
 
@@ -193,7 +235,10 @@ def third_peak(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "third_peak", 0.2)
     return Finding(
         f"from {event.text('mg')}",
-        [Reading("the first sampled force at or above it", sampled("third peak", event, 40.0, words))],
+        [
+            Reading("the first sampled force at or above it", sampled("third peak", event, 40.0, words)),
+            *preparations.readings(data, "third_peak", (0.2,), lambda end: [sampled("third peak", end, 40.0, words)]),
+        ],
     )
 
 
@@ -352,7 +397,15 @@ def floor_earlier(data: Data, words: Bounds) -> Finding:
             Reading(
                 "gravity at once",
                 Condition("force at friction 1 per that at 0.2", low.per(high), most=1.0, strict=True),
-            )
+            ),
+            *preparations.readings(
+                data,
+                "reaches_floor",
+                (1.0, 0.2),
+                lambda low, high: [
+                    Condition("force at friction 1 per that at 0.2", low.per(high), most=1.0, strict=True)
+                ],
+            ),
         ],
     )
 
@@ -404,7 +457,17 @@ def floor_later(data: Data, words: Bounds) -> Finding:
             Reading(
                 "gravity at once",
                 Condition("force with friction per without", late.per(early), 1.0 + words["marked"], words=("marked",)),
-            )
+            ),
+            *preparations.readings(
+                data,
+                "reaches_floor",
+                (0.2,),
+                lambda late: [
+                    Condition(
+                        "force with friction per without", late.per(early), 1.0 + words["marked"], words=("marked",)
+                    )
+                ],
+            ),
         ],
     )
 
@@ -447,7 +510,15 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
         texts.append(f"{ends[-1].text('mg')} ({mu:g})")
     return Finding(
         "two peaks from, by friction: " + ", ".join(texts),
-        [Reading("gravity at once", rises("crossover force", ends))],
+        [
+            Reading("gravity at once", rises("crossover force", ends)),
+            *preparations.readings(
+                data,
+                "crossover",
+                tuple(study["friction"].values[1:].tolist()),
+                lambda *after: [rises("crossover force", [ends[0], *after])],
+            ),
+        ],
     )
 
 
@@ -466,7 +537,7 @@ def friction_crossover(data: Data, words: Bounds) -> Finding:
 
     largest = float(axis["friction"][-1])
     readings = [Reading("gravity at once", Condition("friction", event, 0.0, largest), *asked(last))]
-    if preparations.GROUP in data.groups:
+    if preparations.LOADING in data.groups:
         readings += [Reading(name, *asked(dip)) for name, dip in preparations.dips(data, 1.0).items()]
     return Finding(f"two peaks up to friction {event.text()}, one above", readings)
 

@@ -26,6 +26,7 @@ from granular_response.paper.slab_response import (
     Measures,
     events_dataset,
     first_change,
+    happenings,
     locate,
     measured_dataset,
     states_picture,
@@ -35,9 +36,6 @@ from granular_response.solve import Problem
 from granular_response.state import Crossing, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import Progress, map_tasks
-
-#: The linear range ends where the response at x = 0 differs by this fraction from that to the smallest force.
-LINEARITY = 0.01
 
 
 @dataclass(frozen=True)
@@ -81,66 +79,13 @@ class PathTask:
         )
 
     def _events(self, path: LoadPath, measures: Measures, tolerance: Tolerance) -> list[Event]:
-        smallest = measures.centre(path.known[self.forces[0]])
-
-        def nonlinear(state: State) -> bool:
-            return abs(measures.centre(state) / smallest - 1.0) > LINEARITY
-
-        found = [
-            locate(
-                "first_opening",
-                path,
-                self.forces,
-                lambda state: measures.opened(state) > 0,
-                tolerance.first_opening,
-                "a contact of disks in the central third of the slab is open that touches at rest",
-            ),
-            locate(
-                "linear_range",
-                path,
-                self.forces,
-                nonlinear,
-                tolerance.linear_range,
-                f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {self.forces[0]:g}",
-            ),
-        ]
-        if not self.all_events:
-            return found
-        shape = tolerance.shape
+        widths = {"first_opening": tolerance.first_opening, "linear_range": tolerance.linear_range}
         return [
-            *found,
-            locate(
-                "crossover",
-                path,
-                self.forces,
-                measures.double_peaked,
-                shape,
-                "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
-            ),
-            locate(
-                "reaches_floor",
-                path,
-                self.forces,
-                lambda state: measures.region(state).reaches_floor,
-                shape,
-                "the region of opened contacts below the load contains a contact of the bottom row",
-            ),
-            locate(
-                "third_peak",
-                path,
-                self.forces,
-                measures.third_peak,
-                shape,
-                "the double-peaked floor response has a further peak at x = 0",
-            ),
-            locate(
-                "loss_of_symmetry_path",
-                path,
-                self.forces,
-                lambda state: measures.asymmetry(state) > tolerance.asymmetry,
-                shape,
-                f"along the load path, the asymmetry of the floor response exceeds {tolerance.asymmetry:g}",
-            ),
+            locate(name, path, self.forces, happened, widths.get(name, tolerance.shape), definition)
+            for name, (happened, definition) in happenings(
+                measures, path.known[self.forces[0]], tolerance.asymmetry
+            ).items()
+            if self.all_events or name in widths
         ]
 
 

@@ -157,10 +157,10 @@ def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
 
 
 def _deep_and_shallow(slabs: xr.Dataset, alike: str) -> list[tuple[int, int]]:
-    """Pairs of a thin and a deep slab, by their place: the extremes, or those with the same disks in a row."""
+    """Pairs of the thinnest slab and each deeper one, by their place; of the same width, as many disks in a row."""
     layers, row = slabs["layers"].values, slabs["disks_per_row"].values
     if alike == "width grows with depth":
-        return [(0, len(layers) - 1)] if layers[-1] > layers[0] else []
+        return [(0, deep) for deep in np.flatnonzero(layers > layers[0]).tolist()]
     # rows of one disk more or less: the lattice needs both numbers odd or both even
     return [
         (thin, deep)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...claims import preparations
 from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
@@ -19,7 +20,12 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
         # the next force that the paper names is 95 mg, where its response has lost its symmetry
         readings.append(Reading(name, Condition("loss of symmetry", event, 91.0, 95.0, unit="mg")))
         texts.append(f"{event.text('mg')} ({name})")
-    return Finding(", ".join(texts), readings, "The paper does not say how long the force grows")
+    for walls, friction in (("smooth", 0.0), ("rough", 1.0)):
+        for way, event in preparations.events(data, "loss_of_symmetry_path", 1.0, friction).items():
+            name = f"{way}, {walls} walls, force grown in stages"
+            readings.append(Reading(name, Condition("loss of symmetry", event, 91.0, 95.0, unit="mg")))
+            texts.append(f"{event.text('mg')} ({name})")
+    return Finding(", ".join(texts), readings, "The paper says neither how long the force grows nor how gravity came")
 
 
 CLAIMS = (

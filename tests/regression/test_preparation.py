@@ -1,0 +1,111 @@
+"""Preparations of a slab of 5 layers of 13 disks: when a growing force does what, and the figure of it."""
+
+import numpy as np
+import pytest
+
+from granular_response.paper.groups.preparation import draw as figures
+from granular_response.paper.groups.preparation import simulate as study
+from granular_response.paper.groups.preparation.numbers import numbers
+from granular_response.paper.groups.preparation.parameters import Parameters
+from granular_response.paper.slab_response import LoadPath, Measures
+from granular_response.scene import SceneError
+
+WAYS = [
+    {"name": "at once", "changes": {}},
+    {"name": "slow", "changes": {"preparation.gravity": "slow", "preparation.ramp_time": 10.0}},
+    {"name": "without friction", "changes": {"preparation.gravity": "frictionless"}},
+    {"name": "soft dashpots", "changes": {"contact.damping_ratio": 0.25}},
+]
+PARAMETERS = {
+    "method": "stages",
+    "scene": {"packing.layers": 5, "packing.disks_per_row": 13},
+    "ways": WAYS,
+    "forces": [0.05, 0.2, 0.5, 1.0, 2.0, 4.0],
+    "parts": [
+        {"friction": 0.0, "ways": ["at once"], "to": 2.0},
+        {"friction": 0.2, "to": 4.0},
+        {"friction": 0.2, "walls": "rough", "ways": ["without friction"], "to": 4.0},
+    ],
+    "asymmetry": 0.2,
+}
+
+
+@pytest.fixture(scope="module")
+def datasets():
+    return study.simulate(Parameters(**PARAMETERS), workers=1)
+
+
+def test_every_slab_carries_every_force(datasets):
+    response = datasets["response"]
+    assert response["way"].values.tolist() == [
+        "at once", "at once", "slow", "without friction", "soft dashpots", "without friction"
+    ]  # fmt: skip
+    np.testing.assert_array_equal(response["wall_friction"], [0.0, 0.0, 0.0, 0.0, 0.0, 0.2])
+    known = np.isfinite(response["response_at_centre"].values)
+    np.testing.assert_array_equal(known.sum(axis=1), [5, 6, 6, 6, 6, 6])
+    total = response["floor_response"].sum("floor_disk").values
+    np.testing.assert_allclose(total[:5][known[:5]], 1.0, atol=1e-8)
+    assert (total[5] < 1.0 - 1e-4).all()  # rough side walls carry a part
+    assert float(np.nanmax(response["certificate_coulomb_excess"])) < 1e-9
+
+
+def test_slabs_of_one_friction_differ_by_their_preparation_alone(datasets):
+    response = datasets["response"]
+    centre, level = response["response_at_centre"].values, response["level_force"].values
+    assert len({f"{value:.9f}" for value in centre[1:5, -1]}) == 4
+    assert len({f"{value:.6f}" for value in level[1:5]}) == 4
+    # without friction the slab sinks by its springs alone; the one below stands between the same walls
+    assert level[3] == pytest.approx(level[5], rel=1e-12)
+    mobilised = response["rest_mobilised"].sel(margin=0.01).values
+    assert mobilised[3] == 0 < mobilised[2]
+
+
+def test_brackets_are_neighbours_that_hold_the_event(datasets):
+    forces = np.array(PARAMETERS["forces"])
+    found, response = datasets["events"], datasets["response"]
+    assert found.sizes["event"] == 6 * 6
+    for case in range(6):
+        opened = response["opened_contacts"].values[case]
+        row = case * 6
+        assert str(found["name"].values[row]) == "first_opening"
+        assert str(found["way"].values[row]) == str(response["way"].values[case])
+        open_ = np.flatnonzero(opened > 0)
+        low, high = float(found["low"][row]), float(found["high"][row])
+        assert high == forces[open_[0]]
+        assert low == (forces[open_[0] - 1] if open_[0] else 0.0)
+
+
+def test_a_case_is_what_its_scene_says():
+    task = next(t for t in study.tasks(Parameters(**PARAMETERS)) if t.way == "slow")
+    path = LoadPath.of(task.scene)
+    assert (task.scene.contact.friction, task.scene.wall.friction, task.scene.preparation.ramp_time) == (0.2, 0.0, 10.0)
+    assert task.run().measured.scalars["response_at_centre"][0] == Measures(path).centre(path.at(task.forces[0]))
+
+
+def test_the_figure_and_the_numbers_show_what_is_stored(datasets):
+    (figure,) = figures.draw(datasets).values()
+    panel = figure.axes[0]
+    found = datasets["events"]
+    opening = found.isel(event=found["name"].values == "first_opening")
+    marks = sum(len(line.get_xdata()) for line in panel.lines if line.get_marker() in "os^D" and line.get_xdata().size)
+    assert marks == int(np.isfinite(opening["high"]).sum()) == 6
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [way["name"] for way in WAYS]
+    named = numbers(datasets)
+    assert named["first_opening_0.2_rough_without friction"] == float(opening["high"][-1])
+    assert len(named) == int(np.isfinite(found["high"]).sum())
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"ways": [{"name": "x", "changes": {"contact.friction": 1.0}}]}, "must be one of preparation.gravity"),
+        ({"ways": [*WAYS, WAYS[0]]}, "must have different names"),
+        ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, "must be one of the names in ways"),
+        ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
+        ({"ways": [{"name": "x", "changes": {"contact.damping_ratio": -1.0}}]}, "damping_ratio"),
+    ],
+)
+def test_mistakes_in_the_section_are_named(change, message):
+    with pytest.raises((SceneError, ValueError), match=message):
+        Parameters(**{**PARAMETERS, **change})
