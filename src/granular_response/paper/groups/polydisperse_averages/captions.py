@@ -98,8 +98,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "without friction. (c) Part of the packings that does not collapse under a force, with its binomial "
             "standard error; cases in which all stay at rest are not drawn.",
             "Three plots: contact directions with peaks at 0, 60 and 120 degrees, which widen with polydispersity; "
-            "contacts per disk, which fall with friction from about 4.4 to 3.4; parts at rest, which fall beyond "
-            "some force.",
+            "contacts per disk, which fall with friction; parts at rest, which fall beyond some force.",
             ensemble,
         ),
     }

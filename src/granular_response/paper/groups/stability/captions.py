@@ -45,7 +45,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             f"line: 1e-9 {WEIGHT}; beyond are stiff scenes, where the last digit of a position is worth that much). "
             f"(c) Relative change of a floor response when the rest state is displaced by {rounding.displacement:g} "
             f"of a radius (broken line), {rounding.kicks} times each.",
-            "Bars of outcomes with none wrong, a histogram of unbalanced forces with its peak at 1e-12, and points "
-            "for eight packings from 1e-12 to a few hundredths after a collapse.",
+            "Bars of outcomes, a histogram of unbalanced forces on a logarithmic axis, and for each of some packings "
+            "points of the change, which is largest after a collapse.",
         ),
     }

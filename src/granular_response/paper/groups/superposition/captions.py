@@ -42,8 +42,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         f"{parameters.width:g}, changed by {100.0 * parameters.tolerance:g} %), broken line: the median; dotted: "
         f"{LINEAR_UNTIL:g}, up to which the paper finds this system linear.",
         "Three plots on one logarithmic scale. The difference grows with the force and is the smaller the farther "
-        "apart the loads are, from a tenth at two diameters to a hundredth at twenty under the largest force of Fig. "
-        "24.",
+        "apart the loads are.",
         {
             **given,
             "force": parameters.forces,

@@ -37,8 +37,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     return {
         "fig16s_symmetry_breaking": Caption(
             text,
-            "The asymmetry jumps by four orders of magnitude near 84 and 92 mean weights, for slow and fast ramps. "
-            "Responses of copies are mirror images of each other. Contacts that open, first symmetric, then not.",
+            "The asymmetry jumps by orders of magnitude, at a smaller force for the slower ramp. Responses of copies "
+            "are mirror images of each other. Contacts that open, first symmetric, then not.",
             of_scene(parameters.scene, force=forces),
         ),
     }
