@@ -474,7 +474,7 @@ def test_explorer_data_are_those_of_the_states():
     assert set(rough[1][0]) == {explorer.FULL}
     # at friction 1 the tangential forces are the normal ones, the Coulomb limit; without friction nothing slides
     assert rough[2][0].all() and not smooth[2].any()
-    assert data["slabs"][0]["response"] == [[0.14286] * 7] * 3 and data["slabs"][0]["peaks"] == [2, 2, 2]
+    assert data["slabs"][0]["response"] == [[0.1429] * 7] * 3 and data["slabs"][0]["peaks"] == [2, 2, 2]
     assert data["slabs"][0]["about"] == "ordered packing, µ = 0, µ_wall = 0, k_N = 3000 mg/R"
     assert [one["friction"] for one in data["range"]] == [0.0, 0.2, 1.0]
     assert data["range"][0]["force"] == [1.0, 4.0]  # Fig. 6 ends at 50
@@ -494,7 +494,7 @@ def test_slabs_of_the_explorer_and_fig_22_stand_beside_the_others():
     lattice, disordered = data["slabs"][3:]
     assert (lattice["polydispersity"], lattice["ratio"], lattice["smoothed"]) == (0.0, 0.2, None)
     # a smoothed stress times the distance of two floor disks is what one of them bears
-    assert disordered["smoothed"] == [[0.14286] * 7] * 3 and disordered["centre"] == [0.14] * 3
+    assert disordered["smoothed"] == [[0.1429] * 7] * 3 and disordered["centre"] == [0.14] * 3
     assert disordered["peaks"] is None and lattice["peaks"] == [1, 1, 1]
     assert lattice["paper"] == [] and [one["force"] for one in data["slabs"][1]["paper"]] == [4.0, 20.0, 40.0]
     assert data["crossovers"] == [

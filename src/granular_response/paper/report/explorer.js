@@ -192,10 +192,10 @@
 
   function response(index) {
     const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
-    const X = across(paper.width).X, shown = function (k) { return Math.abs(slab.x[k]) <= data.reach + 0.5; };
+    const X = across(paper.width).X;
     let top = 0.02, bottom = 0;
     (slab.smoothed ? slab.smoothed.concat([slab.response[index]]) : slab.response).forEach(function (row) {
-      row.forEach(function (value, k) { if (shown(k)) { top = Math.max(top, value); bottom = Math.min(bottom, value); } });
+      row.forEach(function (value) { top = Math.max(top, value); bottom = Math.min(bottom, value); });
     });
     const Y = function (value) { return 8 + (top - value) / (top - bottom) * (paper.height - 36); };
     const step = [0.02, 0.05, 0.1, 0.2, 0.5, 1].find(function (s) { return (top - bottom) / s < 7; }) || 2;
@@ -203,10 +203,9 @@
       line(pen, [[LEFT, Y(tick * step)], [paper.width, Y(tick * step)]], tick ? colour.grid : colour.soft, 1);
       text(pen, typed((tick * step).toFixed(2)), LEFT - 4, Y(tick * step), "right");
     }
-    const curve = [], values = slab.smoothed ? slab.smoothed[index] : slab.response[index];
-    slab.x.forEach(function (x, k) { if (shown(k)) { curve.push([X(x), Y(values[k])]); } });
-    line(pen, curve, colour.curve, 1.8);
-    slab.x.forEach(function (x, k) { if (shown(k)) { dot(pen, X(x), Y(slab.response[index][k]), 2.1, colour.curve, Boolean(slab.smoothed)); } });
+    const values = slab.smoothed ? slab.smoothed[index] : slab.response[index];
+    line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.curve, 1.8);
+    slab.x.forEach(function (x, k) { dot(pen, X(x), Y(slab.response[index][k]), 2.1, colour.curve, Boolean(slab.smoothed)); });
     xTicks(pen, X, paper.height - 10, paper.width);
   }
 

@@ -72,6 +72,11 @@ class Slab:
     centre: FloatArray  #: (k,) response at x = 0
     peaks: FloatArray  #: (k,)
 
+    @property
+    def shown(self) -> NDArray[np.bool_]:
+        """(floor_disk,) which of them are in the part that is shown."""
+        return np.abs(self.x) <= REACH + 0.5
+
 
 def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | None = None) -> dict[str, Any] | None:
     """What the page embeds, and ``packed``, the contacts of all slabs; None without the states of any friction.
@@ -101,9 +106,9 @@ def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | 
                 "contacts": one.count,
                 "forces": slab.force.tolist(),
                 "height": round(one.height, 2),
-                "x": _rounded(slab.x, 2),
-                "response": [_rounded(row, 5) for row in slab.response],
-                "smoothed": None if slab.smoothed is None else [_rounded(row, 5) for row in slab.smoothed],
+                "x": _rounded(slab.x[slab.shown], 2),
+                "response": [_rounded(row, 4) for row in slab.response[:, slab.shown]],
+                "smoothed": None if slab.smoothed is None else [_rounded(r, 4) for r in slab.smoothed[:, slab.shown]],
                 "centre": _rounded(slab.centre, 6),
                 # noise gives a disordered slab many
                 "peaks": None if slab.polydispersity else [int(count) for count in slab.peaks],

@@ -135,7 +135,7 @@ def embed(path: Path) -> Picture:
     return Picture(
         path.stem,
         path.parent.name,
-        _webp(plain, lossless=True, quality=60),
+        _webp(plain, lossless=True, quality=76),
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
