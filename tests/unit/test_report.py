@@ -672,6 +672,8 @@ def test_the_page_can_be_printed(opened):
     tab = opened(1400, scheme="dark")
     printed = tab.pdf()
     assert printed.startswith(b"%PDF") and 3 <= len(re.findall(rb"/Type\s*/Page\b", printed)) <= 40
+    paper = {"width": 717, "height": 1058, "deviceScaleFactor": 1, "mobile": False}  # A4 less its margins
+    tab.call("Emulation.setDeviceMetricsOverride", **paper)
     tab.call("Emulation.setEmulatedMedia", media="print", features=[])
     cut = tab.run(
         "Array.from(document.querySelectorAll('body *')).filter(e => e.offsetWidth && !['SCRIPT', 'STYLE'].includes("
