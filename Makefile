@@ -78,6 +78,9 @@ lint: setup ## Run the linters and the type checker alone
 docs: setup ## Build the documentation site into docs/_build/html, running every example of the gallery
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
 
+notebooks: setup ## Write a notebook for each figure group into notebooks/
+	"$(BIN)/granular-response" notebooks
+
 archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
 	"$(BIN)/granular-response" archive
 
@@ -109,5 +112,5 @@ lock: ## Renew requirements.lock with the newest versions that pyproject.toml al
 	rm -rf "$(VENV)-lock"
 
 clean: ## Remove .venv, caches and datasets; the DVC cache and the figures stay
-	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint
+	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint notebooks/*.ipynb notebooks/*.nc
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

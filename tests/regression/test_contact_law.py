@@ -2,17 +2,13 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.contact_law import draw, simulate
 from granular_response.paper.groups.contact_law.parameters import Parameters
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "auto",
-    "scene": {"packing": {"layers": 5, "disks_per_row": 15}},
-    "friction": [0.0, 1.0],
-    "forces": [0.5, 3.0],
-}
+PARAMETERS = reduced.parameters("contact_law")
 
 
 @pytest.fixture(scope="module")

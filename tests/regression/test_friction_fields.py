@@ -2,22 +2,14 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.friction_fields import draw as figures
 from granular_response.paper.groups.friction_fields import simulate as study
 from granular_response.plot import style
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "auto",
-    "scene": {"packing.layers": 7, "packing.disks_per_row": 21},
-    "frictions": [0.0, 0.2, 1.0],
-    "force": 4.0,
-    "stress_width": 2.0,
-    "stress_spacing": 0.5,
-    "stress_half_width": 40.0,
-    "profiles": {"frictions": [0.0, 1.0], "force": 12.0, "rows": [1.5, 3.5]},
-}
+PARAMETERS = reduced.parameters("friction_fields")
 SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")
 
 

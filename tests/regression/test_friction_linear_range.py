@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.friction_linear_range import draw as figures
 from granular_response.paper.groups.friction_linear_range import simulate as study
@@ -9,18 +10,7 @@ from granular_response.plot import style
 from granular_response.state import SLIDING
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "auto",
-    "scene": {"packing.layers": 7, "packing.disks_per_row": 25, "wall.friction": 0.0},
-    "frictions": [0.0, 0.2, 1.0],
-    "forces": [0.1, 0.5, 1.0, 2.0, 6.0, 8.0],
-    "extra_forces": [{"friction": 0.2, "forces": [9.0]}],
-    "ends": [{"friction": 1.0, "force": 6.0}],
-    "states_of": [0.2, 1.0],
-    "tolerance": {"first_opening": 0.05, "linear_range": 0.1, "shape": 0.25, "asymmetry": 0.2},
-    "friction_axis": {"frictions": [0.0, 0.1, 0.2], "force": 4.0, "tolerance": 0.05},
-    "dynamics": {"friction": 0.2, "forces": [4.0], "ramp_time": 20.0, "time_step": 5e-4},
-}
+PARAMETERS = reduced.parameters("friction_linear_range")
 
 
 @pytest.fixture(scope="module")

@@ -2,26 +2,14 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.frictionless_crossover import draw as figures
 from granular_response.paper.groups.frictionless_crossover import simulate as study
 from granular_response.plot import style
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "auto",
-    "scene": {"packing": {"layers": 7, "disks_per_row": 21}},
-    "forces": [0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 15.0],
-    "tolerance": 0.002,
-    "sizes": [[7, 21], [8, 24], [9, 27]],
-    "widths": [[7, 21], [7, 31]],
-    "size_stiffnesses": [3000.0, 1e5],
-    "size_forces": [0.5, 1.0, 1.5, 2.0, 3.0],
-    "size_tolerance": 0.02,
-    "stiffnesses": [300.0, 1000.0, 3000.0, 1e5],
-    "stiffness_forces": [0.5, 1.0, 4.0],
-    "compared_stiffnesses": [1000.0, 1e5],
-}
+PARAMETERS = reduced.parameters("frictionless_crossover")
 STEMS = [
     "fig03_frictionless_response",
     "fig04_frictionless_contacts",

@@ -2,24 +2,14 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.pile_dip import draw as figures
 from granular_response.paper.groups.pile_dip import simulate as study
 from granular_response.plot import style
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "auto",
-    "scene": {
-        "packing.layers": 11,
-        "contact.friction": 0.94,
-        "contact.stiffness_ratio": 0.5,
-        "wall.friction": 0.35,
-    },
-    "stress_width": 2.0,
-    "stress_spacing": 1.0,
-    "dip_height": 4.0,
-}
+PARAMETERS = reduced.parameters("pile_dip")
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import reduced
 import xarray as xr
 
 from granular_response.paper import ensembles
@@ -13,38 +14,7 @@ from granular_response.paper.groups.polydisperse_averages import simulate as stu
 from granular_response.plot import style
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "stages",
-    "scene": {
-        "packing": {"layers": 5, "disks_per_row": 13, "lattice_constant": "touching-largest"},
-        "protocol": {"integrator": "verlet", "stop_kinetic_energy": 1e-9, "maximum_steps": 200_000},
-    },
-    "loading": {"ramp_time": 5.0, "largest_rate": 5.0, "stop_kinetic_energy": 1e-8},
-    "time_step_part": 0.9,
-    "longest_time_step": 1e-3,
-    "collapse_depth": 2.0,
-    "realizations": 3,
-    "cases": [
-        {"polydispersities": [0.0, 0.01], "friction": 0.0, "forces": [0.5, 15.0]},
-        {"polydispersities": [0.01, 0.25], "friction": 0.2, "forces": [1.0, 5.0, 15.0]},
-        {"polydispersities": [0.01], "friction": 0.0, "lattice_constant": 2.0, "realizations": 2, "forces": [15.0]},
-        {"polydispersities": [0.01], "friction": 0.2, "lattice_constant": 2.0, "realizations": 2, "forces": [15.0]},
-    ],
-    "widths": [3.0, 6.0],
-    "reach": 12.0,
-    "spacing": 1.0,
-    "few": 2,
-    "individual": {"polydispersity": 0.01, "frictions": [0.0, 0.2], "force": 15.0, "realizations": 3, "width": 3.0},
-    "linear_range": {
-        "polydispersities": [0.0, 0.01],
-        "frictions": [0.0, 0.2],
-        "forces": [0.1, 0.5, 2.0, 5.0],
-        "ramp_time": 5.0,
-        "width": 3.0,
-        "tolerance": 0.05,
-    },
-    "forces_picture": {"polydispersity": 0.25, "friction": 0.2, "force": 5.0, "realization": 0},
-}
+PARAMETERS = reduced.parameters("polydisperse_averages")
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.slab_comparison import draw as figures
 from granular_response.paper.groups.slab_comparison import simulate as study
@@ -13,12 +14,7 @@ def case(friction, floor, layers, gravity="at-once"):
     return {"friction": friction, "floor": floor, "gravity": gravity, "disks_per_layer": 6, "layers": layers}
 
 
-PARAMETERS = {
-    "method": "auto",
-    "force": 0.01,
-    "scene": {"contact": {"stiffness_ratio": 0.8}},
-    "cases": [case(0.0, "smooth", [4, 8, 16]), case(1.0, "smooth", [4, 7]), case(1.0, "rough", [4, 7])],
-}
+PARAMETERS = reduced.parameters("slab_comparison")
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.stiffness_ratio_crossover import draw as figures
 from granular_response.paper.groups.stiffness_ratio_crossover import simulate as study
@@ -9,18 +10,7 @@ from granular_response.plot import style
 from granular_response.store import files as store
 from granular_response.theory import crossover
 
-PARAMETERS = {
-    "method": "dynamics",
-    "scene": {
-        "packing.layers": 7,
-        "packing.disks_per_row": 31,
-        "contact.friction": 10.0,
-        "protocol.integrator": "verlet",
-    },
-    "force": 4.0,
-    "ratios": [0.0, 0.1, 0.2, 0.3, 0.4, 0.8],
-    "tolerance": 0.03,
-}
+PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 
 
 @pytest.fixture(scope="module")

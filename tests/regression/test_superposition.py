@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.superposition import draw as figures
 from granular_response.paper.groups.superposition import simulate as study
@@ -9,28 +10,7 @@ from granular_response.plot import style
 from granular_response.scene import Scene
 from granular_response.store import files as store
 
-SCENE = {
-    "packing.layers": 6,
-    "packing.disks_per_row": 21,
-    "packing.polydispersity": 0.01,
-    "packing.lattice_constant": "touching-largest",
-    "contact.friction": 0.05,
-    "protocol.integrator": "verlet",
-    "protocol.time_step": 7.9e-4,
-    "protocol.stop_kinetic_energy": 1e-9,
-    "protocol.ramp_time": 5.0,
-}
-PARAMETERS = {
-    "method": "stages",
-    "scene": SCENE,
-    "realizations": 3,
-    "pair_realizations": 2,
-    "offsets": [1, 4],
-    "forces": [0.01, 0.2, 1.0],
-    "single_forces": [0.01, 0.5, 1.0, 2.0],
-    "width": 3.0,
-    "tolerance": 0.05,
-}
+PARAMETERS = reduced.parameters("superposition")
 CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
 
 
@@ -103,7 +83,8 @@ def test_the_end_of_the_linear_range_is_bracketed(datasets) -> None:
 
 def test_stages_agree_with_the_protocol_of_the_paper(datasets) -> None:
     """Dynamics from rest to the force, in place of stages: a different history, nearly the same responses."""
-    scene = Scene().updated({**SCENE, "protocol.method": "dynamics", "protocol.ramp_time": 20.0, "loads": []})
+    changes = {"protocol.method": "dynamics", "protocol.ramp_time": 20.0, "loads": []}
+    scene = Scene().updated({**PARAMETERS["scene"], **changes})
     pair = study.load_pair(study.Task(scene, study.settle(scene), 4, (0.2,)))
     assert pair.by_dynamics.all()
     staged = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=0.2).values

@@ -2,29 +2,14 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.symmetry_breaking import draw as figures
 from granular_response.paper.groups.symmetry_breaking import simulate as study
 from granular_response.plot import style
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "auto",
-    "scene": {
-        "packing.layers": 7,
-        "packing.disks_per_row": 25,
-        "wall.friction": 0.0,
-        "contact.friction": 1.0,
-    },
-    "asymmetry": 0.1,
-    "tolerance": 20.0,
-    "protocols": [
-        {"ramp_time": 20.0, "time_step": 5e-4, "between": [20.0, 60.0]},
-        {"ramp_time": 5.0, "time_step": 5e-4, "between": [10.0, 20.0]},
-    ],
-    "copies": {"force": 60.0, "displacement": 1e-6, "seeds": [1]},
-    "held": {"forces": [5.0, 10.0], "displacement": 1e-6},
-}
+PARAMETERS = reduced.parameters("symmetry_breaking")
 
 
 @pytest.fixture(scope="module")

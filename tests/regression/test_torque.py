@@ -2,29 +2,14 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.torque import draw as figures
 from granular_response.paper.groups.torque import simulate as study
 from granular_response.plot import style
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "dynamics",
-    "scene": {
-        "packing.layers": 5,
-        "packing.disks_per_row": 13,
-        "packing.polydispersity": 0.001,
-        "contact.friction": 0.5,
-        "contact.stiffness_ratio": 0.5,
-        "wall.friction": 0.5,
-    },
-    "force": 10.0,
-    "angle": 30.0,
-    "torques": [0.0, 1.5, 3.0],
-    "stress_width": 2.0,
-    "stress_spacing": 0.5,
-    "distances": [0.0, 4.0, 8.0],
-}
+PARAMETERS = reduced.parameters("torque")
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")
 
 

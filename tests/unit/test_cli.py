@@ -36,7 +36,7 @@ from granular_response.sweeps.resources import Resources, current
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = ["run", "continue", "simulate", "draw", "measure", "show", "plot", "keys"]
-COMMANDS += ["export", "claims", "report", "archive", "restore", "cite", "version"]
+COMMANDS += ["export", "claims", "report", "notebooks", "archive", "restore", "cite", "version"]
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
 contact: {friction: 0.0}

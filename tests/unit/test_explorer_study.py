@@ -2,21 +2,14 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.observe.floor import smoothed_response
 from granular_response.paper.groups.explorer import simulate as study
 from granular_response.paper.groups.explorer.numbers import numbers
 from granular_response.paper.groups.explorer.parameters import Parameters
 
-SECTION = {
-    "method": "auto",
-    "scene": {"packing": {"layers": 4, "disks_per_row": 23}, "wall": {"friction": 0.0}},
-    "forces": [0.5, 2.0, 400.0],
-    "lattices": [{"friction": 0.2, "stiffness_ratio": 0.2}],
-    "disordered": [{"polydispersity": 0.25, "friction": 0.2, "largest_force": 400.0}],
-    "stages": {"ramp_time": 2.0, "stop_kinetic_energy": 1.0e-9, "collapse_depth": 0.2},
-    "width": 3.0,
-}
+SECTION = reduced.parameters("explorer")
 
 
 @pytest.fixture(scope="module")

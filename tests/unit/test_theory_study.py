@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.stiffness_ratio_crossover import spring_model
 from granular_response.paper.groups.theory import draw as figures
@@ -9,14 +10,7 @@ from granular_response.paper.groups.theory import simulate as theory
 from granular_response.plot import style
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "stiffness_ratio": 0.8,
-    "ray_angle": 30.0,
-    "diffusion_length": 0.5,
-    "depths": [26.0, 52.0],
-    "half_width": 3.0,
-    "points": 121,
-}
+PARAMETERS = reduced.parameters("theory")
 
 
 @pytest.fixture(scope="module")

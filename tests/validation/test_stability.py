@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import reduced
 import yaml
 
 from granular_response.paper.groups.stability import draw as figures
@@ -264,22 +265,7 @@ def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
 
 # The study
 
-REDUCED = {
-    "seed": SEED,
-    "time_steps": {
-        "scene": SMALL,
-        "integrators": ["verlet", "gear"],
-        "steps": 800,
-        "ratios": [0.9, 2.0],
-        "axes": {name: values[:2] for name, values in PARAMETERS["time_steps"]["axes"].items()},
-    },
-    "drift": PARAMETERS["drift"] | {"scene": SMALL, "time": 0.5, "friction_time": 0.5},
-    "collisions": PARAMETERS["collisions"] | {"angles": [30.0, 60.0], "spins": [0.0], "frictions": [0.2]},
-    "rolling": PARAMETERS["rolling"],
-    "rounding": PARAMETERS["rounding"]
-    | {"kicks": 1, "cases": {"ordered, no friction": {"contact.friction": 0.0, "loads.0.force": [0.0, -5.0]}}},
-    "random_scenes": {"number": 5, "chunk": 2, "maximum_steps": 3000},
-}
+REDUCED = reduced.parameters("stability")
 
 
 def test_the_study_and_its_figures():

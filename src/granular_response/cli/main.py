@@ -450,6 +450,30 @@ def report(
 
 @app.command(
     epilog=_examples(
+        "granular-response notebooks",
+        "granular-response notebooks pile_dip -o elsewhere",
+    )
+)
+def notebooks(
+    groups: Annotated[list[str] | None, typer.Argument(help="Figure groups; all of them if none is given.")] = None,
+    params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
+    reduced: Annotated[Path, typer.Option(help="Parameters that the notebooks begin with.")] = Path(
+        "notebooks/reduced.yaml"
+    ),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the notebooks.")] = Path("notebooks"),
+) -> None:
+    """Write a notebook for each figure group: its parameters, simulation, figures and captions."""
+    from ..paper import notebooks as writing
+    from ..paper.groups import NAMES
+
+    _loaded()
+
+    for path in writing.write(output, groups or NAMES, own=params, reduced=reduced):
+        typer.echo(str(path))
+
+
+@app.command(
+    epilog=_examples(
         "granular-response archive",
         "granular-response archive -o slabs.zip",
     )

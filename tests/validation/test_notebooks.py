@@ -1,0 +1,49 @@
+"""The notebook of every figure group, made from its parameters, runs at reduced size and shows its figures."""
+
+import os
+from pathlib import Path
+
+import nbformat
+import pytest
+import reduced
+from nbclient import NotebookClient
+
+from granular_response.paper import notebooks
+from granular_response.paper.groups import NAMES
+from granular_response.paper.pipeline import GroupError, group_member, simulation
+
+ROOT = Path(__file__).parents[2]
+OWN = ROOT / "params.yaml"
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_a_notebook_runs_and_shows_every_figure(group, tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")]))
+    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+    (path,) = notebooks.write(tmp_path / "notebooks", [group], own=OWN, reduced=reduced.PATH)
+    notebook = nbformat.read(path, as_version=4)
+    nbformat.validate(notebook)
+    assert not any(cell.get("outputs") for cell in notebook.cells)
+    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output.get("data", {}) for output in notebook.cells[-1].outputs]
+    pictures = [data for data in shown if "image/png" in data]
+    assert pictures and len(pictures) == sum("text/markdown" in data for data in shown)
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_a_notebook_has_the_parameters_of_its_group(group, tmp_path):
+    (path,) = notebooks.write(tmp_path, [group], own=OWN, reduced=reduced.PATH)
+    names: dict = {}
+    for cell in nbformat.read(path, as_version=4).cells:
+        if cell.source.startswith(("own = ", "reduced = ")):
+            exec(cell.source, names)
+    described = group_member(group, "parameters", "Parameters")
+    for name, file in (("own", OWN), ("reduced", reduced.PATH)):
+        given, expected = simulation.parameters(group, file)
+        assert names[name] == given and described(**names[name]) == expected
+
+
+def test_a_group_that_is_none_is_said(tmp_path):
+    with pytest.raises(GroupError, match="pile_dpi: no such figure group"):
+        notebooks.write(tmp_path, ["pile_dpi"], own=OWN, reduced=reduced.PATH)
+    assert not any(tmp_path.iterdir())
