@@ -77,6 +77,7 @@ lint: setup ## Run the linters and the type checker alone
 
 docs: setup ## Build the documentation site into docs/_build/html, running every example of the gallery
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	"$(BIN)/python" .ci/links docs/_build/html
 
 notebooks: setup ## Write a notebook for each figure group into notebooks/
 	"$(BIN)/granular-response" notebooks
