@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reduced
 import xarray as xr
 
 from granular_response.paper.claims.claim import Data
@@ -12,21 +13,7 @@ from granular_response.paper.groups.influence.parameters import Parameters
 from granular_response.scene import SceneError
 from granular_response.store import files as store
 
-PARAMETERS = {
-    "method": "auto",
-    "scene": {
-        "packing": {"layers": 6, "disks_per_row": 25, "lattice_constant": "touching-largest"},
-        "contact": {"stiffness_ratio": 0.8},
-        "protocol": {"time_step": "auto", "integrator": "verlet", "stop_kinetic_energy": 1e-9},
-    },
-    "cases": [
-        {"polydispersity": 0.0, "friction": 0.0},
-        {"polydispersity": 0.1, "friction": 0.2, "realizations": 3},
-    ],
-    "separations": [1, 2],
-    "margin": 12.0,
-    "fitted": [1.0, 6.0],
-}
+PARAMETERS = reduced.parameters("influence")
 
 
 @pytest.fixture(scope="module")

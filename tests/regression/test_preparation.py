@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reduced
 
 from granular_response.paper.groups.preparation import draw as figures
 from granular_response.paper.groups.preparation import simulate as study
@@ -10,24 +11,8 @@ from granular_response.paper.groups.preparation.parameters import Parameters
 from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import SceneError
 
-WAYS = [
-    {"name": "at once", "changes": {}},
-    {"name": "slow", "changes": {"preparation.gravity": "slow", "preparation.ramp_time": 10.0}},
-    {"name": "without friction", "changes": {"preparation.gravity": "frictionless"}},
-    {"name": "soft dashpots", "changes": {"contact.damping_ratio": 0.25}},
-]
-PARAMETERS = {
-    "method": "stages",
-    "scene": {"packing.layers": 5, "packing.disks_per_row": 13},
-    "ways": WAYS,
-    "forces": [0.05, 0.2, 0.5, 1.0, 2.0, 4.0],
-    "parts": [
-        {"friction": 0.0, "ways": ["at once"], "to": 2.0},
-        {"friction": 0.2, "to": 4.0},
-        {"friction": 0.2, "walls": "rough", "ways": ["without friction"], "to": 4.0},
-    ],
-    "asymmetry": 0.2,
-}
+PARAMETERS = reduced.parameters("preparation")
+WAYS = PARAMETERS["ways"]
 
 
 @pytest.fixture(scope="module")
