@@ -23,11 +23,12 @@ class Material:
         return Linear(self.kn, self.nun, self.kt, self.nut, self.mu, self.least)
 
 
-def contact_force(m: Material, overlap, velocity_normal, velocity_tangential, spring, dt, literal=False):
+def contact_force(m: Material, overlap, velocity_normal, velocity_tangential, spring, dt, rule="cut"):
     """Normal force, tangential force and new spring of a closed contact (docs/architecture.md for the signs)."""
     fn = max(m.kn * overlap - m.nun * velocity_normal, m.least)
-    if literal:
-        if m.kt * abs(spring) < m.mu * abs(fn):
+    if rule != "cut":
+        unloads = rule == "unloading" and spring * velocity_tangential < 0.0
+        if m.kt * abs(spring) < m.mu * abs(fn) or unloads:
             spring = spring + velocity_tangential * dt
         return fn, -m.kt * spring - m.nut * velocity_tangential, spring
     new = spring + velocity_tangential * dt
@@ -39,7 +40,7 @@ def contact_force(m: Material, overlap, velocity_normal, velocity_tangential, sp
     return fn, ft, new
 
 
-def forces(position, velocity, spin, radius, pairs, springs, material, dt, literal=False):
+def forces(position, velocity, spin, radius, pairs, springs, material, dt, rule="cut"):
     """Forces (n, 2), torques (n,), new springs of the listed pairs; ``material.mu == 0`` means no friction at all."""
     force, torque = np.zeros_like(position), np.zeros(len(radius))
     new_springs = np.zeros(len(pairs))
@@ -53,7 +54,7 @@ def forces(position, velocity, spin, radius, pairs, springs, material, dt, liter
         tangent = np.array([-normal[1], normal[0]])
         relative = velocity[i] - velocity[j]
         slip = relative @ tangent - (radius[i] * spin[i] + radius[j] * spin[j])
-        fn, ft, s = contact_force(material, overlap, relative @ normal, slip, springs[c], dt, literal)
+        fn, ft, s = contact_force(material, overlap, relative @ normal, slip, springs[c], dt, rule)
         if material.mu == 0:
             ft, s = 0.0, 0.0
         new_springs[c] = s

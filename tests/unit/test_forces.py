@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from reference_loop import Material, forces
 
-from granular_response.contact import CUT, LITERAL
+from granular_response.contact import CUT, LITERAL, RULES, UNLOADING
 from granular_response.contact.pair import frictional_pair, frictionless_pair
 from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
@@ -137,7 +137,7 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize("rule", [CUT, LITERAL], ids=["cut", "literal"])
+@pytest.mark.parametrize("rule", RULES.values(), ids=RULES)
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("runs", RUNS)
 @pytest.mark.parametrize("packing", PACKINGS)
@@ -150,7 +150,7 @@ def test_loops_agree_with_plain_python(packing, runs, friction, rule):
     springs = rng.normal(0, 3e-3, len(first)) if friction else np.zeros(len(first))
     pairs = list(zip(first.tolist(), second.tolist(), strict=True))
     dt = 5e-4
-    expected = forces(position, velocity, spin, radius, pairs, springs, material, dt, rule == LITERAL)
+    expected = forces(position, velocity, spin, radius, pairs, springs, material, dt, list(RULES)[rule])
     closed = sum(np.linalg.norm(position[i] - position[j]) < radius[i] + radius[j] for i, j in pairs)
     assert 20 < closed < len(pairs)
     force, torque, new, _, _ = run_kernel(
@@ -212,7 +212,7 @@ def test_vector_loop_and_single_pairs_agree():
         assert c == pytest.approx(a, abs=1e-11)
 
 
-@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL)])
+@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL), (0.3, UNLOADING)])
 @pytest.mark.parametrize("shifts", [(1,), (3,), (7, 8), (9, 40), (1, 40, 2)])
 @pytest.mark.parametrize("count", [5, 8, 64, 65, 151])
 def test_runs_add_to_each_disk_as_first_and_then_as_second(count, shifts, friction, rule):
@@ -223,7 +223,7 @@ def test_runs_add_to_each_disk_as_first_and_then_as_second(count, shifts, fricti
     agrees_to_the_bit(runs, order, start + count + max(shifts) + 1, friction, rule)
 
 
-@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL)])
+@pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL), (0.3, UNLOADING)])
 @pytest.mark.parametrize("count", [3, 8, 29])
 def test_single_pairs_add_in_their_order(count, friction, rule):
     rng = np.random.default_rng(count)
@@ -265,7 +265,7 @@ def agrees_to_the_bit(runs, order, n, friction, rule):
 WALLS = {"floor": (0.0, 1.0), "left": (1.0, 0.0), "right": (-1.0, 0.0)}
 
 
-@pytest.mark.parametrize("rule", [CUT, LITERAL], ids=["cut", "literal"])
+@pytest.mark.parametrize("rule", RULES.values(), ids=RULES)
 @pytest.mark.parametrize("wall", WALLS)
 def test_wall_by_hand(wall, rule):
     """Overlap 0.01, approach 0.3, slip along t and spin: one disk against each wall."""

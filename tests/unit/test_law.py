@@ -8,7 +8,13 @@ from hypothesis import strategies as st
 from reference_loop import Material, contact_force
 
 from granular_response.contact import Linear
-from granular_response.contact.coulomb import tangential_cut, tangential_literal
+from granular_response.contact.coulomb import (
+    RULES,
+    tangential,
+    tangential_cut,
+    tangential_literal,
+    tangential_unloading,
+)
 from granular_response.contact.law import normal_force
 
 # round numbers: k_N 1000, nu_N 10, k_T 800, nu_T 5, mu 0.5
@@ -65,6 +71,15 @@ def test_literal_rule_freezes_the_spring_beyond_the_limit_also_on_unloading():
         assert force == pytest.approx(-8.0 - 5.0 * slip)  # beyond the limit of 5: the force is not cut
 
 
+def test_unloading_rule_freezes_the_spring_against_further_stretch_alone():
+    force, frozen = tangential_unloading(1e-2, 0.2, 10.0, LAW, 5e-3)
+    assert (force, frozen) == (pytest.approx(-8.0 - 1.0), 1e-2)
+    force, back = tangential_unloading(1e-2, -0.2, 10.0, LAW, 5e-3)
+    assert (force, back) == (pytest.approx(-7.2 + 1.0), pytest.approx(9e-3))
+    within = (1e-3, 0.2, 10.0, LAW, 5e-3)
+    assert tangential_unloading(*within) == tangential_literal(*within)
+
+
 finite = st.floats(-5.0, 5.0, allow_nan=False)
 
 
@@ -72,9 +87,9 @@ finite = st.floats(-5.0, 5.0, allow_nan=False)
 def test_agrees_with_the_plain_law(overlap, normal, slip, spring, dt):
     material = Material(1000.0, 10.0, 800.0, 5.0, 0.5)
     fn = normal_force(overlap, None, normal, LAW)
-    for literal, kernel in ((False, tangential_cut), (True, tangential_literal)):
-        expected = contact_force(material, overlap, normal, slip, spring, dt, literal)
-        assert (fn, *kernel(spring, slip, fn, LAW, dt)) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+    for name, rule in RULES.items():
+        expected = contact_force(material, overlap, normal, slip, spring, dt, name)
+        assert (fn, *tangential(spring, slip, fn, LAW, rule, dt)) == pytest.approx(expected, rel=1e-12, abs=1e-13)
 
 
 @given(slip=finite, spring=st.floats(-0.02, 0.02), fn=st.floats(-20.0, 100.0), dt=st.floats(0.0, 1e-2))

@@ -82,7 +82,7 @@ scenes = options(
         stop_kinetic_energy=numbers(open_low=True),
         stop_rule=st.sampled_from(["instantaneous", "envelope"]),
         static_finish=st.booleans(),
-        friction_law=st.sampled_from(["cut", "literal"]),
+        friction_law=st.sampled_from(["cut", "literal", "unloading"]),
         tensile_dashpot=st.booleans(),
         maximum_steps=st.integers(1),
     ),

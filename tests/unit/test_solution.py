@@ -146,8 +146,9 @@ def test_a_fall_that_is_cut_short_is_no_rest_state():
         solve_scene(falling)
 
 
-def test_the_literal_friction_law_is_left_to_dynamics():
-    literal = scene(protocol__friction_law="literal", protocol__stop_kinetic_energy=1e-6, loads=LOAD)
+@pytest.mark.parametrize("law", ["literal", "unloading"])
+def test_friction_laws_of_motion_are_left_to_dynamics(law):
+    literal = scene(protocol__friction_law=law, protocol__stop_kinetic_energy=1e-6, loads=LOAD)
     solution = solve_scene(literal)
     assert solution.rest_choice.method == solution.load_choice.method == "dynamics"
     assert "friction_law" in solution.load_choice.reason

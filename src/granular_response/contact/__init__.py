@@ -1,6 +1,6 @@
 """Contact laws: one file each for the part along the normal, one for what all have along the tangent (Sec. III.A)."""
 
-from .coulomb import CUT, LITERAL
+from .coulomb import CUT, LITERAL, RULES, UNLOADING
 from .hertz import Hertz
 from .law import Law
 from .linear import Linear
@@ -8,4 +8,4 @@ from .linear import Linear
 #: By the name that a scene file has for them.
 LAWS: dict[str, type[Law]] = {"linear": Linear, "hertz": Hertz}
 
-__all__ = ["CUT", "LAWS", "LITERAL", "Hertz", "Law", "Linear"]
+__all__ = ["CUT", "LAWS", "LITERAL", "RULES", "UNLOADING", "Hertz", "Law", "Linear"]

@@ -9,7 +9,10 @@ from ..machine.lanes import magnitude, quotient_where, select
 from ..machine.machine_code import kernel
 
 #: How the Coulomb limit acts on the tangential spring.
-CUT, LITERAL = 0, 1
+CUT, LITERAL, UNLOADING = 0, 1, 2
+
+#: By the name that a scene file has for them.
+RULES = {"cut": CUT, "literal": LITERAL, "unloading": UNLOADING}
 
 
 @kernel
@@ -41,10 +44,25 @@ def tangential_literal(spring, slip_velocity, force_normal, law, time_step):
 
 
 @kernel
+def tangential_unloading(spring, slip_velocity, force_normal, law, time_step):
+    """As :func:`tangential_literal`, but the spring is frozen only against slip that would stretch it further.
+
+    Between the paper's equation and its words: the spring is kept from growing at the limit, and a contact that
+    unloads sticks at once. The force is not cut: where the normal force falls it stays beyond the limit.
+    """
+    within = law.friction * magnitude(force_normal) - law.tangential_stiffness * magnitude(spring) > 0.0
+    moved = slip_velocity * time_step
+    new = spring + select(within, moved, select(spring * slip_velocity < 0.0, moved, 0.0))
+    return -law.tangential_stiffness * new - law.tangential_damping * slip_velocity, new
+
+
+@kernel
 def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
-    """Tangential force and new spring by ``rule``: CUT or LITERAL."""
-    if rule == LITERAL:
-        return tangential_literal(spring, slip_velocity, force_normal, law, time_step)
+    """Tangential force and new spring by ``rule``: CUT, LITERAL or UNLOADING."""
+    if rule != CUT:
+        if rule == LITERAL:
+            return tangential_literal(spring, slip_velocity, force_normal, law, time_step)
+        return tangential_unloading(spring, slip_velocity, force_normal, law, time_step)
     return tangential_cut(spring, slip_velocity, force_normal, law, time_step)
 
 

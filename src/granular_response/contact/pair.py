@@ -3,7 +3,7 @@
 Arguments and results are scalars, or the ``Lanes`` of several contacts. A contact that is open feels nothing and
 forgets its spring; that takes no branch. ``du``, ``dw`` : velocity of the first body relative to the second;
 ``rims`` : sum of radius times angular velocity of both; ``shape`` : what the law needs of the two bodies
-(:mod:`.law`); ``rule`` : CUT or LITERAL; ``dt`` : time step of the spring.
+(:mod:`.law`); ``rule`` : of :mod:`.coulomb`; ``dt`` : time step of the spring.
 """
 
 from __future__ import annotations

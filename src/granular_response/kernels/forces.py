@@ -160,8 +160,8 @@ def add_pair_forces(q, v, rim, f, n, spring, shape, pairs, rule, dt):
     q, v, f : (2 n,) or (3 n,) generalised displacements, velocities, forces. With friction the third part
         of ``f`` collects the sum of tangential forces, not yet multiplied by ``-radius``.
     rim : (n,) radius times angular velocity, or None without friction.
-    pairs : ``model.Pairs``, and its ``spring`` and ``shape``; ``rule`` : CUT or LITERAL; ``dt`` : time step of the
-        spring update.
+    pairs : ``model.Pairs``, and its ``spring`` and ``shape``; ``rule`` : of ``contact.RULES``; ``dt`` : time step of
+        the spring update.
     """
     for r in range(pairs.runs.shape[0]):
         if pairs.runs[r, 2] == 1:

@@ -49,7 +49,7 @@ class Model(NamedTuple):
     load_disk: NDArray[Any]  #: (l,)
     pairs: Pairs
     walls: Walls
-    rule: int  #: CUT or LITERAL
+    rule: int  #: how the Coulomb limit acts (contact.RULES)
 
 
 class Schedule(NamedTuple):

@@ -91,11 +91,12 @@ class Protocol(Description):
         default=True,
         description="Solve the equations of equilibrium from the state at which the dynamics stopped.",
     )
-    friction_law: Literal["cut", "literal"] = Field(
+    friction_law: Literal["cut", "literal", "unloading"] = Field(
         default="cut",
         description="At the Coulomb limit, cut: spring and dashpot together are cut to friction times "
         "normal force, and the spring takes what is left; literal: the spring keeps its "
-        "length while it is beyond the limit, which never quite settles.",
+        "length while it is beyond the limit, which never quite settles; unloading: the same, but slip that "
+        "shortens the spring does so. Neither cuts the force, and both are for dynamics alone.",
     )
     tensile_dashpot: Flag = Field(
         default=True,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..contact import CUT
 from ..scene import SceneError
 from .problem import Problem
 
@@ -16,17 +17,18 @@ class Choice:
     reason: str
 
 
-#: Why statics is no method for the literal friction law.
-_LITERAL = "protocol.friction_law literal is a law of motion that statics does not have"
+def _of_motion(problem: Problem) -> bool:
+    """Whether the friction law is one that statics does not have: all but the cut."""
+    return problem.rotations and problem.rule != CUT
 
 
-def _literal(problem: Problem) -> bool:
-    return problem.rotations and problem.scene.protocol.friction_law == "literal"
+def _why(problem: Problem) -> str:
+    return f"protocol.friction_law {problem.scene.protocol.friction_law} is a law of motion that statics does not have"
 
 
 def finishes_statically(problem: Problem) -> bool:
     """Whether dynamics hands over to the static finish."""
-    return problem.scene.protocol.static_finish and not _literal(problem)
+    return problem.scene.protocol.static_finish and not _of_motion(problem)
 
 
 def rest_method(problem: Problem) -> Choice:
@@ -48,8 +50,8 @@ def rest_method(problem: Problem) -> Choice:
         )
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
-    if _literal(problem):
-        return Choice("dynamics", _LITERAL)
+    if _of_motion(problem):
+        return Choice("dynamics", _why(problem))
     if problem.rotations and problem.scene.preparation.gravity == "frictionless":
         if problem.packing.ordered:
             return Choice("minimise", "prepared without friction, and no disorder: rest is the minimum of the energy")
@@ -67,15 +69,15 @@ def load_method(problem: Problem) -> Choice:
     Raises
     ------
     SceneError
-        When ``path`` or ``stages`` is asked for a scene with the literal friction law.
+        When ``path`` or ``stages`` is asked for a scene with a friction law that statics does not have.
     """
     asked = problem.scene.protocol.method
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
-    if _literal(problem):
+    if _of_motion(problem):
         if asked in ("path", "stages"):
-            raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {_LITERAL}")
-        return Choice("dynamics", _LITERAL)
+            raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {_why(problem)}")
+        return Choice("dynamics", _why(problem))
     if asked == "path":
         return Choice("path", "protocol.method is path")
     if problem.rotations and asked == "stages":

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import CUT, LAWS, LITERAL, Law
+from ..contact import LAWS, RULES, Law
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, resolve_disk
@@ -94,7 +94,7 @@ class Problem:
             packing=scene.packing.build() if packing is None else packing,
             pair_law=law(scene.contact, DISKS),
             wall_law=law(scene.resolved_wall, AT_WALL),
-            rule=LITERAL if protocol.friction_law == "literal" else CUT,
+            rule=RULES[protocol.friction_law],
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
         )

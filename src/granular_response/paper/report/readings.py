@@ -32,6 +32,9 @@ READINGS: Mapping[str, Reading] = {
     "damping_halved": Reading("dashpots", "sqrt(k)", "half of it"),
     "no_tensile_dashpot": Reading("pull of an opening contact", "allowed, as in eq. (2)", "cut off at zero"),
     "literal_friction": Reading("Coulomb limit under load", "force cut, spring follows", "literal"),
+    "unloading_friction": Reading(
+        "Coulomb limit under load", "force cut, spring follows", "spring frozen, free to unload"
+    ),
     "time_step_halved": Reading("time step", "5e-4 sqrt(R/g)", "2.5e-4 sqrt(R/g)"),
     "verlet": Reading("integrator", "Beeman", "velocity Verlet"),
     "gear": Reading("integrator", "Beeman", "Gear, step 2.4e-4 sqrt(R/g)"),

@@ -17,4 +17,4 @@ class Parameters(Description):
     scene: Annotated[Scene, over(Scene(), "contact.friction", "loads")] = Scene()
     friction: Coefficients = Field(description="Between disks; one dataset for each.")
     force: Positive = Field(description="In mean disk weights.")
-    literal_steps: Count = Field(description="The literal friction law is looked at after this many steps.")
+    literal_steps: Count = Field(description="Time steps after which friction laws without statics are looked at.")

@@ -26,6 +26,12 @@ from granular_response.sweeps.tasks import Progress, map_tasks
 
 REFERENCE = "reference"
 
+#: Changes to the scene while the load acts, by variant: friction laws that statics does not have.
+LAWS_OF_MOTION: Mapping[str, Mapping[str, Any]] = {
+    "literal_friction": {"protocol.friction_law": "literal"},
+    "unloading_friction": {"protocol.friction_law": "unloading"},
+}
+
 
 @dataclass(frozen=True)
 class Variant:
@@ -67,7 +73,7 @@ def variants() -> list[Variant]:
 class Task:
     scene: Scene
     variant: Variant
-    literal_steps: int = 0  #: length of the run by the literal friction law; 0 for an ordinary variant
+    steps: int = 0  #: length of the run by a friction law that statics does not have; 0 for an ordinary variant
 
 
 @dataclass(frozen=True)
@@ -84,19 +90,19 @@ def compute(task: Task) -> Outcome:
     load_scene = task.scene.updated({"protocol.method": "dynamics", **task.variant.load})
     rest = rest_state(Problem.from_scene(rest_scene))
     problem = Problem.from_scene(load_scene).with_loads(rest.position)
-    if task.literal_steps:
-        return _outcome(problem, rest, _literal(problem, rest, task.literal_steps))
+    if task.steps:
+        return _outcome(problem, rest, _by_another_law(problem, rest, task))
     _, (loaded,) = loaded_states(problem, rest, [1.0])
     return _outcome(problem, rest, loaded)
 
 
-def _literal(problem: Problem, rest: State, steps: int) -> State:
-    """The loaded state after a fixed time by the literal friction law, which has no rest."""
-    literal = Problem.from_scene(problem.scene.updated({"protocol.friction_law": "literal"}))
-    literal = replace(literal, load_disk=problem.load_disk, load=problem.load)
-    dynamics = Dynamics(literal, rest, problem.scene.protocol.integrator, resolve_time_step(literal))
+def _by_another_law(problem: Problem, rest: State, task: Task) -> State:
+    """The loaded state after a fixed time by a friction law that need not have a rest."""
+    other = Problem.from_scene(problem.scene.updated(LAWS_OF_MOTION[task.variant.name]))
+    other = replace(other, load_disk=problem.load_disk, load=problem.load)
+    dynamics = Dynamics(other, rest, problem.scene.protocol.integrator, resolve_time_step(other))
     ramp = (0.0, 1.0, problem.scene.protocol.ramp_time)
-    return relax(dynamics, Stop(1e-30, maximum_steps=steps), load=ramp)
+    return relax(dynamics, Stop(1e-30, maximum_steps=task.steps), load=ramp)
 
 
 def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
@@ -119,19 +125,22 @@ def simulate(
 ) -> dict[str, xr.Dataset]:
     """One dataset for each coefficient of friction; see the module."""
     known = variants()
-    literal = Variant("literal_friction", "the paper's equation for the spring taken literally", {}, {})
+    laws = [
+        Variant("literal_friction", "the paper's equation for the spring taken literally", {}, {}),
+        Variant("unloading_friction", "the spring frozen at the limit, free to unload", {}, {}),
+    ]
     load = {"disk": "top-centre", "force": [0.0, -parameters.force]}
     tasks = []
     for friction in parameters.friction:
         scene = parameters.scene.updated({"contact.friction": friction, "loads": [load]})
         tasks += [Task(scene, variant) for variant in known]
-        tasks.append(Task(scene, literal, parameters.literal_steps))
+        tasks += [Task(scene, law, parameters.literal_steps) for law in laws]
     outcomes = map_tasks(compute, tasks, workers=workers, progress=progress)
     attributes = {"force": parameters.force, "layers": int(parameters.scene.packing.build().row_count.size)}
     datasets = {}
-    per = len(known) + 1
+    per = len(known) + len(laws)
     for k, friction in enumerate(parameters.friction):
-        dataset = _dataset([*known, literal], outcomes[k * per : (k + 1) * per])
+        dataset = _dataset([*known, *laws], outcomes[k * per : (k + 1) * per])
         datasets[f"mu_{friction:g}"] = dataset.assign_attrs(attributes)
     return datasets
 
