@@ -63,6 +63,7 @@ html_static_path: list[str] = []
 html_theme_options = {
     "navigation_with_keys": False,
     "show_prev_next": False,
+    "header_links_before_dropdown": 4,  # all in one row with the search field
     "use_edit_page_button": False,
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],
