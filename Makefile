@@ -58,6 +58,7 @@ figure: setup ## Draw one figure group: make figure GROUP=pile_dip
 survey: setup ## Run the large ensembles of disordered slabs, two hours on one core (survey/dvc.yaml); goes on where it was
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro survey/dvc.yaml
+	"$(BIN)/python" survey/document.py
 
 test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two processes)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true

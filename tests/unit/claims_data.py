@@ -322,24 +322,6 @@ def disordered_cases():
 
 
 def averages_study():
-    cases = disordered_cases()
-    mu, delta = np.array(cases["friction"][1]), np.array(cases["polydispersity"][1])
-    n, few = len(mu), 6
-    rng = np.random.default_rng(0)
-    place = np.linspace(-60.0, 60.0, 81)
-    noise = 0.002 * rng.standard_normal((n, few, 1, 1))
-    dips = np.where(mu[:, None] == 0.0, [0.5, 0.6, 0.7], [-0.1, 0.0, 0.2])
-    shapes = np.array([[profile(d, place) for d in row] for row in dips])
-    ensembles = dataset(
-        {**cases, "force": (("case", "step"), np.tile([1.0, 15.0, 30.0], (n, 1)))},
-        x=(("case", "realization", "slot"), np.broadcast_to(place, (n, few, place.size)).copy()),
-        outcome=(("case", "realization", "step"), np.zeros((n, few, 3), int)),
-        floor_response=(("case", "realization", "step", "slot"), shapes[:, None] * (1.0 + noise)),
-    )
-    chosen = [k for k in range(n) if delta[k] == 0.01 and mu[k] < 0.5]
-    x = np.linspace(-40.0, 40.0, 81)
-    spread = np.where(mu[chosen] == 0.0, 0.05, 0.005)[:, None, None] * rng.standard_normal((len(chosen), few, 1))
-    single = np.stack([[profile(0.6 if mu[k] == 0.0 else -0.1, x)] * few for k in chosen]) * (1.0 + spread)
     force = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
     ends = np.array([0.15, 0.15, 0.15, 0.9, 1.8, 1.8])
     linear = dataset(
@@ -347,43 +329,52 @@ def averages_study():
         force=("force", force),
         response_at_centre=(("path", "force"), 0.07 * (1.0 - 0.1 * np.maximum(0.0, force / ends[:, None] - 1.0))),
     )
-    contacts = np.where(delta[:, None] == 0.0, 6.0, 4.25 + 0.01 * rng.standard_normal((n, few)))
-    packings = dataset(
-        cases,
-        coordination_number=(("case", "realization"), contacts),
-        coordination_number_with_walls=(("case", "realization"), contacts),
-        coordination_number_bulk=(("case", "realization"), contacts),
-        horizontal_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 0.9, 0.3 * contacts / 4.25)),
-        oblique_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 1.85, 1.7 * contacts / 4.25)),
-    )
-    individual = dataset(
-        {
-            "polydispersity": ("case", delta[chosen]),
-            "friction": ("case", mu[chosen]),
-            "lattice_constant": ("case", [cases["lattice_constant"][1][k] for k in chosen]),
-            "x": x,
-        },
-        response=(("case", "realization", "x"), single),
-    )
-    return {"ensembles": ensembles, "individual": individual, "linear_range": linear, "packings": packings}
+    return {"linear_range": linear}
+
+
+#: Draws of the planted bootstrap, the same part of the crossover in every case.
+DRAWS = np.linspace(0.95, 1.05, 41)
 
 
 def phases_study():
     cases = disordered_cases()
+    rng = np.random.default_rng(0)
     grid = [[3.0, 20.0, 90.0], [2.0, 8.0, 30.0], [1.0, 5.0, 9.0], [0.5, 2.0, 4.0], [12.0, 40.0]]
     force = np.array([f for row in grid for f in row])
     interval = np.stack([0.95 * force, force, 1.05 * force], axis=-1)
-    mu = np.array(cases["friction"][1])
+    draws = force[:, None] * DRAWS
+    mu, delta = np.array(cases["friction"][1]), np.array(cases["polydispersity"][1])
+    n, few = len(mu), 8
     dip = np.where(mu == 0.0, 0.8, -0.05)
     levels = {"width": [3.0, 6.0], "level": [0.025, 0.5, 0.975]}
     spread = dip[:, None, None] + np.array([-0.02, 0.0, 0.02]) + np.zeros((1, 3, 1))
-    steps = np.array([5.0, 15.0, 60.0])
+    steps = np.array([0.1, 15.0, 300.0])
+    scatter = np.where(mu == 0.0, 0.005, 0.001)[:, None] + np.zeros((1, 3))
+    each = 0.05 * rng.standard_normal((n, few, 3)) + dip[:, None, None]
+    contacts = np.where(delta[:, None] == 0.0, 6.0, 4.25 + 0.01 * rng.standard_normal((n, few)))
+    crossovers = {
+        "force": (("width", "case"), np.stack([force] * 2)),
+        "kind": (("width", "case"), np.zeros((2, force.size), int)),
+        "interval": (("width", "case", "level"), np.stack([interval] * 2)),
+        "draws": (("width", "case", "draw"), np.stack([draws] * 2)),
+        "limits": (("width", "case", "end"), np.tile([0.01, 400.0], (2, n, 1))),
+    }
+    tolerances = [0.005, 0.02]
+    definitions = {
+        name: ((*dims[:2], "tolerance", *dims[2:]), np.repeat(values[:, :, None], 2, axis=2))
+        for name, (dims, values) in crossovers.items()
+        if name != "limits"
+    }
+    ends = np.array([2.0, 1.0, 0.5, 0.25])
+    linear = np.array([[d, m] for d in (0.0, 0.01, 0.1, 0.25) for m in (0.0, 0.2)])
+    small = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
+    away = np.maximum(0.0, small / np.repeat(ends, 2)[:, None] - 1.0)
     return {
         "crossovers": dataset(
-            {**cases, **levels},
-            force=(("width", "case"), np.stack([force] * 2)),
-            kind=(("width", "case"), np.zeros((2, force.size), int)),
-            interval=(("width", "case", "level"), np.stack([interval] * 2)),
+            {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers
+        ).assign_attrs(tolerance=0.01),
+        "definitions": dataset(
+            {**cases, **levels, "tolerance": tolerances}, **definitions, limits=crossovers["limits"]
         ),
         "shapes": dataset(
             {**cases, **levels},
@@ -391,8 +382,39 @@ def phases_study():
             shape=(("width", "case", "step"), np.stack([dip[:, None] + np.zeros((1, 3))] * 2)),
             shape_interval=(("width", "case", "step", "level"), np.stack([spread] * 2)),
             few_agree=(("width", "case", "step"), np.full((2, force.size, 3), 0.99)),
+            spread=(("width", "case", "step"), np.stack([scatter] * 2)),
+            spread_interval=(
+                ("width", "case", "step", "level"), np.stack([scatter[..., None] * np.array([0.9, 1.0, 1.1])] * 2)
+            ),
+            largest_step=(("width", "case"), np.full((2, n), 0.1)),
+            largest_step_interval=(("width", "case", "level"), np.tile([0.08, 0.1, 0.12], (2, n, 1))),
         ),
-    }
+        "realizations": dataset(
+            {**cases, **levels},
+            shape=(("width", "case", "realization", "step"), np.stack([each] * 2)),
+            asymmetry=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.1)),
+            difference=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.2)),
+        ),
+        "packings": dataset(
+            cases,
+            coordination_number=(("case", "realization"), contacts),
+            coordination_number_with_walls=(("case", "realization"), contacts),
+            coordination_number_bulk=(("case", "realization"), contacts),
+            horizontal_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 0.9, 0.3 * contacts / 4.25)),
+            oblique_contacts=(("case", "realization"), np.where(delta[:, None] == 0.0, 1.85, 1.7 * contacts / 4.25)),
+        ),
+        "linear_range": dataset(
+            {
+                "polydispersity": ("case", linear[:, 0]),
+                "friction": ("case", linear[:, 1]),
+                "lattice_constant": ("case", [STARTS[0]] * len(linear)),
+            },
+            response_at_centre=(
+                ("case", "realization", "step"), np.repeat(0.07 * (1.0 - 0.1 * away)[:, None], few, axis=1)
+            ),
+            applied_force=(("case", "step"), np.tile(small, (len(linear), 1))),
+        ),
+    }  # fmt: skip
 
 
 def superposition_study():

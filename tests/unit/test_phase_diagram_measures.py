@@ -1,35 +1,50 @@
 """The shape of a response, the crossover of a path, and their statistics on hand-made ensembles."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
-from granular_response.paper.ensembles import AT_REST, COLLAPSED
+from granular_response.paper.claims import table, words
+from granular_response.paper.ensembles import AT_REST, COLLAPSED, NOT_REACHED
 from granular_response.paper.groups.phase_diagram import draw as figures
 from granular_response.paper.groups.phase_diagram.parameters import Parameters
-from granular_response.paper.groups.phase_diagram.simulate import (
+from granular_response.paper.groups.phase_diagram.simulate import read_ensemble, simulate
+from granular_response.paper.groups.polydisperse_averages.ensemble.averages import linear_end
+from granular_response.paper.survey import datasets as survey
+from granular_response.paper.survey.crossover import (
     ABOVE,
     BELOW,
     FOUND,
     Ensemble,
     agreement,
-    bootstrap,
+    censored_median,
     cross,
     crossover,
-    read_ensemble,
+    folded,
+    lean,
+    ranked,
     shape,
-    simulate,
+    singles,
+    weights,
 )
-from granular_response.paper.groups.polydisperse_averages.ensemble.averages import linear_end
 from granular_response.plot import style
 from granular_response.store import files as store
 
+ROOT = Path(__file__).parents[2]
 X = np.arange(0.0, 30.5, 0.5)
 
 
 def bumps(distance: float) -> np.ndarray:
     """Two bumps, one on each side, as a symmetric response."""
     return np.exp(-(((X - distance) / 6.0) ** 2)) + np.exp(-(((X + distance) / 6.0) ** 2))
+
+
+def bootstrap(ensemble: Ensemble, x: np.ndarray, width: float, *, draws: int, seed: int) -> np.ndarray:
+    """(draws, k) shapes of the means of ensembles drawn with replacement."""
+    return shape(x, ensemble.means(weights(len(ensemble.response), draws, seed)), width)
 
 
 def test_shape_tells_one_peak_from_two() -> None:
@@ -150,9 +165,15 @@ def test_read_ensemble_smooths_both_sides() -> None:
     ensemble = read_ensemble(source, 0, X, 2.0, 0.5)
     np.testing.assert_array_equal(ensemble.force, [1.0, 2.0])
     assert ensemble.least == 1
-    np.testing.assert_allclose(ensemble.response[0, 0], ensemble.response[1, 0])  # mirror images
-    assert X[np.argmax(ensemble.response[0, 0])] == 4.0
-    assert np.isnan(ensemble.response[1, 1]).all()
+    np.testing.assert_allclose(ensemble.response[0, 0], ensemble.response[1, 0, ::-1])  # mirror images
+    assert ensemble.response.shape[-1] == 2 * len(X) - 1
+    symmetric = folded(ensemble.response)
+    np.testing.assert_allclose(symmetric[0, 0], symmetric[1, 0])
+    assert X[np.argmax(symmetric[0, 0])] == 4.0
+    np.testing.assert_allclose(symmetric[0, 0].max(), 0.5 * ensemble.response[0, 0].max(), rtol=1e-5)
+    assert np.isnan(symmetric[1, 1]).all()
+    np.testing.assert_allclose(lean(ensemble.response[0, 0]), 1.0, rtol=1e-6)
+    np.testing.assert_allclose(lean(ensemble.response[:, 0].mean(axis=0)), 0.0, atol=1e-15)
 
 
 def test_linear_end() -> None:
@@ -163,60 +184,179 @@ def test_linear_end() -> None:
     assert np.isnan(after)
 
 
+def test_a_tolerance_moves_the_crossover() -> None:
+    force, shapes = np.array([1.0, 2.0, 4.0]), np.array([-0.1, 0.1, 0.3])
+    assert crossover(force, shapes)[0] == pytest.approx(2.0**0.5)
+    assert crossover(force, shapes, 0.1)[0] == pytest.approx(2.0)
+    assert crossover(force, shapes, 0.2)[0] == pytest.approx(2.0 * 2.0**0.5)
+    assert crossover(force, shapes, 0.3) == (4.0, ABOVE)
+    assert crossover(force, shapes + 0.15, 0.04) == (1.0, BELOW)
+
+
+def test_bounds_are_ranked_beyond_all_forces() -> None:
+    assert ranked([(2.0, FOUND), (8.0, ABOVE), (1.0, BELOW)]).tolist() == [2.0, np.inf, -np.inf]
+
+
+def test_cases_of_as_many_realizations_are_drawn_alike() -> None:
+    """So the ratio of two crossovers that share their scatter has little of its own."""
+    one = make_ensemble(1.5)
+    twice = Ensemble(2.0 * one.force, one.response)
+    first, second = (cross(e, X, 6.0, few=5, draws=100, seed=0).draws for e in (one, twice))
+    known = np.isfinite(first) & np.isfinite(second)
+    assert known.mean() > 0.9
+    np.testing.assert_allclose(second[known] / first[known], 2.0)
+    assert np.std(first[known]) > 0.01 * np.mean(first[known])
+    assert not np.array_equal(weights(40, 5, 0), weights(40, 5, 1))
+    assert (weights(40, 5, 0).sum(axis=1) == 40.0).all()
+
+
+@pytest.mark.parametrize(
+    ("values", "censored", "expected"),
+    [
+        ([1.0, 2.0, 3.0], [0, 0, 0], 2.0),
+        ([3.0, 1.0, 2.0, 4.0], [0, 0, 0, 0], 2.0),
+        ([1.0, 2.0, 3.0, 4.0, 5.0], [0, 1, 0, 0, 0], 4.0),  # what lies beyond 2 counts for what comes later
+        ([1.0, 2.0, 2.0, 2.0], [0, 1, 1, 1], np.inf),
+        ([-np.inf, -np.inf, 3.0], [0, 0, 0], -np.inf),
+        ([2.0, 2.0], [1, 0], 2.0),  # at the same force the censored one outlasts the other
+    ],
+)
+def test_the_median_counts_censored_values_as_long_as_they_last(values, censored, expected) -> None:
+    assert censored_median(np.array(values), np.array(censored, bool)) == expected
+
+
+def test_single_realizations_and_their_mean() -> None:
+    """Two mirror images: each leans, their mean does not; one collapses before its crossover and is censored."""
+    side = np.exp(-(((np.concatenate([-X[:0:-1], X]) - 12.0) / 6.0) ** 2))
+    middle = bumps(0.0)
+    single = np.concatenate([middle[:0:-1], middle])
+    response = np.array([[single, side], [single, side[::-1]], [single, np.full(side.size, np.nan)]])
+    found = singles(Ensemble(np.array([1.0, 4.0]), response, 2), X, 6.0, draws=50, seed=0)
+    assert found.kind.tolist() == [FOUND, FOUND, ABOVE]
+    assert found.force[2] == 1.0
+    assert found.median == pytest.approx(found.force[0])
+    np.testing.assert_allclose(found.leans[:, 0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(found.leans[:2, 1], 1.0, atol=1e-3)
+    # the mean's two bumps lie apart, each half as high as in one realization
+    np.testing.assert_allclose(found.differences[:2, 1], 1.0, atol=0.05)
+    assert np.isnan(found.differences[2, 1])
+    np.testing.assert_allclose(found.step, found.shapes[0, 1] - found.shapes[0, 0], rtol=0.05)
+    np.testing.assert_allclose(found.spread[0], 0.0, atol=1e-8)
+    assert found.spread[1] > 0.05
+
+
+SIZES = {"lattice": (0.0, 0.2, 1), "few": (0.1, 0.2, 8), "many": (0.1, 0.5, 10)}
+
+
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    """Ensembles of ten slabs whose two peaks part from one as the force grows, at two frictions, and a lattice."""
+    """Blocks of slabs whose two peaks part from one as the force grows, at two frictions, and a lattice."""
     disks = np.arange(-60.0, 61.0, 2.0)
-    force = np.array([1.0, 2.0, 4.0, 8.0])
-    size = 10
+    folder = tmp_path_factory.mktemp("survey")
     rng = np.random.default_rng(2)
-    response = np.full((3, size, 4, len(disks)), np.nan)
-    for case, later, count in ((0, 0.0, 1), (1, 0.0, size), (2, 3.0, size)):
+    for block, (delta, mu, count) in SIZES.items():
+        force = np.array([1.0, 2.0, 4.0, 8.0, 16.0])[: 4 if block != "many" else 5]
+        response = np.full((1, count, force.size, len(disks)), np.nan)
         for r in range(count):
             for k, f in enumerate(force):
-                away = max(0.0, 4.0 + 3.0 * np.log2(f) - later + (rng.normal(0.0, 1.0) if count > 1 else 0.0))
+                shift = rng.normal(0.0, 1.0) if count > 1 else 0.0
+                away = max(0.0, 4.0 + 3.0 * np.log2(f) - (3.0 if mu > 0.2 else 0.0) + shift)
                 both = np.exp(-(((disks - away) / 6.0) ** 2)) + np.exp(-(((disks + away) / 6.0) ** 2))
-                response[case, r, k] = both / both.sum()
-    source = xr.Dataset(
-        {
-            "force": (("case", "step"), np.tile(force, (3, 1))),
-            "x": (("case", "realization", "slot"), np.tile(disks, (3, size, 1))),
-            "floor_response": (("case", "realization", "step", "slot"), response),
-            "outcome": (("case", "realization", "step"), np.zeros((3, size, 4), np.int8)),
-        },
-        coords={
-            "polydispersity": (("case",), [0.0, 0.1, 0.1]),
-            "friction": (("case",), [0.2, 0.2, 0.5]),
-            "lattice_constant": (("case",), ["touching-largest"] * 3),
-            "realizations": (("case",), [1, size, size]),
-        },
-    )
-    for variable in source.variables.values():
-        variable.attrs.update(long_name="made by hand", units="1")
-    path = tmp_path_factory.mktemp("data") / "polydisperse_averages.nc"
-    store.write(path, {"ensembles": source})
-    return path
+                response[0, r, k] = both / both.sum()
+        outcome = np.zeros((1, count, force.size), np.int8)
+        if block == "few":  # one collapses under the largest force
+            outcome[0, 0, -1], response[0, 0, -1] = COLLAPSED, np.nan
+        cases = {
+            "polydispersity": (("case",), [delta]),
+            "friction": (("case",), [mu]),
+            "wall_friction": (("case",), [mu]),
+            "lattice_constant": (("case",), ["touching-largest"]),
+            "realizations": (("case",), [count]),
+        }
+        ensembles = xr.Dataset(
+            {
+                "force": (("case", "step"), force[None]),
+                "x": (("case", "realization", "slot"), np.tile(disks, (1, count, 1))),
+                "floor_response": (("case", "realization", "step", "slot"), response),
+                "outcome": (("case", "realization", "step"), outcome),
+            },
+            coords=cases,
+        )
+        several = rng.normal(0.0, 0.01, (1, count))
+        contacts = {"coordination_number_with_walls": 4.0, "horizontal_contacts": 0.9, "oblique_contacts": 1.8}
+        if delta:  # three of the four missing contacts are horizontal
+            contacts = {"coordination_number_with_walls": 4.2, "horizontal_contacts": 0.6, "oblique_contacts": 1.7}
+        packings = xr.Dataset(
+            {name: (("case", "realization"), value + several) for name, value in contacts.items()}, coords=cases
+        )
+        for dataset in (ensembles, packings):
+            for variable in dataset.variables.values():
+                variable.attrs.update(long_name="made by hand", units="1")
+        store.write(folder / f"{block}.nc", {"ensembles": ensembles, "packings": packings})
+    return folder
+
+
+def test_blocks_of_different_size_become_one(stored) -> None:
+    found = survey.read(stored, list(SIZES))
+    ensembles = found["ensembles"]
+    assert dict(ensembles.sizes) == {"case": 3, "realization": 10, "step": 5, "slot": 61}
+    assert ensembles["realizations"].values.tolist() == [1, 8, 10]
+    for case, (block, (_, _, count)) in enumerate(SIZES.items()):
+        alone = store.read(stored / f"{block}.nc")["ensembles"].isel(case=0)
+        steps = alone.sizes["step"]
+        np.testing.assert_array_equal(
+            ensembles["floor_response"].values[case, :count, :steps], alone["floor_response"].values
+        )
+        assert np.isnan(ensembles["floor_response"].values[case, count:]).all()
+        assert (ensembles["outcome"].values[case, count:] == NOT_REACHED).all()
+        assert np.isnan(ensembles["force"].values[case, steps:]).all()
+    assert found["packings"]["coordination_number_with_walls"].shape == (3, 10)
+
+
+def parameters(stored, **changes) -> Parameters:
+    given = {
+        "draws": 50, "few": 5, "seed": 0, "least_part": 0.5, "spacing": 0.5, "reach": 30.0, "widths": [3.0, 6.0],
+        "tolerance": 0.01, "other_tolerances": [0.0, 0.05], "survey": str(stored), "blocks": list(SIZES),
+        "linear_range": "few", "linear_width": 3.0, "compared": [{"polydispersity": 0.1, "force": 4.0}],
+    }  # fmt: skip
+    return Parameters(**given | changes)
 
 
 def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
-    parameters = {"draws": 50, "few": 5, "seed": 0, "least_part": 0.5, "spacing": 0.5, "reach": 30.0}
-    described = Parameters(**parameters, widths=[3.0, 6.0], responses=str(stored))
-    found = simulate(described)
-    again = simulate(described, workers=2)
+    found = simulate(parameters(stored))
+    again = simulate(parameters(stored), workers=2)
     for name, dataset in found.items():
         xr.testing.assert_identical(dataset, again[name])
     data = found["crossovers"]
     assert data["kind"].values[1].tolist() == [FOUND] * 3
     force, interval = data["force"].values[1], data["interval"].values[1]
-    assert 1.7 < force[2] / force[1] < 2.3  # three radii later: twice the force
+    assert 1.7 < force[2] / force[1] < 2.4  # three radii later: twice the force
     np.testing.assert_allclose(interval[0], force[0])  # one packing has no scatter
     assert np.all(interval[1:, 0] < force[1:])
     assert np.all(force[1:] < interval[1:, -1])
-    # more smoothing merges the peaks at larger forces
+    np.testing.assert_allclose(data["limits"].values[1], [[1.0, 8.0], [1.0, 8.0], [1.0, 16.0]])
+    # more smoothing merges the peaks at larger forces, and so does a larger tolerance
     assert np.all(data["force"].values[0] < force)
+    others = found["definitions"]["force"].values[1]
+    assert np.all(others[:, 0] < force) and np.all(force < others[:, 1])
+    single = found["realizations"]
+    assert (single["kind"].values[1, 0, 1:] == -1).all()
+    assert single["collapse_force"].values[1, 0] == 8.0
+    assert np.isnan(single["collapse_force"].values[1, 1:]).all()
+    low, high = single["median_interval"].values[1, 2, [0, -1]]
+    assert low <= single["median"].values[1, 2] <= high
+    assert found["linear_range"]["response_at_centre"].shape == (1, 8, 4)
+    assert found["packings"]["horizontal_contacts"].shape == (3, 10)
+    side = found["starts"]
+    assert side["friction"].values.tolist() == [0.2, 0.5]
+    np.testing.assert_allclose(side["distance"], 2.0 / 0.95)
+    np.testing.assert_allclose(side["contacts"], 4.2, atol=0.02)
+    np.testing.assert_allclose(side["missing_horizontal"], 0.75, atol=0.02)
+    np.testing.assert_array_equal(side["dip"].values[:, 0], found["shapes"]["shape"].values[:, 1, 2])
+    assert np.all(np.diff(side["contacts_interval"], axis=1) >= 0.0)
     store.write(tmp_path / "phase_diagram.nc", found)
     drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))
-    assert list(drawn) == ["fig22_phase_diagram", "five_realizations"]
+    assert {"fig22_phase_diagram", "five_realizations"} <= drawn.keys()
     lattice, disordered = drawn["fig22_phase_diagram"].axes[2:]  # the row of the larger width
     for axes, expected in ((lattice, force[:1]), (disordered, force[1:])):
         marks = [line for line in axes.get_lines() if line.get_marker() == "o"]
@@ -225,8 +365,18 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
         assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize(("key", "value", "named"), [("draws", 0, "draws = 0"), ("least_part", 0.0, "least_part = 0")])
+def test_the_tolerance_is_the_bound_of_the_word() -> None:
+    """So that the figure and the claims tell one peak from two alike; others are half and twice as large."""
+    section = yaml.safe_load((ROOT / "params.yaml").read_text())["phase_diagram"]
+    visible = words.bounds()["visible"]
+    assert section["tolerance"] == visible
+    assert {factor * visible for factor in table.FACTORS} <= set(section["other_tolerances"])
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "named"),
+    [("draws", 0, "draws = 0"), ("least_part", 0.0, "least_part = 0"), ("tolerance", -1.0, "tolerance = -1")],
+)
 def test_bad_parameter_is_named(key, value, named) -> None:
-    parameters = {"draws": 10, "few": 5, "seed": 0, "least_part": 0.5, "spacing": 0.5, "reach": 30.0, "widths": [6.0]}
     with pytest.raises(ValueError, match=f"{named}.*: must be"):
-        Parameters(**{**parameters, "responses": "nowhere.nc", key: value})
+        parameters("nowhere", **{key: value})

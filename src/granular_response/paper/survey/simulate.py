@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import platform
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import metadata
 from pathlib import Path
 
@@ -26,8 +26,7 @@ from granular_response.paper.groups.polydisperse_averages.ensemble.realizations 
     ensemble_task,
     realize,
 )
-from granular_response.paper.groups.polydisperse_averages.parameters import Case
-from granular_response.paper.survey.parameters import Parameters
+from granular_response.paper.survey.parameters import Case, Parameters
 from granular_response.scene import SceneError, text
 from granular_response.store import files as store
 from granular_response.store.result import variable
@@ -83,6 +82,12 @@ def timed(task: Task) -> Timed:
     return Timed(found, time.process_time() - start)
 
 
+def task_of(parameters: Parameters, case: Case, realization: int) -> Task:
+    """The task of one realization of a case."""
+    task = ensemble_task(parameters, case, realization)
+    return replace(task, scene=task.scene.updated({"protocol.method": case.method})) if case.method else task
+
+
 def read_parameters(path: Path) -> Parameters:
     """The survey's parameter file.
 
@@ -120,14 +125,14 @@ def run(
     if block not in parameters.blocks:
         raise SurveyError(f"block {block}: there is none of this name, must be one of {', '.join(parameters.blocks)}")
     cases = [
-        Case(**{**vars(case), "realizations": min(case.realizations, realizations or case.realizations)})
+        replace(case, realizations=min(case.realizations, realizations or case.realizations))
         for case in parameters.cases(block)
     ]
     output = parameter_file.parent / "data" / f"{block}.nc"
     store.check_writable(output, [parameter_file])
     found = map_tasks(
         timed,
-        [ensemble_task(parameters, case, realization) for case in cases for realization in range(case.realizations)],
+        [task_of(parameters, case, realization) for case in cases for realization in range(case.realizations)],
         workers=workers,
         scheduler=scheduler,
         progress=progress,

@@ -18,20 +18,29 @@ FloatArray = NDArray[np.float64]
 FOUND, BELOW, ABOVE = 0, 1, 2
 #: Levels of the thick and of the thin bar.
 THICK, THIN = (0.16, 0.84), (0.025, 0.975)
+#: A response leans visibly from this difference of mirror images on, per largest response.
+ASYMMETRIC = 0.01
 #: Fills of the regions; white is what was not simulated, or where too few packings bear the force.
 TWO_PEAKS, ONE_PEAK = "#C9D3DC", "#EFF2F4"
 
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """``fig22_phase_diagram`` and ``five_realizations`` from the datasets of the study of the same name."""
+    """Fig. 22 and what stands behind it, from the datasets of the study of the same name."""
     crossovers = datasets["crossovers"]
     usual = np.flatnonzero(crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0])
-    shown, shapes = crossovers.isel(case=usual), datasets["shapes"].isel(case=usual)
-    return {"fig22_phase_diagram": _diagrams(shown, shapes), "five_realizations": _few(shown, shapes)}
+    shown, shapes, others, realizations = (
+        datasets[name].isel(case=usual) for name in ("crossovers", "shapes", "definitions", "realizations")
+    )
+    return {
+        "fig22_phase_diagram": _diagrams(shown, shapes, realizations),
+        "five_realizations": _few(shown, shapes),
+        "peak_definitions": _definitions(shown, others, realizations),
+        "starts": _starts(datasets["starts"]),
+    }
 
 
-def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
+def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
     """A row for each smoothing width, a column for each polydispersity."""
     deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
     widths = crossovers["width"].values
@@ -57,6 +66,8 @@ def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
             ordered = ordered.sortby("friction")
             axes.plot(ordered["friction"], ordered["force"], color=style.MUTED, linestyle="--", linewidth=0.7)
         _diagram(axes, crossovers.sel(width=width).isel(case=here), applied[here], limits)
+        if not delta:
+            _transitions(axes, realizations.sel(width=width).isel(case=here), applied[here])
         name = f"$\\delta = {delta:g}$" if delta else "lattice"
         style.letter(axes, chr(ord("a") + index), place="above", text=f"{name}, $w = {width:g}\\,\\bar R$")
     for axes in panels[-1]:
@@ -93,6 +104,17 @@ def _diagram(axes: Axes, data: xr.Dataset, applied: FloatArray, limits: tuple[fl
             factor = 2.2 if what == ABOVE else 1.0 / 2.2
             arrow = {"arrowstyle": "-|>", "color": style.BLACK, "linewidth": 0.8, "shrinkA": 2.0, "shrinkB": 0.0}
             axes.annotate("", (x, bound * factor), (x, bound), arrowprops=arrow, annotation_clip=False)
+
+
+def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> None:
+    """A cross between the last force under which a lattice is symmetric and the first under which it is not."""
+    for case in range(lattice.sizes["case"]):
+        lost = np.flatnonzero(lattice["asymmetry"].values[case, 0] > ASYMMETRIC)
+        if lost.size and lost[0] > 0:
+            ends = applied[case, lost[0] - 1 : lost[0] + 1]
+            friction = float(lattice["friction"][case])
+            axes.plot([friction] * 2, ends, color=style.BLUE, linewidth=1.6, linestyle="-", zorder=6)
+            axes.plot(friction, np.sqrt(ends.prod()), marker="x", color=style.BLUE, markersize=6.0, zorder=6)
 
 
 def _bar(axes: Axes, x: float, low: float, high: float, limits: tuple[float, float], linewidth: float) -> None:
@@ -147,4 +169,82 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
         loc="outside upper center",
         ncols=len(order),
     )
+    return figure
+
+
+def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
+    """Crossovers by what counts as two peaks; found ones alone, those of single realizations beside them."""
+    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
+    widths = crossovers["width"].values
+    figure, panels = style.figure(
+        len(widths), len(deltas), width="double", height=0.6 + 1.7 * len(widths), sharex=True, sharey=True
+    )
+    tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
+    tolerances += [(float(t), others.sel({"tolerance": t})) for t in others["tolerance"].values]
+    colours = style.ordered_colours(len(tolerances))
+    handles = {}
+    for row, width in enumerate(widths):
+        for column, delta in enumerate(deltas):
+            axes = panels[row, column]
+            here = np.flatnonzero(crossovers["polydispersity"].values == delta)
+            here = here[np.argsort(crossovers["friction"].values[here])]
+            for k, (tolerance, data) in enumerate(sorted(tolerances, key=lambda pair: pair[0])):
+                one = data.sel(width=width).isel(case=here)
+                found = one["kind"].values == FOUND
+                look = style.marked_line(k) | {"color": colours[k], "linewidth": 0.9, "markersize": 3.0}
+                friction, force = one["friction"].values[found], one["force"].values[found]
+                (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look)
+            single = realizations.sel(width=width).isel(case=here)
+            known = np.isfinite(single["median"].values)
+            (handles["median of realizations"],) = axes.plot(
+                single["friction"].values[known],
+                single["median"].values[known],
+                linestyle="none",
+                marker="x",
+                color=style.VERMILION,
+                markersize=4.0,
+            )
+            axes.set(yscale="log", xlim=(-0.07, 1.07))
+            axes.set_xticks([0.0, 0.2, 0.5, 1.0], ["0", "0.2", "0.5", "1"])
+            name = f"$\\delta = {delta:g}$, $w = {width:g}\\,\\bar R$"
+            style.letter(axes, chr(ord("a") + row * len(deltas) + column), place="above", text=name)
+    for axes in panels[-1]:
+        axes.set_xlabel(f"${style.BOTH_FRICTIONS}$")
+    for axes in panels[:, 0]:
+        axes.set_ylabel(style.FORCE)
+    figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=len(handles), title="dip")
+    return figure
+
+
+def _starts(starts: xr.Dataset) -> Figure:
+    """The dip under one force and the contacts at rest against the start; a column for each polydispersity."""
+    deltas = sorted(set(starts["polydispersity"].values.tolist()))
+    frictions = sorted({mu for mu in starts["friction"].values.tolist() if mu <= 0.2 and mu != 0.05})
+    figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
+    for column, delta in enumerate(deltas):
+        touching = 2.0 / (1.0 - 0.5 * delta)
+        dips, contacts = panels[:, column]
+        for k, friction in enumerate(frictions):
+            here = np.flatnonzero(
+                (starts["polydispersity"].values == delta) & (starts["friction"].values == friction)
+            )
+            here = here[np.argsort(starts["distance"].values[here])]
+            one = starts.isel(case=here)
+            for axes, name, data in ((dips, "dip", one.isel(width=0)), (contacts, "contacts", one)):
+                value, ends = data[name].values, data[f"{name}_interval"].sel(level=list(THIN)).values
+                around = np.abs(ends.reshape(-1, 2).T - value)
+                look = style.marked_line(k) | {"markersize": 3.0, "elinewidth": 0.8, "capsize": 2.0}
+                axes.errorbar(one["distance"].values, value, around, **look, label=f"$\\mu = {friction:g}$")
+            force = float(one["applied_force"].values[0])
+        for axes in (dips, contacts):
+            axes.axvline(touching, color=style.MUTED, linewidth=0.6, linestyle="--", zorder=0)
+        dips.axhline(0.0, color=style.FAINT, linewidth=0.6, linestyle="-", zorder=0)
+        style.letter(
+            dips, "abc"[column], place="above", text=f"$\\delta = {delta:g}$, $F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$"
+        )
+        style.letter(contacts, "def"[column], place="above")
+        contacts.set_xlabel("lattice constant of the start / $\\bar R$")
+    panels[0, 0].set_ylabel("dip per largest response")
+    panels[1, 0].set_ylabel("contacts per disk, walls counted")
+    panels[0, 0].legend(loc="best")
     return figure

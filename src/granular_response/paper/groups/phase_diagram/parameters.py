@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
-from pydantic import Field
+from typing import Annotated
 
-from granular_response.paper.parameters import Part, Path, Positives
-from granular_response.scene.base import Count, Description, Index, Positive
+from pydantic import AfterValidator, Field
+
+from granular_response.paper.parameters import Part, Path, Positives, some
+from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
+
+Names = Annotated[tuple[str, ...], AfterValidator(some)]
+
+
+class Compared(Description):
+    """Under which force the starts of one polydispersity are compared."""
+
+    polydispersity: Fraction
+    force: Positive
 
 
 class Parameters(Description):
     """Section ``phase_diagram``."""
 
-    responses: Path = Field(description="File with the datasets of polydisperse_averages.")
+    survey: Path = Field(description="Folder with the datasets of the survey.")
+    blocks: Names = Field(description="Blocks of the survey with one case for each point of the diagram.")
+    linear_range: str = Field(description="Block of the survey with small forces and smooth walls.")
+    linear_width: Positive = Field(description="w of the smoothing Gaussian there, in radii.")
     widths: Positives = Field(description="w of the smoothing Gaussian, in radii.")
     reach: Positive = Field(description="Largest distance at which a peak is looked for, in radii.")
     spacing: Positive = Field(description="Of the x axis, in radii.")
+    tolerance: Ratio = Field(description="Shape from which on a response has two peaks.")
+    other_tolerances: tuple[Ratio, ...] = Field(description="Tried beside it.")
+    compared: Annotated[tuple[Compared, ...], AfterValidator(some)]
     draws: Count = Field(description="Of the bootstrap over realizations.")
     seed: Index = Field(description="Of the bootstrap.")
     few: Count = Field(description="Size of the small averages.")

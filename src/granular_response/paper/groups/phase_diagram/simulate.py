@@ -1,261 +1,336 @@
-"""The force at which one peak becomes two, against friction and disorder: Fig. 22, claims D3 and D6.
+"""The force at which one peak becomes two, against friction and disorder: Fig. 22, claims on disordered slabs.
 
-The paper's figure is a sketch; here it is measured on the load paths of ``polydisperse_averages``, the lattice among
-them, so nothing is simulated again.
-
-Two peaks. The mean over an ensemble of mirror-symmetric slabs is symmetric but for noise, so the mean smoothed
-response is made symmetric about x = 0 first. Its *shape* is
-
-    (largest value at distances from ``width`` to ``reach`` - value at x = 0) / largest value up to ``reach`` ,
-
-and the response has two peaks where the shape is positive. Peaks nearer than the smoothing width are not
-told apart from one.
-
-Crossover. Between two phases there is one boundary, so the shape is taken to grow with the force: its
-least-squares non-decreasing fit along the load path keeps a chance dip of a finite ensemble from counting as a
-boundary of its own. The crossover is where this fit, linear in the logarithm of the force, vanishes. Where it is
-positive at the smallest force already, that force is an upper bound; where it is nowhere positive up to the largest
-force at which enough realizations are at rest, that force is a lower bound.
-
-Interval. Realizations are drawn with replacement, each with its whole load path, and the crossover of each draw is
-found; draws without one count as beyond the bound.
+The paper's figure is a sketch; here it is measured on the load paths of the survey (``paper/survey``), the lattice
+among them, so nothing is simulated. What counts as two peaks, and what a crossover is, stands in
+:mod:`granular_response.paper.survey.crossover`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.optimize import isotonic_regression
 
-from granular_response.paper.ensembles import smoothed
+from granular_response.paper.datasets import labelled
+from granular_response.paper.ensembles import COLLAPSED, smoothed
 from granular_response.paper.groups.phase_diagram.parameters import Parameters
-from granular_response.store import files as store
+from granular_response.paper.survey import datasets as survey
+from granular_response.paper.survey.crossover import (
+    KINDS,
+    LEVELS,
+    Crossing,
+    Ensemble,
+    Singles,
+    cross,
+    folded,
+    quantiles,
+    singles,
+    weights,
+)
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import Progress
 
 FloatArray = NDArray[np.float64]
 
-#: What a crossover is known to be.
-FOUND, BELOW, ABOVE = 0, 1, 2
-KINDS = ("found", "below_smallest_force", "above_largest_force")
-
-#: Levels of the stored interval: one and two standard deviations of a normal distribution.
-LEVELS = (0.025, 0.16, 0.5, 0.84, 0.975)
-
-
-@dataclass(frozen=True)
-class Ensemble:
-    """Smoothed, symmetric responses of the realizations of one case.
-
-    ``force`` (k,); ``response`` (r, k, x), with x from 0, nan where a realization is not at rest; ``least``, the
-    number of realizations that a mean needs.
-    """
-
-    force: FloatArray
-    response: FloatArray
-    least: int = 1
-
-    def means(self, weights: FloatArray) -> FloatArray:
-        """(d, k, x) weighted means for ``weights`` (d, r); nan where less than ``least`` of the weight is at rest."""
-        here = np.isfinite(self.response[:, :, 0])
-        r, k, points = self.response.shape
-        values = np.where(here[:, :, None], self.response, 0.0).reshape(r, k * points)
-        total = (weights @ values).reshape(-1, k, points)
-        count = (weights @ here)[:, :, None]
-        return np.where(count >= self.least, total / np.maximum(count, 1.0), np.nan)
-
-    def mean(self) -> FloatArray:
-        """(k, x) mean over all realizations."""
-        return self.means(np.ones((1, len(self.response))))[0]
-
-
-def shape(x: FloatArray, response: FloatArray, width: float) -> FloatArray:
-    """How much higher symmetric responses (..., len(x)) are beside x = 0 than there; see the module's docstring.
-
-    ``x`` runs from 0 to the reach.
-    """
-    largest = response.max(axis=-1)
-    return np.asarray((response[..., x >= width].max(axis=-1) - response[..., 0]) / largest)
-
-
-def crossover(force: FloatArray, shapes: FloatArray) -> tuple[float, int]:
-    """Crossover force of a path, and whether it was FOUND or is a bound (BELOW, ABOVE).
-
-    ``shapes`` (k,) may be nan from some force on; nan everywhere gives nan and ABOVE.
-    """
-    known = np.isfinite(shapes)
-    if not known.any():
-        return float("nan"), ABOVE
-    force = force[known]
-    fit = isotonic_regression(shapes[known]).x
-    double = np.flatnonzero(fit > 0.0)
-    if not double.size:
-        return float(force[-1]), ABOVE
-    k = int(double[0])
-    if k == 0:
-        return float(force[0]), BELOW
-    part = fit[k - 1] / (fit[k - 1] - fit[k])
-    return float(np.exp(np.log(force[k - 1]) + part * np.log(force[k] / force[k - 1]))), FOUND
-
-
-def bootstrap(ensemble: Ensemble, x: FloatArray, width: float, *, draws: int, seed: int) -> FloatArray:
-    """(draws, k) shapes of the means of ensembles drawn with replacement."""
-    r = len(ensemble.response)
-    picked = np.random.default_rng(seed).integers(0, r, (draws, r))
-    weights = np.stack([np.bincount(row, minlength=r) for row in picked]).astype(float)
-    return shape(x, ensemble.means(weights), width)
-
-
-def agreement(ensemble: Ensemble, x: FloatArray, width: float, few: int, *, draws: int, seed: int) -> FloatArray:
-    """(k,) part of the ``draws`` of ``few`` different realizations whose mean has as many peaks as that of all.
-
-    nan where fewer than ``few`` realizations are at rest.
-    """
-    everybody = shape(x, ensemble.mean(), width) > 0.0
-    rng = np.random.default_rng(seed)
-    result = np.full(len(ensemble.force), np.nan)
-    for k in range(len(ensemble.force)):
-        rows = ensemble.response[np.isfinite(ensemble.response[:, k, 0]), k]
-        if len(rows) >= max(few, ensemble.least):
-            picked = rng.permuted(np.tile(np.arange(len(rows)), (draws, 1)), axis=1)[:, :few]
-            result[k] = np.mean((shape(x, rows[picked].mean(axis=1), width) > 0.0) == everybody[k])
-    return result
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """The crossover of one case with its statistics; arrays along the k forces of the case."""
-
-    force: float
-    kind: int
-    kinds: FloatArray  #: (kinds,) part of the draws
-    interval: FloatArray  #: (levels,)
-    shapes: FloatArray  #: (k,)
-    spread: FloatArray  #: (k, levels)
-    alike: FloatArray  #: (k,)
-
-
-def cross(ensemble: Ensemble, x: FloatArray, width: float, *, few: int, draws: int, seed: int) -> Crossing:
-    """The crossover of an ensemble."""
-    shapes = shape(x, ensemble.mean(), width)
-    force, kind = crossover(ensemble.force, shapes)
-    drawn = bootstrap(ensemble, x, width, draws=draws, seed=seed)
-    found = [crossover(ensemble.force, row) for row in drawn]
-    kinds = np.array([kind for _, kind in found])
-    # a bound sorts beyond every force: below all that are found, or above
-    ranked = np.where(
-        kinds == BELOW, -np.inf, np.where(kinds == ABOVE, np.inf, np.array([value for value, _ in found]))
-    )
-    spread = np.full((len(shapes), len(LEVELS)), np.nan)
-    known = np.isfinite(drawn).all(axis=0)
-    spread[known] = np.quantile(drawn[:, known], LEVELS, axis=0).T
-    return Crossing(
-        force,
-        kind,
-        np.bincount(kinds, minlength=len(KINDS)) / draws,
-        np.quantile(ranked, LEVELS, method="inverted_cdf"),
-        shapes,
-        spread,
-        agreement(ensemble, x, width, few, draws=draws, seed=seed),
-    )
-
-
 def simulate(
     parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``crossovers``, one entry for each case, and ``shapes``, the shape against the force.
+    """What the survey says of every case.
+
+    Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances; ``shapes``, the
+    shape against the force; ``realizations``, one by one; ``packings`` at rest; ``starts`` side by side;
+    ``linear_range``, the response at x = 0 under small forces beside smooth walls.
 
     Raises
     ------
     granular_response.store.StoreError
-        If the responses cannot be read.
+        If the survey cannot be read.
     ValueError
         If a parameter is out of range.
     """
-    draws, few, seed = parameters.draws, parameters.few, parameters.seed
+    draws, seed, tolerance = parameters.draws, parameters.seed, parameters.tolerance
     spacing, widths = parameters.spacing, parameters.widths
     x = np.arange(round(parameters.reach / spacing) + 1, dtype=float) * spacing
-    source = store.read(Path(parameters.responses))["ensembles"]
+    stored = survey.read(Path(parameters.survey), parameters.blocks)
+    source = stored["ensembles"]
     cases = source.sizes["case"]
     table: list[list[Crossing]] = []
-    for done, width in enumerate(widths, 1):
-        ensembles = (read_ensemble(source, case, x, width, parameters.least_part) for case in range(cases))
-        table.append([cross(one, x, width, few=few, draws=draws, seed=seed) for one in ensembles])
-        if progress is not None:
-            progress(done, len(widths), "crossovers")
-    return _datasets(source, widths, few, table)
+    single: list[list[Singles]] = []
+    for row, width in enumerate(widths):
+        table.append([])
+        single.append([])
+        for case in range(cases):
+            ensemble = read_ensemble(source, case, x, width, parameters.least_part)
+            symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)
+            table[-1].append(
+                cross(
+                    symmetric,
+                    x,
+                    width,
+                    few=parameters.few,
+                    draws=draws,
+                    seed=seed,
+                    tolerance=tolerance,
+                    others=parameters.other_tolerances,
+                )
+            )
+            single[-1].append(singles(ensemble, x, width, draws=draws, seed=seed, tolerance=tolerance))
+            if progress is not None:
+                progress(row * cases + case + 1, len(widths) * cases, "crossovers")
+    found = _datasets(source, parameters, table, single)
+    packings = stored["packings"]
+    found["packings"] = packings[[name for name in packings.data_vars if str(name) != "processor_time"]]
+    found["starts"] = _starts(source, parameters, found["shapes"], packings)
+    small = survey.read(Path(parameters.survey), [parameters.linear_range])["ensembles"]
+    found["linear_range"] = _linear_range(small, parameters.linear_width)
+    return labelled(found)
 
 
 def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, least_part: float) -> Ensemble:
-    """The realizations of a case, smoothed and made symmetric about the loaded disk."""
+    """The realizations of a case, smoothed, from the left end of the reach to the right; ``x`` is the right half."""
     one = source.isel(case=case, realization=slice(0, int(source["realizations"][case])))
     used = np.isfinite(one["force"].values)
-    force = one["force"].values[used]
-    both = smoothed(one.isel(step=used), np.concatenate([x, -x]), width)
-    response = 0.5 * (both[..., : len(x)] + both[..., len(x) :])
-    return Ensemble(force, response, max(1, int(np.ceil(least_part * len(response)))))
+    response = smoothed(one.isel(step=used), np.concatenate([-x[:0:-1], x]), width)
+    return Ensemble(one["force"].values[used], response, max(1, int(np.ceil(least_part * len(response)))))
+
+
+def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset) -> xr.Dataset:
+    """Every start of a polydispersity under one force: its dip, and what touches at rest."""
+    chosen, steps = [], []
+    for one in parameters.compared:
+        alike = np.isclose(source["polydispersity"].values, one.polydispersity)
+        under = np.isclose(source["force"].values, one.force)
+        cases = np.flatnonzero(alike & under.any(axis=1))
+        usual = packings["lattice_constant"].values[cases] == packings["lattice_constant"].values[0]
+        distance = np.where(usual, 2.0 / (1.0 - 0.5 * one.polydispersity), np.nan)
+        distance[~usual] = packings["lattice_constant"].values[cases[~usual]].astype(float)
+        chosen += [(int(case), float(d), one.force) for case, d in zip(cases, distance, strict=True)]
+        steps += [int(np.flatnonzero(under[case])[0]) for case in cases]
+    order = [case for case, _, _ in chosen]
+    along = {"case": xr.DataArray(order, dims="case"), "step": xr.DataArray(steps, dims="case")}
+    at_force = shapes[["shape", "shape_interval"]].isel(along)
+    drawn = parameters.draws, parameters.seed
+    lattice = [float(packings[name].values[0, 0]) for name in ("horizontal_contacts", "oblique_contacts")]
+    numbers: dict[str, list[FloatArray]] = {"contacts": [], "missing_horizontal": []}
+    for case in order:
+        count = int(packings["realizations"].values[case])
+        packing = packings.isel(case=case, realization=slice(0, count))
+        kinds = zip(("horizontal_contacts", "oblique_contacts"), lattice, strict=True)
+        gone = [full - packing[kind].values for kind, full in kinds]
+        for name, values in (
+            ("contacts", packing["coordination_number_with_walls"].values),
+            ("missing_horizontal", gone[0] / (gone[0] + gone[1])),
+        ):
+            means = weights(count, *drawn) @ values / count
+            numbers[name].append(np.array([values.mean(), *np.quantile(means, LEVELS)]))
+    text = {
+        "contacts": "mean number of contacts of a disk at rest, walls counted",
+        "missing_horizontal": "horizontal part of the contacts that the lattice has and the packing has not",
+    }
+    made = {}
+    for name, rows in numbers.items():
+        values = np.array(rows)
+        made[name] = variable(("case",), values[:, 0], text[name])
+        made[f"{name}_interval"] = variable(("case", "level"), values[:, 1:], "quantiles of the bootstrapped mean")
+    return xr.Dataset(
+        {
+            "dip": at_force["shape"].variable,
+            "dip_interval": at_force["shape_interval"].variable,
+            "applied_force": variable(("case",), [force for _, _, force in chosen], f"applied force {FORCE}"),
+            "distance": variable(
+                ("case",), [d for _, d, _ in chosen], f"distance of neighbours before gravity acts {LENGTH}"
+            ),
+            **made,
+        },
+        coords={
+            **{name: source[name].isel(case=order).variable for name in CASE},
+            **{name: shapes[name].variable for name in ("width", "level")},
+        },
+    )
+
+
+def _linear_range(source: xr.Dataset, width: float) -> xr.Dataset:
+    response = np.array(
+        [smoothed(source.isel(case=case), np.zeros(1), width)[..., 0] for case in range(source.sizes["case"])]
+    )
+    return xr.Dataset(
+        {
+            "response_at_centre": variable(
+                ("case", "realization", "step"),
+                response,
+                "smoothed response at x = 0 in 1/mean radius: stress per applied force",
+            ),
+            "applied_force": variable(("case", "step"), source["force"].values, f"applied force {FORCE}"),
+        },
+        coords={name: source[name].variable for name in CASE},
+        attrs={"width": width},
+    )
+
+
+#: Coordinates of a case.
+CASE = ("polydispersity", "friction", "wall_friction", "lattice_constant", "realizations")
 
 
 def _datasets(
-    source: xr.Dataset, widths: Sequence[float], few: int, table: Sequence[Sequence[Crossing]]
+    source: xr.Dataset, parameters: Parameters, table: Sequence[Sequence[Crossing]], single: Sequence[Sequence[Singles]]
 ) -> dict[str, xr.Dataset]:
-    steps = source.sizes["step"]
+    most = {"step": source.sizes["step"], "realization": source.sizes["realization"]}
 
-    def grid(name: str) -> FloatArray:
-        return np.array([[getattr(one, name) for one in row] for row in table])
+    def grid(name: str, rows: Sequence[Sequence[Crossing | Singles]] = table) -> FloatArray:
+        return np.array([[getattr(one, name) for one in row] for row in rows])
 
-    def along_force(name: str) -> FloatArray:
-        """Filled up with nan to the longest load path."""
-        values = [[getattr(one, name) for one in row] for row in table]
-        filled = np.full((len(table), len(table[0]), steps, *values[0][0].shape[1:]), np.nan)
-        for w, row in enumerate(values):
-            for c, value in enumerate(row):
-                filled[w, c, : len(value)] = value
+    def along(name: str, dims: Sequence[str], rows: Sequence[Sequence[Crossing | Singles]] = table) -> FloatArray:
+        """Filled up with nan to the most realizations and the longest load path."""
+        first = np.asarray(getattr(rows[0][0], name))
+        sizes = [most.get(dim, n) for dim, n in zip(dims, first.shape, strict=True)]
+        filled = np.full((len(rows), len(rows[0]), *sizes), np.nan)
+        for w, row in enumerate(rows):
+            for c, one in enumerate(row):
+                value = np.asarray(getattr(one, name))
+                filled[w, c][tuple(slice(0, n) for n in value.shape)] = value
         return filled
 
     dims = ("width", "case")
+    cases = {name: source[name].variable for name in CASE}
     coordinates = {
-        "width": variable(("width",), np.array(widths), f"width w of the smoothing Gaussian {LENGTH}"),
+        "width": variable(("width",), np.array(parameters.widths), f"width w of the smoothing Gaussian {LENGTH}"),
         "level": variable(("level",), np.array(LEVELS), "part of the bootstrap draws below"),
-        **{name: source[name].variable for name in ("polydispersity", "friction", "lattice_constant", "realizations")},
+        **cases,
     }
     flags = {"flag_values": np.arange(len(KINDS), dtype=np.int8), "flag_meanings": " ".join(KINDS)}
+    what = "whether the crossover was found or is a bound"
+    drawn = f"bootstrapped crossover forces {FORCE}, alike in cases of as many realizations; infinite beyond bounds"
+    quantile = f"quantiles of the bootstrapped crossover force {FORCE}; infinite beyond bounds"
     crossovers = xr.Dataset(
         {
             "force": variable(dims, grid("force"), f"crossover force of the mean response, or its bound {FORCE}"),
-            "kind": variable(
-                dims, grid("kind").astype(np.int8), "whether the crossover was found or is a bound", **flags
-            ),
-            "interval": variable(
-                (*dims, "level"),
-                grid("interval"),
-                f"quantiles of the bootstrapped crossover force {FORCE}; infinite beyond bounds",
-            ),
+            "kind": variable(dims, grid("kind").astype(np.int8), what, **flags),
+            "interval": variable((*dims, "level"), grid("interval"), quantile),
             "draw_part": variable((*dims, "kind_of_draw"), grid("kinds"), "part of the bootstrap draws of each kind"),
+            "draws": variable((*dims, "draw"), grid("draws").astype(np.float32), drawn),
+            "limits": variable((*dims, "end"), grid("limits"), f"smallest and largest force with a mean {FORCE}"),
         },
         coords={
             **coordinates,
             "kind_of_draw": variable(("kind_of_draw",), list(KINDS), "kinds of bootstrap draws"),
         },
+        attrs={"tolerance": parameters.tolerance},
     )
-    along = (*dims, "step")
+    others = [[one.others for one in row] for row in table]
+    dims_of_others = ("width", "case", "tolerance")
+    definitions = xr.Dataset(
+        {
+            "force": variable(
+                dims_of_others,
+                np.array([[[other[0] for other in one] for one in row] for row in others]),
+                f"crossover force of the mean response, or its bound {FORCE}",
+            ),
+            "kind": variable(
+                dims_of_others,
+                np.array([[[other[1] for other in one] for one in row] for row in others], np.int8),
+                what,
+                **flags,
+            ),
+            "interval": variable(
+                (*dims_of_others, "level"),
+                np.array([[[quantiles(other[2]) for other in one] for one in row] for row in others]),
+                quantile,
+            ),
+            "draws": variable(
+                (*dims_of_others, "draw"),
+                np.array([[[other[2] for other in one] for one in row] for row in others], np.float32),
+                drawn,
+            ),
+            "limits": crossovers["limits"].variable,
+        },
+        coords={
+            **coordinates,
+            "tolerance": variable(
+                ("tolerance",), np.array(parameters.other_tolerances), "shape from which on there are two peaks"
+            ),
+        },
+    )
+    step, each = (*dims, "step"), (*dims, "realization", "step")
     shapes = xr.Dataset(
         {
             "applied_force": variable(("case", "step"), source["force"].values, f"applied force {FORCE}"),
-            "shape": variable(along, along_force("shapes"), "shape of the mean response: positive with two peaks"),
-            "shape_interval": variable((*along, "level"), along_force("spread"), "quantiles of the bootstrapped shape"),
+            "shape": variable(step, along("shapes", ["step"]), "shape of the mean response: positive with two peaks"),
+            "shape_interval": variable(
+                (*step, "level"), along("spread", ["step", "level"]), "quantiles of the bootstrapped shape"
+            ),
             "few_agree": variable(
-                along,
-                along_force("alike"),
-                f"part of the averages of {few} realizations with as many peaks as the mean of all",
+                step,
+                along("alike", ["step"]),
+                f"part of the averages of {parameters.few} realizations with as many peaks as the mean of all",
+            ),
+            "spread": variable(
+                step,
+                along("spread", ["step"], single),
+                "standard deviation of the response over realizations in 1/mean radius, mean over x",
+            ),
+            "spread_interval": variable(
+                (*step, "level"),
+                along("spread_interval", ["step", "level"], single),
+                "quantiles of the bootstrapped standard deviation",
+            ),
+            "largest_step": variable(
+                dims,
+                grid("step", single),
+                "largest change of shape or asymmetry of the mean between neighbouring forces",
+            ),
+            "largest_step_interval": variable(
+                (*dims, "level"), grid("step_interval", single), "quantiles of the bootstrapped largest change"
             ),
         },
         coords=coordinates,
-        attrs={"few": few},
+        attrs={"few": parameters.few},
     )
-    return {"crossovers": crossovers, "shapes": shapes}
+    outcome = source["outcome"].values
+    gone = (outcome == COLLAPSED).any(axis=-1)
+    at = np.where(gone, (outcome == COLLAPSED).argmax(axis=-1), 0)
+    force = np.broadcast_to(source["force"].values[:, None, :], outcome.shape)
+    collapse = np.where(gone, np.take_along_axis(force, at[..., None], axis=-1)[..., 0], np.nan)
+    realizations = xr.Dataset(
+        {
+            "shape": variable(each, along("shapes", ["realization", "step"], single), "shape of each response"),
+            "asymmetry": variable(
+                each,
+                along("leans", ["realization", "step"], single),
+                "largest difference of a point and its mirror image, per largest response",
+            ),
+            "difference": variable(
+                each,
+                along("differences", ["realization", "step"], single),
+                "root mean square difference from the mean response, per root mean square of the mean",
+            ),
+            "crossover": variable(
+                (*dims, "realization"),
+                along("force", ["realization"], single),
+                f"crossover force, or its bound {FORCE}",
+            ),
+            "kind": variable(
+                (*dims, "realization"),
+                np.nan_to_num(along("kind", ["realization"], single), nan=-1).astype(np.int8),
+                f"{what}; -1 where there is no realization",
+                **flags,
+            ),
+            "median": variable(
+                dims,
+                grid("median", single),
+                f"median crossover force of the realizations {FORCE}, what lies beyond a path or a collapse censored",
+            ),
+            "median_interval": variable(
+                (*dims, "level"), grid("median_interval", single), "quantiles of the bootstrapped median"
+            ),
+            "collapse_force": variable(
+                ("case", "realization"), collapse, f"force under which the packing collapsed {FORCE}; nan for none"
+            ),
+        },
+        coords=coordinates,
+    )
+    for name in ("shape", "asymmetry", "difference"):
+        realizations[name] = realizations[name].astype(np.float32)
+    return {"crossovers": crossovers, "definitions": definitions, "shapes": shapes, "realizations": realizations}

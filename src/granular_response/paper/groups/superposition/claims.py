@@ -91,8 +91,8 @@ CLAIMS = (
     Claim(
         "U1",
         "VI.B, Fig. 23",
-        "delta = 0.01, friction 0.05, 0.2 mg: response to two loads against the sum of their single responses, force "
-        "by force",
+        "delta = 0.01, start with the largest disks touching, friction 0.05, 0.2 mg: response to two loads against the "
+        "sum of their single responses, force by force",
         "superposition holds even for individual forces",
         superposition(0.2, "holds"),
         (23,),

@@ -93,8 +93,8 @@ CLAIMS = (
     Claim(
         "T1a",
         "V.G, Fig. 18",
-        "25 x 13 disks, delta = 0.001, F = 10 mg at 30 degrees: what the largest torque changes in the contact forces "
-        "near the load",
+        "25 x 13 disks, delta = 0.001, start with lattice constant 2, F = 10 mg at 30 degrees: what the largest torque "
+        "changes in the contact forces near the load",
         "quite a large effect on the force chains",
         chains,
         (18,),

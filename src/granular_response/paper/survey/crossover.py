@@ -1,0 +1,269 @@
+"""One peak or two: the shape of responses of an ensemble, and the force at which it changes (Sec. VI.A, Fig. 22).
+
+Two peaks. The mean over an ensemble of mirror-symmetric slabs is symmetric but for noise, so the mean smoothed
+response is made symmetric about x = 0 first. Its *shape* is
+
+    (largest value at distances from ``width`` to ``reach`` - value at x = 0) / largest value up to ``reach`` ,
+
+and the response has two peaks where the shape exceeds ``tolerance``: a dip that a printed curve shows. Peaks nearer
+than the smoothing width are not told apart from one. Figs. 19, 21 and 22 and all claims on disorder use this one
+definition, for single realizations too; what other tolerances give is stored beside it.
+
+Crossover. Between two phases there is one boundary, so the shape is taken to grow with the force: its
+least-squares non-decreasing fit along the load path keeps a chance dip of a finite ensemble from counting as a
+boundary of its own. The crossover is where this fit, linear in the logarithm of the force, passes the tolerance. Where
+it does so at the smallest force already, that force is an upper bound; where it does not up to the largest
+force at which enough realizations are at rest, that force is a lower bound.
+
+Interval. Realizations are drawn with replacement, each with its whole load path, and the crossover of each draw is
+found; draws without one count as beyond the bound. Cases with as many realizations are drawn alike: they share their
+radii, so the ratio of two crossovers has less scatter than either.
+
+Single realizations. Each has a crossover of its own. Where its packing collapses or its path ends before, all that
+is known is that the crossover lies higher: such values are censored, and the median over realizations is that of Kaplan
+and Meier, which counts them as long as they last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import isotonic_regression
+
+FloatArray = NDArray[np.float64]
+
+#: What a crossover is known to be.
+FOUND, BELOW, ABOVE = 0, 1, 2
+KINDS = ("found", "below_smallest_force", "above_largest_force")
+
+#: Levels of the stored interval: one and two standard deviations of a normal distribution.
+LEVELS = (0.025, 0.16, 0.5, 0.84, 0.975)
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """Smoothed responses of the realizations of one case.
+
+    ``force`` (k,); ``response`` (r, k, x), nan where a realization is not at rest; ``least``, how many realizations a
+    mean needs.
+    """
+
+    force: FloatArray
+    response: FloatArray
+    least: int = 1
+
+    def means(self, weights: FloatArray) -> FloatArray:
+        """(d, k, x) weighted means for ``weights`` (d, r); nan where less than ``least`` of the weight is at rest."""
+        here = np.isfinite(self.response[:, :, 0])
+        r, k, points = self.response.shape
+        values = np.where(here[:, :, None], self.response, 0.0).reshape(r, k * points)
+        total = (weights @ values).reshape(-1, k, points)
+        count = (weights @ here)[:, :, None]
+        return np.where(count >= self.least, total / np.maximum(count, 1.0), np.nan)
+
+    def mean(self) -> FloatArray:
+        """(k, x) mean over all realizations."""
+        return self.means(np.ones((1, len(self.response))))[0]
+
+
+def folded(response: FloatArray) -> FloatArray:
+    """Responses (..., 2 m + 1) on a grid that is symmetric about x = 0, made symmetric: (..., m + 1), from x = 0 on."""
+    m = response.shape[-1] // 2
+    return 0.5 * (response[..., m:] + response[..., m::-1])
+
+
+def shape(x: FloatArray, response: FloatArray, width: float) -> FloatArray:
+    """How much higher symmetric responses (..., len(x)) are beside x = 0 than there; see the module's docstring.
+
+    ``x`` runs from 0 to the reach.
+    """
+    largest = response.max(axis=-1)
+    return np.asarray((response[..., x >= width].max(axis=-1) - response[..., 0]) / largest)
+
+
+def lean(response: FloatArray) -> FloatArray:
+    """Largest difference of a point and its mirror image in responses (..., 2 m + 1), per largest response."""
+    return np.asarray(np.abs(response - response[..., ::-1]).max(axis=-1) / response.max(axis=-1))
+
+
+def crossover(force: FloatArray, shapes: FloatArray, tolerance: float = 0.0) -> tuple[float, int]:
+    """Crossover force of a path, and whether it was FOUND or is a bound (BELOW, ABOVE).
+
+    ``shapes`` (k,) may be nan from some force on; nan everywhere gives nan and ABOVE.
+    """
+    known = np.isfinite(shapes)
+    if not known.any():
+        return float("nan"), ABOVE
+    force = force[known]
+    fit = isotonic_regression(shapes[known]).x - tolerance
+    double = np.flatnonzero(fit > 0.0)
+    if not double.size:
+        return float(force[-1]), ABOVE
+    k = int(double[0])
+    if k == 0:
+        return float(force[0]), BELOW
+    part = fit[k - 1] / (fit[k - 1] - fit[k])
+    return float(np.exp(np.log(force[k - 1]) + part * np.log(force[k] / force[k - 1]))), FOUND
+
+
+def ranked(found: Iterable[tuple[float, int]]) -> FloatArray:
+    """Crossovers as numbers in their order: a bound lies beyond every force, -inf or inf."""
+    return np.array([{FOUND: force, BELOW: -np.inf, ABOVE: np.inf}[kind] for force, kind in found])
+
+
+def weights(realizations: int, draws: int, seed: int) -> FloatArray:
+    """(draws, realizations) how often each is drawn, with replacement; alike for cases of as many realizations."""
+    picked = np.random.default_rng(seed).integers(0, realizations, (draws, realizations))
+    return np.stack([np.bincount(row, minlength=realizations) for row in picked]).astype(float)
+
+
+def agreement(
+    ensemble: Ensemble, x: FloatArray, width: float, few: int, *, draws: int, seed: int, tolerance: float = 0.0
+) -> FloatArray:
+    """(k,) part of the ``draws`` of ``few`` different realizations whose mean has as many peaks as that of all.
+
+    nan where fewer than ``few`` realizations are at rest.
+    """
+    everybody = shape(x, ensemble.mean(), width) > tolerance
+    rng = np.random.default_rng(seed)
+    result = np.full(len(ensemble.force), np.nan)
+    for k in range(len(ensemble.force)):
+        rows = ensemble.response[np.isfinite(ensemble.response[:, k, 0]), k]
+        if len(rows) >= max(few, ensemble.least):
+            picked = rng.permuted(np.tile(np.arange(len(rows)), (draws, 1)), axis=1)[:, :few]
+            result[k] = np.mean((shape(x, rows[picked].mean(axis=1), width) > tolerance) == everybody[k])
+    return result
+
+
+def censored_median(values: FloatArray, censored: NDArray[np.bool_]) -> float:
+    """Median of Kaplan and Meier: values (r,) of which ``censored`` ones are only known to lie higher.
+
+    A value -inf lies below all others. inf where fewer than half are known to be reached.
+    """
+    order = np.lexsort((censored, values))
+    values, censored = values[order], censored[order]
+    left = len(values) - np.arange(len(values))
+    survival = np.cumprod(np.where(censored, 1.0, 1.0 - 1.0 / left))
+    reached = np.flatnonzero(survival <= 0.5 + 1e-12)
+    return float(values[reached[0]]) if reached.size else float("inf")
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """The crossover of one case with its statistics; arrays along the k forces of the case."""
+
+    force: float
+    kind: int
+    limits: tuple[float, float]  #: smallest and largest force with a mean
+    draws: FloatArray  #: (draws,) of the bootstrap, in their order, infinite beyond bounds
+    shapes: FloatArray  #: (k,)
+    spread: FloatArray  #: (k, levels)
+    alike: FloatArray  #: (k,)
+    others: tuple[tuple[float, int, FloatArray], ...] = field(default=())  #: force, kind, draws for other tolerances
+
+    @property
+    def interval(self) -> FloatArray:
+        """(levels,) quantiles of the draws."""
+        return quantiles(self.draws)
+
+    @property
+    def kinds(self) -> FloatArray:
+        """(kinds,) part of the draws that are FOUND, BELOW, ABOVE."""
+        return np.array([np.isfinite(self.draws).mean(), (self.draws == -np.inf).mean(), (self.draws == np.inf).mean()])
+
+
+def quantiles(draws: FloatArray) -> FloatArray:
+    """(levels, ...) quantiles of draws (d, ...), of which some may be infinite."""
+    return np.asarray(np.quantile(draws, LEVELS, axis=0, method="inverted_cdf"))
+
+
+def cross(
+    ensemble: Ensemble,
+    x: FloatArray,
+    width: float,
+    *,
+    few: int,
+    draws: int,
+    seed: int,
+    tolerance: float = 0.0,
+    others: Sequence[float] = (),
+) -> Crossing:
+    """The crossover of an ensemble of symmetric responses, by this tolerance and by others."""
+    shapes = shape(x, ensemble.mean(), width)
+    drawn = shape(x, ensemble.means(weights(len(ensemble.response), draws, seed)), width)
+
+    def at(limit: float) -> tuple[float, int, FloatArray]:
+        return *crossover(ensemble.force, shapes, limit), ranked(crossover(ensemble.force, row, limit) for row in drawn)
+
+    force, kind, found = at(tolerance)
+    used = ensemble.force[np.isfinite(shapes)]
+    limits = (float(used[0]), float(used[-1])) if used.size else (float("nan"), float("nan"))
+
+    spread = np.full((len(shapes), len(LEVELS)), np.nan)
+    known = np.isfinite(drawn).all(axis=0)
+    spread[known] = np.quantile(drawn[:, known], LEVELS, axis=0).T
+    alike = agreement(ensemble, x, width, few, draws=draws, seed=seed, tolerance=tolerance)
+    return Crossing(force, kind, limits, found, shapes, spread, alike, tuple(at(limit) for limit in others))
+
+
+@dataclass(frozen=True)
+class Singles:
+    """Single realizations of one case beside their mean; arrays along r realizations and k forces."""
+
+    shapes: FloatArray  #: (r, k)
+    leans: FloatArray  #: (r, k) asymmetry
+    differences: FloatArray  #: (r, k) root mean square difference from the mean, per that of the mean
+    spread: FloatArray  #: (k,) standard deviation over realizations, mean over x
+    spread_interval: FloatArray  #: (k, levels)
+    step: float  #: largest change of shape or asymmetry of the mean between neighbouring forces
+    step_interval: FloatArray  #: (levels,)
+    force: FloatArray  #: (r,) crossovers, or their bounds
+    kind: NDArray[np.int8]  #: (r,)
+    median: float
+    median_interval: FloatArray  #: (levels,)
+
+
+def singles(
+    ensemble: Ensemble, x: FloatArray, width: float, *, draws: int, seed: int, tolerance: float = 0.0
+) -> Singles:
+    """What the realizations of an ensemble do, on a grid that is symmetric about x = 0; ``x`` is its right half."""
+    shapes = shape(x, folded(ensemble.response), width)
+    drawn = weights(len(shapes), draws, seed)
+    mean, means = ensemble.mean(), ensemble.means(drawn)
+    off = np.sqrt(((ensemble.response - mean) ** 2).mean(axis=-1) / (mean**2).mean(axis=-1))
+    square = Ensemble(ensemble.force, ensemble.response**2, ensemble.least)
+
+    def deviation(squares: FloatArray, mean: FloatArray) -> FloatArray:
+        return np.asarray(np.sqrt(np.maximum(squares - mean**2, 0.0)).mean(axis=-1))
+
+    found = [crossover(ensemble.force, row, tolerance) for row in shapes]
+    kind = np.array([what for _, what in found], np.int8)
+    value = np.where(kind == BELOW, -np.inf, np.array([force for force, _ in found]))
+    usable = np.isfinite(value) | (kind == BELOW)
+    value, censored = np.where(usable, value, ensemble.force[0]), kind == ABOVE
+    rows = [np.repeat(np.arange(len(value)), one.astype(int)) for one in drawn]
+    medians = np.array([censored_median(value[row], censored[row]) for row in rows])
+    return Singles(
+        shapes,
+        lean(ensemble.response),
+        off,
+        deviation(square.mean(), mean),
+        quantiles(deviation(square.means(drawn), means)).T,
+        float(largest_step(shape(x, folded(mean), width), lean(mean))),
+        quantiles(largest_step(shape(x, folded(means), width), lean(means))),
+        np.array([force for force, _ in found]),
+        kind,
+        censored_median(value, censored),
+        quantiles(medians),
+    )
+
+
+def largest_step(shapes: FloatArray, leans: FloatArray) -> FloatArray:
+    """Largest change between neighbouring forces (..., k) of either; nan without two known neighbours."""
+    steps = np.fmax(np.abs(np.diff(shapes, axis=-1)), np.abs(np.diff(leans, axis=-1)))
+    if not steps.shape[-1]:
+        return np.full(steps.shape[:-1], np.nan)
+    return np.asarray(np.fmax.reduce(steps, axis=-1))

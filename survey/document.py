@@ -1,0 +1,137 @@
+"""Renews the tables of the survey in docs/reproduction-notes.md from what is stored: python document.py."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from granular_response.paper.groups.phase_diagram.claims import linear_end
+from granular_response.store import generated
+
+ROOT = Path(__file__).resolve().parents[1]
+NOTES = ROOT / "docs" / "reproduction-notes.md"
+#: Name of the generated lines.
+BLOCK = "survey"
+FOUND, BELOW, ABOVE = 0, 1, 2
+#: Linear ranges that are shown: frictions, and how far off a response at x = 0 is no longer linear.
+FRICTIONS, OFF = (0.0, 0.05, 0.2), 0.01
+#: Places of the 2.5 and 97.5 per cent quantiles among the stored levels.
+ENDS = (0, -1)
+
+
+def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
+    """A line for each disordered case that starts with the largest disks touching, and for each lattice."""
+    found, others, single = (datasets[name] for name in ("crossovers", "definitions", "realizations"))
+    widths = found["width"].values.tolist()
+    tolerances = [0.0, 0.05]
+    heads = ["δ", "µ", "realizations (collapsed)"]
+    for width in widths:
+        heads += [f"w = {width:g}", *(f"dip from {100 * t:g} % on" for t in tolerances), "median of realizations"]
+    lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
+    usual = found["lattice_constant"].values == found["lattice_constant"].values[0]
+    order = np.lexsort((found["friction"].values, found["polydispersity"].values))
+    for case in order[usual[order]]:
+        collapsed = int(np.isfinite(single["collapse_force"].values[case]).sum())
+        count = int(found["realizations"].values[case])
+        cells = [f"{found['polydispersity'].values[case]:g}", f"{found['friction'].values[case]:g}"]
+        cells.append(f"{count} ({collapsed})" if collapsed else f"{count}")
+        for w in range(len(widths)):
+            cells.append(force(found, (w, case)))
+            for tolerance in tolerances:
+                place = int(np.flatnonzero(np.isclose(others["tolerance"].values, tolerance))[0])
+                cells.append(force(others, (w, case, place), interval=False))
+            cells.append(number(float(single["median"].values[w, case])))
+        lines.append("|" + "".join(f" {cell} |" for cell in cells))
+    return lines
+
+
+def force(data: xr.Dataset, place: tuple[int, ...], interval: bool = True) -> str:
+    """A crossover force with its interval, or the bound that is known."""
+    value, kind = float(data["force"].values[place]), int(data["kind"].values[place])
+    text = {FOUND: "", BELOW: "below ", ABOVE: "above "}[kind] + f"{value:.3g}"
+    low, high = (float(data["interval"].values[place][end]) for end in ENDS)
+    if kind != FOUND or not interval or low == high:
+        return text
+    return f"{text} ({number(low)} to {number(high)})"
+
+
+def number(value: float) -> str:
+    return f"{value:.3g}" if np.isfinite(value) else ("beyond" if value > 0.0 else "below all")
+
+
+def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
+    """A line for each polydispersity and start: contacts without friction, and the dips with and without it."""
+    data = datasets["starts"]
+    heads = ["δ", "start", "contacts per disk", "horizontal part of the missing ones", "force"]
+    heads += ["dip, µ = 0", "dip, µ = 0.2", *(f"linear up to, µ = {mu:g}" for mu in FRICTIONS)]
+    lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
+    place = {
+        (delta, round(distance, 6), mu): case
+        for case, (delta, distance, mu) in enumerate(
+            zip(*(data[name].values.tolist() for name in ("polydispersity", "distance", "friction")), strict=True)
+        )
+    }
+    for delta, distance in sorted({key[:2] for key in place if (*key[:2], 0.0) in place and (*key[:2], 0.2) in place}):
+        without, full = place[delta, distance, 0.0], place[delta, distance, 0.2]
+        name = str(data["lattice_constant"].values[without])
+        lines.append(
+            f"| {delta:g} | {distance:.5g}{', largest disks touch' if name.startswith('touching') else ''} "
+            f"| {with_interval(data, 'contacts', (without,), 1.0, 3)} "
+            f"| {with_interval(data, 'missing_horizontal', (without,), 100.0, 0)} % "
+            f"| {float(data['applied_force'].values[without]):g} "
+            f"| {with_interval(data, 'dip', (0, without), 100.0, 0)} % "
+            f"| {with_interval(data, 'dip', (0, full), 100.0, 1)} % "
+            f"| {' | '.join(linear(datasets['linear_range'], delta, mu, name) for mu in FRICTIONS)} |"
+        )
+    ends = (linear(datasets["linear_range"], 0.0, mu, "touching-largest") for mu in FRICTIONS)
+    lines.append(f"| 0 | lattice | | | | | | {' | '.join(ends)} |")
+    return lines
+
+
+def linear(data: xr.Dataset, delta: float, friction: float, start: str) -> str:
+    """The median end of the linear range of a start beside smooth walls; nothing where it was not simulated."""
+    here = np.isclose(data["polydispersity"].values, delta) & np.isclose(data["friction"].values, friction)
+    here &= data["lattice_constant"].values.astype(str) == start
+    return linear_end(data.isel(case=int(np.flatnonzero(here)[0])), OFF).text() if here.any() else ""
+
+
+def with_interval(data: xr.Dataset, name: str, place: tuple[int, ...], factor: float, digits: int) -> str:
+    """A mean and half the width of its interval."""
+    low, high = (float(data[f"{name}_interval"].values[place][end]) for end in ENDS)
+    return f"{factor * float(data[name].values[place]):.{digits}f} ± {0.5 * factor * (high - low):.{digits}f}"
+
+
+def text(datasets: Mapping[str, xr.Dataset]) -> str:
+    """Both tables in Markdown. Equal data give equal text."""
+    return "\n".join(
+        [
+            "Crossover forces in mean disk weights, with 95 % of the bootstrap draws:",
+            "",
+            *crossovers(datasets),
+            "",
+            "Starts, with half the width of the 95 % interval; contacts with walls, dips smoothed with w = 3; the "
+            "linear range (beside smooth walls, 1 % off) with its 95 % interval:",
+            "",
+            *starts(datasets),
+        ]
+    )
+
+
+def measured() -> dict[str, xr.Dataset]:
+    """What the study ``phase_diagram`` makes of the stored survey."""
+    from granular_response.paper.groups.phase_diagram.simulate import simulate
+    from granular_response.paper.pipeline.simulation import parameters
+
+    _, described = parameters("phase_diagram", ROOT / "params.yaml")
+    return simulate(described.model_copy(update={"survey": str(ROOT / described.survey)}))  # type: ignore[attr-defined]
+
+
+def main() -> None:
+    generated.renew(NOTES, BLOCK, text(measured()))
+
+
+if __name__ == "__main__":
+    main()

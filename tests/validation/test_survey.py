@@ -1,0 +1,84 @@
+"""The stored survey: a few of its realizations simulated again, and that it holds what its parameters and notes say."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from granular_response.observe.floor import smoothed_response
+from granular_response.paper.ensembles import AT_REST, NOT_REACHED
+from granular_response.paper.survey import simulate as survey
+from granular_response.store import files as store
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "survey"
+PARAMETERS = survey.read_parameters(FOLDER / "params.yaml")
+BLOCKS = list(PARAMETERS.blocks)
+
+#: Largest difference of a response, smoothed with w = 3, that other sources or another machine may make, per largest
+#: response: a rearrangement a little earlier or later.
+SAME = 0.02
+
+
+@pytest.fixture(scope="module")
+def stored():
+    return {block: store.read(FOLDER / "data" / f"{block}.nc") for block in BLOCKS}
+
+
+@pytest.mark.parametrize(
+    ("block", "polydispersity", "friction", "start", "realization"),
+    [
+        ("delta_1", 0.01, 0.0, "touching-largest", 3),
+        ("delta_1", 0.01, 0.2, "touching-largest", 7),
+        ("starts_1", 0.01, 0.2, 2.0, 1),
+        ("delta_10", 0.1, 0.2, "touching-largest", 5),
+    ],
+)
+def test_a_realization_is_found_again(stored, block, polydispersity, friction, start, realization):
+    cases = PARAMETERS.cases(block)
+    at = [(c.polydispersity, c.friction, c.lattice_constant) for c in cases].index((polydispersity, friction, start))
+    task = survey.task_of(PARAMETERS, cases[at], realization)
+    again = survey.realize(replace(task, forces=task.forces[:3]))
+    one = {name: data.isel(case=at, realization=realization) for name, data in stored[block].items()}
+    assert (again.outcome == AT_REST).all() and (one["ensembles"]["outcome"].values[:3] == AT_REST).all()
+    np.testing.assert_allclose(one["ensembles"]["x"].values[: again.x.size], again.x, atol=5e-3)
+    assert one["packings"]["coordination_number"] == pytest.approx(again.packing["coordination_number"], abs=0.01)
+    x = np.arange(-30.0, 30.5, 1.0)
+    for k in range(3):
+        response = one["ensembles"]["floor_response"].values[k, : again.x.size]
+        kept, new = (smoothed_response(x, again.x, values, 3.0) for values in (response, again.response[k]))
+        np.testing.assert_allclose(kept, new, atol=SAME * np.abs(new).max())
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_what_is_stored_is_what_the_parameters_name(stored, block):
+    data, cases = stored[block]["ensembles"], PARAMETERS.cases(block)
+    for name, key in (("polydispersity", "polydispersity"), ("friction", "friction")):
+        assert data[name].values.tolist() == [getattr(case, key) for case in cases]
+    assert data["lattice_constant"].values.astype(str).tolist() == [str(case.lattice_constant) for case in cases]
+    for c, case in enumerate(cases):
+        force = data["force"].values[c]
+        assert force[np.isfinite(force)].tolist() == list(case.forces)
+        count = int(data["realizations"].values[c])
+        assert 1 <= count <= case.realizations  # a run may be told to make fewer
+        outcome = data["outcome"].values[c]
+        assert (outcome[:count, 0] != NOT_REACHED).all()
+        assert (outcome[count:] == NOT_REACHED).all()
+    marks = store.read_attributes(FOLDER / "data" / f"{block}.nc")
+    assert marks["block"] == block
+    assert yaml.safe_load(marks["parameters"])["loading"] == PARAMETERS.loading.model_dump()
+
+
+def test_it_is_small(stored):
+    assert sum(path.stat().st_size for path in (FOLDER / "data").glob("*.nc")) < 10e6
+
+
+def test_the_notes_hold_its_tables(monkeypatch):
+    monkeypatch.syspath_prepend(FOLDER)
+    import document
+
+    notes = document.NOTES.read_text(encoding="utf-8")
+    fresh = document.generated.replace(notes, document.BLOCK, document.text(document.measured()))
+    assert fresh == notes, "python survey/document.py"
