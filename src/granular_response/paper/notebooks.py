@@ -10,7 +10,8 @@ from pprint import pformat
 from typing import Any
 
 from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import data_path, group_member, simulation
+from granular_response.paper.pipeline import group_member, simulation
+from granular_response.scene import text
 from granular_response.store import atomic
 
 #: The groups at a size that takes seconds.
@@ -69,11 +70,11 @@ def _notebook(group: str, own: Path, reduced: Path) -> dict[str, Any]:
         _cell("code", f"own = {_literal(full)}"),
         _cell("code", f"reduced = {_literal(small)}"),
     ]
-    for needed in (name for name in NAMES if full.get("responses") == str(data_path(name))):
-        section, _ = simulation.parameters(needed, reduced)
+    if "survey" in full:
+        sections = text.read(reduced.read_text(encoding="utf-8"))
         cells += [
-            _cell("markdown", f"It reads the datasets of `{needed}`, here small ones."),
-            _cell("code", _needed(needed, section, small["responses"])),
+            _cell("markdown", "It reads the survey of disordered slabs (`make survey`), here a small one."),
+            _cell("code", _surveyed(sections["survey"], Path(small["survey"]).parent)),
         ]
     cells += [_cell("code", _RUN), _cell("code", _DRAW)]
     for number, cell in enumerate(cells):
@@ -98,13 +99,18 @@ from {_PACKAGE}.{group}.simulate import simulate
 from granular_response.plot import style"""
 
 
-def _needed(group: str, section: dict[str, Any], path: str) -> str:
+def _surveyed(section: dict[str, Any], folder: Path) -> str:
     return f"""\
-from {_PACKAGE}.{group} import parameters as needed, simulate as needed_simulation
-from granular_response.store import files
+from pathlib import Path
 
-described = needed.Parameters(**{_literal(section)})
-files.write("{path}", needed_simulation.simulate(described, workers=1))"""
+from granular_response.paper.survey import simulate as survey
+from granular_response.scene import text
+
+file = Path("{folder}") / "params.yaml"
+file.parent.mkdir(exist_ok=True)
+file.write_text(text.write({_literal(section)}))
+for block in survey.read_parameters(file).blocks:
+    survey.run(block, file, workers=1)"""
 
 
 def _literal(section: dict[str, Any]) -> str:
