@@ -15,7 +15,7 @@ from granular_response.plot import style
 #: Events in the order of the panels, with what they are called there.
 PANELS = {
     "first_opening": "first opening",
-    "linear_range": "response at $x=0$ 1 % off",
+    "linear_range": "response 1 % off",
     "reaches_floor": "open region at the floor",
     "crossover": "two peaks",
     "third_peak": "third peak",
