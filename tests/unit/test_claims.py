@@ -240,6 +240,7 @@ PLANTED = [
     ("D3a", scaled(PHASES, "crossovers", "draws", by_case([1, 1, 1e-3] * 4 + [1, 1])), "contradicted"),
     ("D3b", put(PHASES, "crossovers", "draws", alternating(0.1, 90.0)), "undecided"),
     ("D3a", put(PHASES, "crossovers", "draws", INFINITE), "undecided"),
+    ("D3b", put(PHASES, "crossovers", "kind", [1, 0, 0] * 4 + [0, 0]), "reproduced"),
     ("D4", put(PHASES, "shapes", "largest_step_interval", [0.6, 0.7, 0.8]), "depends on the reading"),
     ("D5", put(PHASES, "shapes", "few_agree", 0.5), "contradicted"),
     ("D6", scaled(PHASES, "crossovers", "draws", by_case([1] * 3 + [100] * 11)), "contradicted"),

@@ -35,7 +35,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "the smallest force has two peaks already, or the largest one still. Thick and thin bars hold 68 and 95 % "
             f"of {parameters.draws} bootstrap draws over the realizations; an end beyond every simulated force has an "
             "arrow head at the edge. Dark: two peaks, light: one, white: not simulated, or too few packings bear the "
-            "force. Broken line: the lattice, whose last point is a bound; crosses: where it loses its symmetry.",
+            "force. Broken line: the lattice, whose last point is a bound; crosses: where it loses its symmetry; "
+            "star: where the paper's does beside smooth walls (Fig. 16).",
             "Eight diagrams of force against friction. The boundary between one peak below and two above rises with "
             "friction and lies lower the larger the polydispersity.",
             given,

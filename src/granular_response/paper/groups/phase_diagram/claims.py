@@ -106,8 +106,13 @@ class Crossover:
     """The crossover force of a case, and the interval in which it lies in each draw of the bootstrap: (d,) ends."""
 
     found: Quantity
+    kind: int
     low: FloatArray
     high: FloatArray
+
+    def comparable(self, other: Crossover) -> bool:
+        """Whether their order can be seen: not of two bounds to the same side."""
+        return self.kind == FOUND or self.kind != other.kind
 
     def per(self, other: Crossover) -> Quantity:
         """The ratio. Cases of as many realizations were drawn alike; what a bound leaves open widens the interval."""
@@ -126,7 +131,7 @@ def _crossover(case: xr.Dataset) -> Crossover:
     draws = case["draws"].values.astype(float)
     smallest, largest = (float(end) for end in case["limits"].values)
     low = np.where(draws == -np.inf, 0.0, np.where(draws == np.inf, largest, draws))
-    return Crossover(found, low, np.where(draws == -np.inf, smallest, draws))
+    return Crossover(found, int(case["kind"]), low, np.where(draws == -np.inf, smallest, draws))
 
 
 def _defined(data: Data, width: float, words: Bounds) -> xr.Dataset:
@@ -161,8 +166,8 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
             line = [found[key] for key in sorted(found, key=lambda key: key[along]) if key[across] == other]
             if rising == "falls":
                 line = line[::-1]
-            steps = [after.per(before) for before, after in pairwise(line)]
-            if not steps:
+            steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
+            if not steps:  # bounds alone
                 continue
             total += len(steps)
             clear += sum(step.low >= 1.0 for step in steps)
@@ -195,7 +200,7 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
         ratios = {
             key: found[key].per(found[(0.0, key[1])])
             for key in sorted(found)
-            if key[0] > 0.0 and (0.0, key[1]) in found
+            if key[0] > 0.0 and (0.0, key[1]) in found and found[key].comparable(found[(0.0, key[1])])
         }
         if not ratios:
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds no lattice to compare with")

@@ -20,6 +20,8 @@ FOUND, BELOW, ABOVE = 0, 1, 2
 THICK, THIN = (0.16, 0.84), (0.025, 0.975)
 #: A response leans visibly from this difference of mirror images on, per largest response.
 ASYMMETRIC = 0.01
+#: Friction and force at which the paper's lattice beside smooth walls becomes asymmetric (Sec. V.E).
+SMOOTH_WALLS = 1.0, 91.0
 #: Fills of the regions; white is what was not simulated, or where too few packings bear the force.
 TWO_PEAKS, ONE_PEAK = "#C9D3DC", "#EFF2F4"
 
@@ -115,6 +117,7 @@ def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> None:
             friction = float(lattice["friction"][case])
             axes.plot([friction] * 2, ends, color=style.BLUE, linewidth=1.6, linestyle="-", zorder=6)
             axes.plot(friction, np.sqrt(ends.prod()), marker="x", color=style.BLUE, markersize=6.0, zorder=6)
+    axes.plot(*SMOOTH_WALLS, marker="*", color=style.BLUE, markerfacecolor="white", markersize=6.0, zorder=6)
 
 
 def _bar(axes: Axes, x: float, low: float, high: float, limits: tuple[float, float], linewidth: float) -> None:
