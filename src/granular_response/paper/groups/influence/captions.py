@@ -14,9 +14,10 @@ from .parameters import Parameters
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     most = max(case.realizations for case in parameters.cases)
+    maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
     panels = ", ".join(
         f"({chr(ord('a') + k)}) δ = {case.polydispersity:g}, µ = {case.friction:g}"
-        for k, case in enumerate(parameters.cases)
+        for k, case in enumerate(maps)
     )
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
     low, high = parameters.fitted
@@ -27,7 +28,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "floor disk is relieved. Exact in the limit of small forces, at rest under gravity, contacts at the limit "
             "of Coulomb sticking; the walls have the friction of the disks. Disks that bear nothing are white. "
             f"{panels}.",
-            "A slab of disks for each material, coloured by the force that each disk sets in motion.",
+            "The same slab with and without friction, its disks coloured by the force that each sets in motion: all "
+            "alike with friction, in bright wedges without.",
             said,
         ),
         "influence_saint_venant": Caption(

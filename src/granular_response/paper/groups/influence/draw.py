@@ -31,13 +31,18 @@ def _name(data: xr.Dataset, case: int) -> str:
     return f"{packing}, $\\mu = {float(data['friction'][case]):g}$"
 
 
+def compared(polydispersity: np.ndarray) -> list[int]:
+    """Cases of the maps: those with the polydispersity of the last one, with and without friction."""
+    return np.flatnonzero(polydispersity == polydispersity[-1]).tolist()
+
+
 def _maps(data: xr.Dataset) -> Figure:
-    """A panel for each case; disks that bear nothing stay white."""
-    cases = data.sizes["case"]
-    figure, panels = style.figure((cases + 1) // 2, 2, width="double", height=1.55 * ((cases + 1) // 2) + 0.5)
+    """A panel for each compared case; disks that bear nothing stay white."""
+    cases = compared(data["polydispersity"].values)
+    figure, (panels,) = style.figure(1, len(cases), width="double", height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
-    largest = float(np.nanquantile(data["total"].values, 0.995))
-    for case, axes in enumerate(panels.flat[:cases]):
+    largest = float(np.nanquantile(data["total"].values[cases], 0.995))
+    for panel, (case, axes) in enumerate(zip(cases, panels, strict=True)):
         one = data.isel(case=case)
         x, z = one["position"].values.T
         shown = np.flatnonzero(np.abs(x) <= REACH)
@@ -47,11 +52,9 @@ def _maps(data: xr.Dataset) -> Figure:
         drawn.set_norm(LogNorm(LEAST, max(largest, 2.0 * LEAST)))
         axes.add_collection(drawn)
         axes.axhline(0.0, color=style.BLACK, linewidth=1.0)
-        axes.set(xlim=(-REACH, REACH), ylim=(-1.0, z.max() + 1.5), aspect="equal")
-        axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT)
-        style.letter(axes, "abcdefgh"[case], place="above", text=_name(data, case))
-    for axes in panels.flat[cases:]:
-        style.no_axes(axes)
+        axes.set(xlim=(-REACH, REACH), ylim=(-1.0, z.max() + 1.5), aspect="equal", xlabel=style.POSITION)
+        style.letter(axes, "abcdefgh"[panel], place="above", text=_name(data, case))
+    panels[0].set_ylabel(style.HEIGHT)
     ticks = [t for t in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if t <= largest]
     label = "absolute forces on the floor\nper unit force on the disk"
     bar = figure.colorbar(drawn, ax=panels, label=label, shrink=0.8)
