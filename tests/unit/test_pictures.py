@@ -56,7 +56,8 @@ def test_forces_are_those_that_the_load_adds(result, ax):
     length = np.linalg.norm(drawn[:, 1] - drawn[:, 0], axis=1)
     np.testing.assert_allclose(np.sort(length), np.sort(4.0 * size[size > 0.02 * size.max()] / size.max()), rtol=1e-9)
     width = np.concatenate([c.get_linewidth() for c in (black, red)])
-    np.testing.assert_allclose(width / width.max(), length / length.max())
+    # still seen in print
+    np.testing.assert_allclose(width, np.maximum(width.max() * length / length.max(), network.THINNEST))
     ends = np.sum(np.linalg.norm(added[size > 0.02 * size.max()], axis=1))
     assert ends > 0 and len(black.get_segments()) > len(red.get_segments())
 
