@@ -73,6 +73,8 @@ def _examples(*lines: str) -> str:
 #: Part of a load, left out of balance, from which on a response is said to be rounded off.
 ROUNDED = 1e-3
 
+Group = Annotated[str, typer.Argument(help="Figure group.", show_default=False)]
+GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 AllowUnsettled = Annotated[
     bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not at rest.")
 ]
@@ -218,7 +220,7 @@ def continue_(
     )
 )
 def simulate(
-    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
+    group: Group,
     workers: Annotated[int | None, typer.Option(min=1, help="Local processes; all cores if not given.")] = None,
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a running Dask scheduler, in place of local processes.")
@@ -258,8 +260,8 @@ def simulate(
     )
 )
 def draw(
-    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
-    data: Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")] = None,
+    group: Group,
+    data: GroupData = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder of the figures; figures/GROUP if not given.")
     ] = None,
@@ -280,8 +282,8 @@ def draw(
     )
 )
 def measure(
-    group: Annotated[str, typer.Argument(help="Figure group.", show_default=False)],
-    data: Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")] = None,
+    group: Group,
+    data: GroupData = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Numbers (JSON); figures/metrics/GROUP.json if not given.")
     ] = None,
