@@ -97,9 +97,7 @@ def profile(layers: int, per_row: int, friction: float, settle: int) -> list[dic
     parts = {
         "pair forces": lambda: _repeat_pairs(times, q, v, rim, f, n, spring, pairs.shape, pairs, rule),
         "wall forces": lambda: _repeat_walls(times, q, v, rim, f, n, walls.spring, walls.shape, walls, rule),
-        "integration": lambda: _repeat_integration(
-            times, dynamics.integrator.scheme, q, v, memory, model.inverse_mass
-        ),
+        "integration": lambda: _repeat_integration(times, dynamics.integrator.scheme, q, v, memory, model.inverse_mass),
         "watching displacements": lambda: _repeat_look(times, q, v, n, 0.5),
     }
     for part in parts.values():

@@ -261,9 +261,7 @@ def paper_note(axes: Axes, text: str) -> None:
     with context():
         legend = axes.get_legend()
         assert legend is not None
-        axes.annotate(
-            text, (1.0, 0.0), xycoords=legend, ha="right", va="top", fontsize=7, linespacing=1.0, color=PAPER
-        )
+        axes.annotate(text, (1.0, 0.0), xycoords=legend, ha="right", va="top", fontsize=7, linespacing=1.0, color=PAPER)
 
 
 def paper_value(

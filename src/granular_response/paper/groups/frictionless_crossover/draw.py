@@ -274,8 +274,6 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     soft, stiff = (style.equals("k_N", k, style.STIFFNESS_UNIT) for k in (stiffnesses[0], stiffnesses[-1]))
     names = letters("fig05c_depth_and_width")
     style.letter(box, next(names), place="above", text=stiff)
-    style.letter(
-        profiles, next(names), place="above", text=f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}"
-    )
+    style.letter(profiles, next(names), place="above", text=f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}")
     style.letter(events, next(names), place="above")
     return figure

@@ -16,8 +16,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     most = max(case.realizations for case in parameters.cases)
     maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
     panels = ", ".join(
-        f"({chr(ord('a') + k)}) δ = {case.polydispersity:g}, µ = {case.friction:g}"
-        for k, case in enumerate(maps)
+        f"({chr(ord('a') + k)}) δ = {case.polydispersity:g}, µ = {case.friction:g}" for k, case in enumerate(maps)
     )
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
     low, high = parameters.fitted

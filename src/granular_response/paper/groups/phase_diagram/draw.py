@@ -228,9 +228,7 @@ def _starts(starts: xr.Dataset) -> Figure:
         touching = 2.0 / (1.0 - 0.5 * delta)
         dips, contacts = panels[:, column]
         for k, friction in enumerate(frictions):
-            here = np.flatnonzero(
-                (starts["polydispersity"].values == delta) & (starts["friction"].values == friction)
-            )
+            here = np.flatnonzero((starts["polydispersity"].values == delta) & (starts["friction"].values == friction))
             here = here[np.argsort(starts["distance"].values[here])]
             one = starts.isel(case=here)
             for axes, name, data in ((dips, "dip", one.isel(width=0)), (contacts, "contacts", one)):

@@ -35,6 +35,7 @@ from granular_response.sweeps.tasks import Progress
 
 FloatArray = NDArray[np.float64]
 
+
 def simulate(
     parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
