@@ -246,6 +246,16 @@ def numerics_study():
         "stop_energy": dataset(grid, rest_error=(dims, errors), loaded_error=(dims, errors)),
         "restart": dataset({"load": [0.0, 4.0]}, kinetic_energy=(("load", "reading"), np.full((2, 3), 1e-28))),
         "at_rest": dataset(network_fixed_steps=6000.0, sliding_contacts=0.0, loose_disks=0.0),
+        "swing": dataset(
+            {"stop_rule": ["instantaneous", "envelope"]},
+            mean_acceleration=(("stop_rule", "reading"), np.full((2, 3), 1e-6)),
+            kinetic_energy=(("stop_rule", "reading"), np.full((2, 3), 1e-13)),
+        ),
+        "disorder": dataset(
+            {"x": [-1.0, 0.0, 1.0]},
+            stopped=(("realization", "x"), np.tile([1.001, 2.002, 1.0], (12, 1))),
+            finished=(("realization", "x"), np.tile([1.0, 2.0, 1.0], (12, 1))),
+        ),
         "time_step": dataset({"time_step": [5e-4, 2.5e-4]}, difference=("time_step", [0.0, 1e-5])),
         "integrators": dataset({"integrator": ["beeman", "gear"]}, difference=("integrator", [0.0, 1e-6])),
         "damping": dataset(

@@ -33,7 +33,7 @@ from granular_response.store import generated
 
 ROOT = Path(__file__).parents[2]
 CLAIM = {claim.id: claim for claim in table.CLAIMS}
-UNMEASURED = {"N3b", "N7", "N8"}
+UNMEASURED = {"N8"}
 ALGEBRA = {"K2", "K3"}
 #: Claims of the paper itself.
 PAPERS = sum(not claim.beyond for claim in table.CLAIMS)
@@ -262,6 +262,10 @@ PLANTED = [
     ("N1", scaled("numerics", "stop_energy", "loaded_error", 100.0), "depends on the reading"),
     ("N2", scaled("numerics", "restart", "kinetic_energy", 1e8), "contradicted"),
     ("N3a", put("numerics", "at_rest", "sliding_contacts", 1.0), "contradicted"),
+    ("N3b", put("numerics", "swing", "mean_acceleration", 2e-5), "contradicted"),
+    ("N3b", put("numerics", "swing", "mean_acceleration", [[2e-5] * 3, [1e-6] * 3]), "depends on the reading"),
+    ("N7", scaled("numerics", "disorder", "stopped", 1.1), "contradicted"),
+    ("N7", put("numerics", "disorder", "stopped", [[1.0, 2.0, 1.0], [1.04, 2.05, 1.03]] * 6), "undecided"),
     ("N4", scaled("numerics", "time_step", "difference", 1e4), "contradicted"),
     ("N5", scaled("numerics", "integrators", "difference", 1e5), "contradicted"),
     ("N6", put("numerics", "damping", "relaxation_time", [120.0, 70.0, 40.0, 30.0, 20.0]), "depends on the reading"),

@@ -202,15 +202,6 @@ class Claim:
         return self.id.startswith("B")
 
 
-def missing(needs: str) -> Measure:
-    """The measure of a claim that no stored dataset decides; ``needs`` says what would."""
-
-    def measure(data: Data, words: Bounds) -> Finding:
-        raise NotMeasured(f"needs {needs}")
-
-    return measure
-
-
 class Data:
     """Stored datasets by figure group; asking for what is not there raises NotMeasured.
 

@@ -26,6 +26,26 @@ class Damping(Description):
     stop_kinetic_energy: Positive
 
 
+class Swing(Description):
+    """What a run that has stopped would do next, with friction ``friction``."""
+
+    steps: Count = Field(description="Time steps of the paper's size after the stop, about one slow oscillation.")
+    read_every: Count = Field(description="Time steps between two readings.")
+
+
+class Disorder(Description):
+    """Responses of disordered slabs whose runs stop early, beside those of the same slabs in equilibrium."""
+
+    scene: Annotated[
+        Scene, over(Scene(), "loads", "packing.realization", "protocol.method", "protocol.stop_kinetic_energy")
+    ] = Scene()
+    stop_kinetic_energy: Positive = Field(description="Per disk, of the runs that stop early.")
+    realizations: Count
+    width: Positive = Field(description="w of the smoothing Gaussian, in radii.")
+    reach: Positive = Field(description="Of the x axis, in radii.")
+    spacing: Positive = Field(description="Of the x axis, in radii.")
+
+
 class Parameters(Description):
     """Section ``numerics``."""
 
@@ -41,3 +61,5 @@ class Parameters(Description):
     integrators: Integrators
     integrator_time_step: Positive
     damping: Damping
+    swing: Swing
+    disorder: Disorder

@@ -1,9 +1,10 @@
-"""What the paper says about its numerics, measured: claims N1 to N6 (Secs. III, III.B and III.C).
+"""What the paper says about its numerics, measured: claims N1 to N7 (Secs. III, III.B and III.C).
 
 ``stop_energy`` is the error that a stopping energy leaves in the floor forces; ``restart`` the kinetic energy after
-a static finish; ``at_rest`` the other criteria of rest; ``time_step`` and ``integrators`` responses to compare;
-``damping`` the time to rest against the damping ratio. All are runs of the dynamics on the default slab, without
-the static finish unless that is what is measured.
+a static finish; ``at_rest`` the other criteria of rest, ``swing`` how disks would move on; ``time_step`` and ``integrators`` responses to compare;
+``damping`` the time to rest against the damping ratio; ``disorder`` what an early stop costs averages over disordered
+slabs. All but the last are runs of the dynamics on the default slab, without the static finish unless that is what is
+measured.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from granular_response.observe.floor import floor_force
+from granular_response.observe.floor import floor_disks, floor_force, floor_response, smoothed_response
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.numerics.parameters import Parameters
 from granular_response.scene import Scene
@@ -31,6 +32,9 @@ FloatArray = NDArray[np.float64]
 
 #: Steps between two readings of the kinetic energy of a restarted state.
 READ_EVERY = 100
+
+#: When the kinetic energy is below the limit: the first time that it is, or all along a slow swing.
+STOP_RULES = ("instantaneous", "envelope")
 
 
 @dataclass(frozen=True)
@@ -102,6 +106,49 @@ class ResponseTask:
 
 
 @dataclass(frozen=True)
+class SwingTask:
+    """The run of a ResponseTask, going on after its stop."""
+
+    scene: Scene
+    steps: int
+    read_every: int
+
+    def run(self) -> tuple[FloatArray, FloatArray]:
+        """Mean acceleration of disks with two contacts or more, and kinetic energy per disk, at every reading."""
+        problem, _, loaded = _by_dynamics(self.scene)
+        dynamics = Dynamics(problem, loaded, self.scene.protocol.integrator, resolve_time_step(problem))
+        dynamics.set_ramps(load=(1.0, 1.0, 0.0))
+        readings = []
+        for _ in range(self.steps // self.read_every):
+            dynamics.advance(self.read_every)
+            readings.append((dynamics.mean_acceleration(), dynamics.kinetic_energy()))
+        acceleration, energy = np.array(readings).T
+        return acceleration, energy
+
+
+@dataclass(frozen=True)
+class DisorderTask:
+    """The smoothed response of one disordered slab, by a run that stops early and by one that is finished statically."""
+
+    scene: Scene
+    stop_energy: float
+    x: tuple[float, ...]
+    width: float
+
+    def run(self) -> FloatArray:
+        """(2, x): stopped early, in equilibrium."""
+        early = {"protocol.stop_kinetic_energy": self.stop_energy, "protocol.static_finish": False}
+        return np.stack([self._response(self.scene.updated(early)), self._response(self.scene)])
+
+    def _response(self, scene: Scene) -> FloatArray:
+        problem, rest, loaded = _by_dynamics(scene)
+        disks = floor_disks([rest, loaded], np.flatnonzero(problem.packing.row == 0))
+        x = rest.position[disks, 0] - rest.position[problem.load_disk[0], 0]
+        response = floor_response(rest, loaded, disks, float(np.abs(problem.load[:, 1]).sum()))
+        return smoothed_response(self.x, x, response, self.width)
+
+
+@dataclass(frozen=True)
 class DampingTask:
     """Relaxation under gravity with one damping ratio."""
 
@@ -118,7 +165,7 @@ class DampingTask:
         return dynamics.time, float(bool(state.reached.settled)), stability_limit(problem, "beeman")
 
 
-Task = StopTask | RestartTask | ResponseTask | DampingTask
+Task = StopTask | RestartTask | ResponseTask | SwingTask | DisorderTask | DampingTask
 
 
 def _run(task: Task) -> Any:
@@ -130,22 +177,32 @@ def rest_and_loaded(scene: Scene) -> tuple[State, State, NDArray[np.intp]]:
 
     The ``load_factor`` of the loaded state is the total force, so that responses are per applied force.
     """
-    literal = scene.updated({"protocol.method": "dynamics"})
-    problem = Problem.from_scene(literal)
+    problem, rest, loaded = _by_dynamics(scene)
+    force = float(np.abs(problem.load[:, 1]).sum())
+    return rest, replace(loaded, load_factor=force), np.flatnonzero(problem.packing.row == 0)
+
+
+def _by_dynamics(scene: Scene) -> tuple[Problem, State, State]:
+    """The problem with the scene's load, its state at rest and the loaded one."""
+    problem = Problem.from_scene(scene.updated({"protocol.method": "dynamics"}))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
-    force = float(np.abs(problem.load[:, 1]).sum())
     (loaded,) = loaded_states(problem, rest, [1.0])[1]
-    disks = np.flatnonzero(problem.packing.row == 0)
-    return rest, replace(loaded, load_factor=force), disks
+    return problem, rest, loaded
 
 
 def simulate(
     parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
-    """Datasets ``stop_energy``, ``restart``, ``at_rest``, ``time_step``, ``integrators`` and ``damping``."""
+    """Datasets ``stop_energy``, ``restart``, ``at_rest``, ``swing``, ``time_step``, ``integrators``, ``damping`` and
+    ``disorder``.
+    """
     base, force, friction = parameters.scene, parameters.force, parameters.friction
-    loaded = base.updated({"loads": [{"disk": "top-centre", "force": [0.0, -force]}]})
+    load = {"loads": [{"disk": "top-centre", "force": [0.0, -force]}]}
+    loaded = base.updated(load)
+    swing, disorder = parameters.swing, parameters.disorder
+    half = disorder.spacing * np.arange(round(disorder.reach / disorder.spacing) + 1)
+    grid = np.concatenate([-half[:0:-1], half])
     with_friction = loaded.updated({"contact.friction": friction})
     frictions, energies, ratios = parameters.frictions, parameters.stop_energies, parameters.damping.ratios
     restart, steps, integrators = parameters.restart, parameters.time_steps, parameters.integrators
@@ -168,6 +225,23 @@ def simulate(
         ],
         "stop_energy": [StopTask(loaded.updated({"contact.friction": mu}), energies) for mu in frictions],
         "restart": [RestartTask(frictionless, f, restart.steps) for f in restart.forces],
+        "swing": [
+            SwingTask(
+                with_friction.updated({"protocol.stop_rule": rule, "protocol.static_finish": False}),
+                swing.steps,
+                swing.read_every,
+            )
+            for rule in STOP_RULES
+        ],
+        "disorder": [
+            DisorderTask(
+                disorder.scene.updated({**load, "packing.realization": r}),
+                disorder.stop_kinetic_energy,
+                tuple(grid.tolist()),
+                disorder.width,
+            )
+            for r in range(disorder.realizations)
+        ],
         "time_step": [ResponseTask(with_friction.updated({"protocol.time_step": step})) for step in steps],
         "integrators": [
             ResponseTask(
@@ -192,6 +266,8 @@ def simulate(
         "time_step": _responses("time_step", np.array(steps), "time step in sqrt(radius/g)", x, found["time_step"]),
         "integrators": _responses("integrator", np.array(integrators), "integrator", x, found["integrators"]),
         "damping": _damping(ratios, found["damping"]),
+        "swing": _swing(swing.read_every, found["swing"]),
+        "disorder": _disorder(grid, found["disorder"]),
     }
     datasets["at_rest"] = datasets["time_step"].drop_vars(["floor_response", "difference"]).isel(time_step=0)
     for dataset in datasets.values():
@@ -262,6 +338,39 @@ def _responses(
         coords={
             dimension: variable((dimension,), values, text),
             "x": variable(("floor_disk",), x, "position from the loaded disk in mean disk radii"),
+        },
+    )
+
+
+def _swing(every: int, found: list[tuple[FloatArray, FloatArray]]) -> xr.Dataset:
+    texts = {
+        "mean_acceleration": "mean acceleration of disks with two contacts or more, in g",
+        "kinetic_energy": "kinetic energy per disk",
+    }
+    return xr.Dataset(
+        {
+            name: variable(("stop_rule", "reading"), np.stack([one[k] for one in found]), text)
+            for k, (name, text) in enumerate(texts.items())
+        },
+        coords={
+            "stop_rule": variable(("stop_rule",), np.array(STOP_RULES), "rule by which the run had stopped"),
+            "step": variable(("reading",), every * np.arange(1, found[0][0].size + 1), "time steps since the stop"),
+        },
+    )
+
+
+def _disorder(x: FloatArray, found: list[FloatArray]) -> xr.Dataset:
+    response = np.stack(found)
+    return xr.Dataset(
+        {
+            name: variable(
+                ("realization", "x"), response[:, k], f"smoothed floor response per applied force, {text}, in 1/radius"
+            )
+            for k, (name, text) in enumerate((("stopped", "of runs that stop early"), ("finished", "in equilibrium")))
+        },
+        coords={
+            "realization": variable(("realization",), np.arange(len(found)), "realization of the radii"),
+            "x": variable(("x",), x, "position from the loaded disk in mean disk radii"),
         },
     )
 
