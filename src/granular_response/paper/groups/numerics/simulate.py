@@ -1,10 +1,10 @@
 """What the paper says about its numerics, measured: claims N1 to N7 (Secs. III, III.B and III.C).
 
 ``stop_energy`` is the error that a stopping energy leaves in the floor forces; ``restart`` the kinetic energy after
-a static finish; ``at_rest`` the other criteria of rest, ``swing`` how disks would move on; ``time_step`` and ``integrators`` responses to compare;
-``damping`` the time to rest against the damping ratio; ``disorder`` what an early stop costs averages over disordered
-slabs. All but the last are runs of the dynamics on the default slab, without the static finish unless that is what is
-measured.
+a static finish; ``at_rest`` the other criteria of rest, ``swing`` how disks would move on; ``time_step`` and
+``integrators`` responses to compare; ``damping`` the time to rest against the damping ratio; ``disorder`` what an early
+stop costs averages over disordered slabs. All but the last are runs of the dynamics on the default slab, without the
+static finish unless that is what is measured.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ class SwingTask:
 
 @dataclass(frozen=True)
 class DisorderTask:
-    """The smoothed response of one disordered slab, by a run that stops early and by one that is finished statically."""
+    """The smoothed response of one disordered slab, stopped early and finished statically."""
 
     scene: Scene
     stop_energy: float
