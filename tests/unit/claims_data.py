@@ -458,6 +458,26 @@ def influence_study():
     }
 
 
+def scaling_study():
+    """Powers 2 of the layers with and without friction, and a series of widths that no claim reads."""
+    ends = np.array([2.0, 1.95, 2.05])
+    exponent = np.broadcast_to(ends, (3, 2, 3)).copy()
+    return {
+        "powers": dataset(
+            {
+                "series": ["walls", "friction", "width"],
+                "friction": ("series", [0.0, 0.2, 0.0]),
+                "varied": ("series", ["layers", "layers", "disks_per_layer"]),
+                "confined": ("series", ["walls", "as weight", "constant"]),
+                "event": ["first_opening", "crossover"],
+                "end": ["value", "least", "largest"],
+            },
+            exponent=(("series", "event", "end"), exponent),
+            extrapolated=(("series", "event", "end"), 1e4 * exponent),
+        ).assign_attrs(layers=1000.0)
+    }
+
+
 def everything():
     """Datasets in which every claim of the paper that is measured holds, in every reading."""
     return {
@@ -477,4 +497,5 @@ def everything():
         "superposition": superposition_study(),
         "numerics": numerics_study(),
         "influence": influence_study(),
+        "crossover_scaling": scaling_study(),
     }

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -141,7 +142,12 @@ class Measures:
         # Near the load means the central third, as in Figs. 4, 8 and 9. Towards the upper corners some contacts
         # carry almost nothing under gravity, so that they open under the least force.
         self.near = network.interior_contacts(path.rest, packing.width, packing.width / 3.0)
-        self.mirror = network.mirror_disks(packing.position, 0.5 * packing.width)
+        self._lattice = packing.position
+
+    @cached_property
+    def mirror(self) -> NDArray[np.intp]:
+        """(n,) mirror images in the middle, on the undeformed lattice; rows between periodic sides have none."""
+        return network.mirror_disks(self._lattice, 0.5 * self.width)
 
     def response(self, state: State) -> FloatArray:
         """(floor_disk,) floor response per applied force."""
@@ -150,6 +156,10 @@ class Measures:
     def centre(self, state: State) -> float:
         """Response at x = 0."""
         return float(np.interp(0.0, self.x, self.response(state)))
+
+    def dip(self, state: State) -> float:
+        """How far the response at x = 0 is below the lower maximum beside it, per largest response."""
+        return peaks.central_dip(self.x, self.response(state), interior=self.interior)
 
     def opened(self, state: State) -> int:
         """Number of contacts of disks that the load opened in the central third."""
@@ -182,7 +192,7 @@ class Measures:
         region = self.region(state)
         return {
             "response_at_centre": self.centre(state),
-            "central_dip": peaks.central_dip(x, response, interior=self.interior),
+            "central_dip": self.dip(state),
             "peak_count": peaks.peak_count(x, response, interior=self.interior),
             "double_peaked": self.double_peaked(state),
             "third_peak": self.third_peak(state),

@@ -17,6 +17,7 @@ from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
 from ..groups.contact_law import claims as contact_law
+from ..groups.crossover_scaling import claims as crossover_scaling
 from ..groups.friction_fields import claims as friction_fields
 from ..groups.friction_linear_range import claims as friction_linear_range
 from ..groups.frictionless_crossover import claims as frictionless_crossover
@@ -50,6 +51,7 @@ CLAIMS: tuple[Claim, ...] = tuple(
     sorted(
         (
             *contact_law.CLAIMS,
+            *crossover_scaling.CLAIMS,
             *friction_fields.CLAIMS,
             *friction_linear_range.CLAIMS,
             *frictionless_crossover.CLAIMS,

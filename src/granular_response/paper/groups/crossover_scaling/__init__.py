@@ -1,0 +1,1 @@
+"""Figure group ``crossover_scaling``."""

@@ -1,0 +1,48 @@
+"""What the figures of this group show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import xarray as xr
+
+from granular_response.paper.captions import Caption, of_scene, values
+
+from .parameters import Parameters
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    slabs = datasets["slabs"]
+    layers = values(sorted(set(slabs["layers"].values.tolist())))
+    frictions = sorted(set(slabs["friction"].values.tolist()))
+    said = of_scene(parameters.base, friction=frictions, normal_stiffness=None, packing=None)
+    stiffness = values(parameters.series[0].stiffness_per_layer)
+    return {
+        "crossover_scaling": Caption(
+            "Not in the paper: what the number of layers N does. (a) Force from which the floor response has two "
+            f"peaks, a dip at x = 0 of {parameters.visible:g} of its largest value; (b) force at which the first "
+            "contact opens in the central third. Bars are brackets; lines and numbers the power of N, with its range "
+            "over the fits with and without the smallest slab and over the brackets. P is the force of horizontal "
+            "contacts at rest: constant, in proportion to N as the weight, or what the paper's walls make it. "
+            f"Periodic sides but where walls are named; {layers} layers; k_N = {stiffness} N, so that gravity "
+            "makes the same overlaps in all.",
+            "Double logarithmic panels in which the crossover rises along straight lines, steeper with friction, "
+            "while the first opening rises little where the confinement is constant.",
+            said,
+        ),
+        "crossover_scaling_regions": Caption(
+            "Depth of the region of open contacts below the load over that of the slab, against the force over what it "
+            "is scaled by: without friction layers times the force P of horizontal contacts at rest, with friction "
+            "layers squared.",
+            "Curves of slabs of different depths that fall on one another where the force is scaled.",
+            said,
+        ),
+        "crossover_scaling_apart": Caption(
+            "What else sets the force from which there are two peaks, each varied alone: (a) width, (b) stiffness at "
+            "the same P, (c) force P of horizontal contacts at rest. Numbers are powers with ranges, as for layers.",
+            "Nearly level lines for width and stiffness; against the confinement a straight rise without friction "
+            "and hardly any with friction.",
+            said,
+        ),
+    }

@@ -1,0 +1,100 @@
+"""Claims B8 and B9, beyond the paper: finite size, with friction too (Secs. IV.B, IV.C and VIII)."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "crossover_scaling"
+#: Of the layers: the weight of a piece of the slab that is as wide as deep.
+OF_WEIGHT = 2.0
+
+
+def _powers(data: Data, event: str) -> list[tuple[str, xr.Dataset]]:
+    """What each series of layers is, and its powers of the layers."""
+    study = data.get(GROUP, "powers", "exponent", "extrapolated", "friction", "varied", "confined", "event", "end")
+    found = []
+    for k in range(study.sizes["series"]):
+        one = study.isel(series=k).sel(event=event)
+        if str(one["varied"].values) == "layers":
+            kind = str(one["confined"].values)
+            sides = {"walls": "between walls", "constant": "constant confinement"}.get(kind, "confined as weight")
+            found.append((f"friction {float(one['friction']):g}, {sides}", one))
+    if not found:
+        raise NotMeasured(f"data/{GROUP}.nc: powers holds no series of layers")
+    return found
+
+
+def _quantity(ends: xr.DataArray) -> Quantity:
+    value, least, largest = ends.values.tolist()
+    return Quantity.range((least, largest), value)
+
+
+def deep_and_shallow(data: Data, words: Bounds) -> Finding:
+    series = _powers(data, "crossover")
+    layers = float(data.get(GROUP, "powers", "extrapolated").attrs["layers"])
+    texts = [f"{_quantity(one['exponent']).text()} ({name})" for name, one in series]
+    far = [f"{_quantity(one['extrapolated']).text('mg')} ({name})" for name, one in series]
+    return Finding(
+        "crossover force grows with the layers as the power " + "; ".join(texts),
+        [
+            Reading(name, Condition("power of the layers", _quantity(one["exponent"]), 0.0, strict=True))
+            for name, one in series
+        ],
+        f"Extrapolated to {layers:g} layers: " + "; ".join(far),
+    )
+
+
+def of_weight(data: Data, words: Bounds) -> Finding:
+    near = words["nearly"]
+    series = [(name, one) for name, one in _powers(data, "crossover") if _by_itself(one)]
+    if not series:
+        raise NotMeasured(f"data/{GROUP}.nc: powers holds no series in which gravity could decide")
+    texts = [f"{_quantity(one['exponent']).text()} ({name})" for name, one in series]
+    return Finding(
+        "power of the layers: " + "; ".join(texts),
+        [
+            Reading(
+                name,
+                Condition(
+                    "power of the layers",
+                    _quantity(one["exponent"]),
+                    (1.0 - near) * OF_WEIGHT,
+                    (1.0 + near) * OF_WEIGHT,
+                    ("nearly",),
+                ),
+            )
+            for name, one in series
+        ],
+        "A weight grows as the layers squared, in two dimensions. Without friction horizontal contacts bear what "
+        "the sides press on them, not the weight above",
+    )
+
+
+def _by_itself(one: xr.Dataset) -> bool:
+    """Whether the power is not that of the weight by choice: no friction and a confinement that grows with it."""
+    return bool(float(one["friction"]) > 0.0 or str(one["confined"].values) != "as weight")
+
+
+CLAIMS = (
+    Claim(
+        "B8",
+        "beyond the paper, IV.B, VIII",
+        "power of the number of layers with which the crossover force grows, without and with friction",
+        "under identical loads very deep systems have one peak and shallow ones two; with friction too",
+        deep_and_shallow,
+        (),
+        GROUP,
+    ),
+    Claim(
+        "B9",
+        "beyond the paper, IV.C",
+        "the same power, over that of the weight of a piece of the slab as wide as deep",
+        "contacts open in a competition of the force with the compression due to gravity",
+        of_weight,
+        (),
+        GROUP,
+    ),
+)

@@ -1,0 +1,162 @@
+"""The crossover against the size of a slab, regions of open contacts scaled, and what else sets the crossover."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from granular_response.plot import style
+
+#: Height of a row of the lattice (radii).
+ROW = float(np.sqrt(3.0))
+
+#: What is varied beside the layers, and its label.
+APART = {
+    "disks_per_layer": "disks in a row / layers",
+    "stiffness_per_layer": rf"stiffness per layer $k_N{style.RADIUS}/(N{style.WEIGHT})$",
+    "confinement": rf"confinement $P/{style.WEIGHT}$",
+}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``crossover_scaling``, ``crossover_scaling_regions`` and ``crossover_scaling_apart``."""
+    slabs, paths, powers = datasets["slabs"], datasets["paths"], datasets["powers"]
+    return {
+        "crossover_scaling": _against_layers(slabs, powers),
+        "crossover_scaling_regions": _regions(slabs, paths, powers),
+        "crossover_scaling_apart": _apart(slabs, powers),
+    }
+
+
+def of_layers(powers: xr.Dataset) -> list[int]:
+    """The series whose slabs differ in their layers."""
+    return np.flatnonzero(powers["varied"].values == "layers").tolist()
+
+
+def _slabs_of(slabs: xr.Dataset, powers: xr.Dataset, series: int) -> np.ndarray:
+    return np.flatnonzero(slabs["series"].values == str(powers["series"].values[series]))
+
+
+def name(powers: xr.Dataset, series: int) -> str:
+    """Of a series of layers, for legends."""
+    friction, kind = float(powers["friction"][series]), str(powers["confined"].values[series])
+    sides = {"walls": "walls", "constant": "$P$ constant"}.get(kind, "$P\\propto N$")
+    return f"$\\mu = {friction:g}$, {sides}"
+
+
+def said(power: float) -> str:
+    """To two decimals, with a minus that is one and no sign of a zero."""
+    return f"{round(power, 2) + 0.0:.2f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
+    """Middles and half widths."""
+    low, high = one[f"{event}_bracket"].values.T
+    return 0.5 * (low + high), 0.5 * (high - low)
+
+
+def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
+    """(a) crossover, (b) first opening against layers; broken lines: power laws."""
+    figure, (panels,) = style.figure(1, 2, width="double", height=3.4)
+    for axes, event in zip(panels, ("crossover", "first_opening"), strict=True):
+        for look, series in enumerate(of_layers(powers)):
+            one = slabs.isel(slab=_slabs_of(slabs, powers, series))
+            layers = one["layers"].values.astype(float)
+            middle, half = _brackets(one, event)
+            power, least, largest = powers["exponent"].isel(series=series).sel(event=event).values
+            marked = style.marked_line(look) | {"linestyle": "none", "markersize": 4.5}
+            label = f"{name(powers, series)}: {said(power)} ({said(least)} to {said(largest)})"
+            axes.errorbar(layers, middle, half, capsize=2, label=label, **marked)
+            ends = np.array([layers.min(), layers.max()])
+            through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
+            axes.plot(ends, through, color=marked["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
+        axes.set(xscale="log", yscale="log", xlabel="layers $N$", ylabel=style.FORCE)
+        _plain(axes, sorted(set(slabs["layers"].values.tolist())))
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high * (high / low) ** 0.85)  # room for the legend
+        axes.legend(loc="upper left", title="power of $N$", fontsize=7)
+    for axes, letter, text in zip(panels, "ab", ("two peaks from", "first contact opens"), strict=True):
+        style.letter(axes, letter, place="above", text=text)
+    return figure
+
+
+def _plain(axes: Axes, ticks: list[int]) -> None:
+    """Layers as they are, on a logarithmic axis."""
+    axes.set_xticks(ticks, labels=[str(t) for t in ticks])
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.minorticks_off()
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
+    """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
+    chosen = regions_of(powers)
+    figure, panels = style.figure(1, len(chosen), width="double", height=2.7, sharey=True)
+    for letter, axes, series in zip("abcdef", panels[0], chosen, strict=False):
+        rows = _slabs_of(slabs, powers, series)
+        colours = style.ordered_colours(len(rows))
+        weight = float(powers["friction"][series]) > 0.0
+        for at, (k, colour) in enumerate(zip(rows, colours, strict=True)):
+            layers, confinement = float(slabs["layers"][k]), float(slabs["confinement"][k])
+            force = paths["force"].values[k] / (layers**2 if weight else layers * confinement)
+            depth = paths["depth"].values[k] / (ROW * (layers - 1.0))
+            look = style.marked_line(at, colour=colour) | {"markersize": 3.2}
+            axes.plot(force, depth, label=f"{layers:.0f}", **look)
+        unit = rf"$N^2\,{style.WEIGHT}$" if weight else "$NP$"
+        axes.set(xlabel=rf"${style.F_EXT}\,/\,$({unit})", ylim=(-0.03, 1.35), xscale="log")
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.legend(title="layers", loc="upper left", ncols=3, columnspacing=1.0)
+        style.letter(axes, letter, place="above", text=name(powers, series))
+    panels[0, 0].set_ylabel("depth of the open region / slab")
+    return figure
+
+
+def regions_of(powers: xr.Dataset) -> list[int]:
+    """The series whose regions are drawn: the first without friction, and the least and the most friction.
+
+    With friction only those whose confinement grows with the weight: others need not fall on one another.
+    """
+    layers = of_layers(powers)
+    friction, confined = powers["friction"].values, powers["confined"].values
+    without = [k for k in layers if friction[k] == 0.0][:1]
+    weight = [k for k in layers if friction[k] > 0.0 and str(confined[k]) == "as weight"]
+    rough = sorted(weight, key=lambda k: float(friction[k]))
+    return list(dict.fromkeys([*without, *rough[:1], *rough[-1:]]))
+
+
+def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
+    """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
+    varied = powers["varied"].values
+    kinds = [kind for kind in APART if (varied == kind).any()]
+    figure, panels = style.figure(1, len(kinds), width="double", height=2.7)
+    for letter, axes, kind in zip("abc", panels[0], kinds, strict=False):
+        for look, series in enumerate(np.flatnonzero(varied == kind).tolist()):
+            one = slabs.isel(slab=_slabs_of(slabs, powers, series))
+            x = {
+                "disks_per_layer": one["disks_per_row"] / one["layers"],
+                "stiffness_per_layer": one["normal_stiffness"] / one["layers"],
+                "confinement": one["confinement"],
+            }[kind].values
+            middle, half = _brackets(one, "crossover")
+            power, least, largest = powers["exponent"].isel(series=series).sel(event="crossover").values
+            friction, layers = float(powers["friction"][series]), int(one["layers"][0])
+            label = f"$\\mu = {friction:g}$, $N = {layers}$:\n{said(power)} ({said(least)} to {said(largest)})"
+            axes.errorbar(x, middle, half, capsize=2, label=label, **style.marked_line(look) | {"markersize": 4.5})
+        axes.set(xscale="log", yscale="log", xlabel=APART[kind])
+        low, high = axes.get_ylim()
+        axes.set_ylim(low / 1.3, high * max((high / low) ** 0.7, 3.0))
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+        if kind == "disks_per_layer":  # within a decade
+            axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
+        axes.legend(loc="upper left", fontsize=7)
+        style.letter(axes, letter, place="above")
+    panels[0, 0].set_ylabel(rf"two peaks from ${style.F_EXT}/{style.WEIGHT}$")
+    return figure

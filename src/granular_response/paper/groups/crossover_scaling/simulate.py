@@ -1,0 +1,413 @@
+"""How the crossover from one peak to two depends on the size of a slab (Secs. IV.B and VIII), with friction too.
+
+The paper calls the crossover a finite-size effect: gravity presses contacts together, a force opens them, and the
+deeper a slab the more force it takes. What scales here is said apart. The *series* are slabs that differ in one
+quantity: the number of layers, the width over the depth, the stiffness, or the *confinement*, the force that horizontal
+contacts bear at rest. On a lattice with periodic sides gravity gives them none: all distances in a row are those of the
+period, so the confinement is chosen, by a lattice constant a little below two radii. In series of layers the stiffness
+grows with the layers, so that gravity makes the same overlaps at every depth, and the confinement is constant, as
+between the paper's walls, or grows with the weight as well.
+
+Forces grow by one factor until the response has two peaks and the region of open contacts has reached the floor; events
+are then narrowed by bisection. Without friction every state is a minimum of the energy. With friction it is the end of
+a path, in increments in proportion to the force: what happens at a size happens over a stretch of forces in proportion
+to its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from granular_response.observe import network
+from granular_response.paper.datasets import labelled
+from granular_response.paper.groups.crossover_scaling.parameters import VARIED, Parameters, Series
+from granular_response.paper.slab_response import Event, LoadPath, Measures, locate
+from granular_response.scene import Scene
+from granular_response.solve.path import follow
+from granular_response.state import Crossing, State
+from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.sweeps.tasks import Progress, map_tasks
+
+FloatArray = NDArray[np.float64]
+
+#: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
+PAPERS_LAYERS = 15
+
+#: Force over the confinement, from which the answers of contacts to small forces are taken.
+SMALL = 0.1
+
+EVENTS = {
+    "first_opening": "a contact of disks in the central third of the slab is open that touches at rest",
+    "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
+    "two_peaks": "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
+    "reaches_floor": "the region of opened contacts below the load contains a contact of the bottom row",
+}
+
+#: What is fitted: all slabs of a series, and those but the smallest.
+FITS = ("all", "without the smallest")
+
+
+@dataclass(frozen=True)
+class Slab:
+    """One slab; series share what they have in common."""
+
+    layers: int
+    disks_per_row: int
+    friction: float
+    normal_stiffness: float
+    confinement: float  #: asked for; of no meaning between walls
+    periodic: bool
+
+    def scene(self, base: Scene) -> Scene:
+        """``base`` with this slab; between walls disks just touch, as in the paper."""
+        packing: dict[str, int | float | str] = {"layers": self.layers, "disks_per_row": self.disks_per_row}
+        if self.periodic:
+            packing |= {"sides": "periodic", "lattice_constant": 2.0 - self.confinement / self.normal_stiffness}
+        return base.updated(
+            {
+                "packing": packing,
+                "contact.friction": self.friction,
+                "contact.normal_stiffness": self.normal_stiffness,
+            }
+        )
+
+
+@dataclass
+class CoarsePath(LoadPath):
+    """A load path whose increments with friction are a part of the force."""
+
+    increment: float = 0.1
+
+    def through(self, forces: Iterable[float]) -> list[State]:
+        """As of a load path."""
+        forces = [float(force) for force in forces]
+        if not self.problem.rotations:
+            return super().through(forces)
+        for force in forces:
+            if force not in self.known:
+                below = max((known for known in self.known if known < force), default=0.0)
+                start = self.known[below] if below else self.rest
+                state = follow(self.problem, start, [force], longest_step=self.increment * force)[0]
+                self.crossings += state.reached.crossings
+                self.known[force] = state
+        return [self.known[force] for force in forces]
+
+
+@dataclass(frozen=True)
+class Task:
+    slab: Slab
+    scene: Scene
+    visible: float
+    first_force: float
+    factor: float
+    most_forces: int
+    increment: float
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a task leaves behind; arrays along its forces."""
+
+    confinement: float  #: mean force of horizontal contacts in the central third, at rest
+    linear_opening: float  #: force at which the first contact would open, by their answers to a small force
+    events: dict[str, Event]
+    force: FloatArray
+    dip: FloatArray
+    depth: FloatArray
+    width: FloatArray
+    opened: FloatArray
+    crossings: tuple[Crossing, ...]
+
+
+def compute(task: Task) -> Outcome:
+    """Raises what ``rest_state`` and load paths raise."""
+    whole = LoadPath.of(task.scene)
+    path = CoarsePath(whole.scene, whole.problem, whole.rest, increment=task.increment)
+    measures = Measures(path)
+    confinement = horizontal_force(measures)
+
+    def visible(state: State) -> bool:
+        return measures.dip(state) > task.visible
+
+    happened: dict[str, Callable[[State], bool]] = {
+        "first_opening": lambda state: measures.opened(state) > 0,
+        "crossover": visible,
+        "two_peaks": measures.double_peaked,
+        "reaches_floor": lambda state: measures.region(state).reaches_floor,
+    }
+    forces: list[float] = []
+    left = set(happened)
+    while left and len(forces) < task.most_forces:
+        forces.append(confinement * task.first_force * task.factor ** len(forces))
+        state = path.at(forces[-1])
+        left = {name for name in left if not happened[name](state)}
+    states = path.through(forces)
+    crossings = tuple(path.crossings)
+    found = {
+        name: locate(name, path, forces, happened[name], task.tolerance * _first(forces, states, happened[name]), text)
+        for name, text in EVENTS.items()
+    }
+    regions = [measures.region(state) for state in states]
+    return Outcome(
+        confinement,
+        linear_opening(measures, path.at(SMALL * confinement)),
+        found,
+        np.array(forces),
+        np.array([measures.dip(state) for state in states]),
+        np.array([region.depth for region in regions]),
+        np.array([region.width for region in regions]),
+        np.array([region.count for region in regions], float),
+        crossings,
+    )
+
+
+def _first(forces: Sequence[float], states: Sequence[State], happened: Callable[[State], bool]) -> float:
+    """The first force at which something has happened, or the last one."""
+    return next((f for f, state in zip(forces, states, strict=True) if happened(state)), forces[-1])
+
+
+def horizontal_force(measures: Measures) -> float:
+    """Mean normal force at rest of the horizontal contacts of disks in the central third (mean disk weights)."""
+    rest = measures.rest
+    chosen = (network.lattice_direction(rest) == network.HORIZONTAL) & measures.near
+    return float(rest.pairs.normal_force[chosen].mean())
+
+
+def linear_opening(measures: Measures, small: State) -> float:
+    """Force at which the first contact in the central third would open if all forces went on as up to ``small``.
+
+    Exact in a slab without friction, where all contacts go on as they are until then, but for the overlaps' effect on
+    directions.
+    """
+    rest = measures.rest.pairs.normal_force
+    change = (small.pairs.normal_force - rest) / abs(small.load_factor)
+    falling = measures.near & measures.rest.pairs.touching & (change < 0.0)
+    return float((rest[falling] / -change[falling]).min())
+
+
+@dataclass(frozen=True)
+class Power:
+    """A power law through brackets of positive numbers.
+
+    Least squares of the middles of the brackets' logarithms. Intervals are ranges: over the fits of all points and
+    of all but the smallest, and over every place that the events may have in their brackets.
+    """
+
+    at: FloatArray  #: (k,) what is varied
+    low: FloatArray  #: (k,)
+    high: FloatArray  #: (k,) nan where the event was not seen
+
+    @cached_property
+    def usable(self) -> NDArray[np.intp]:
+        """Points with both ends."""
+        return np.flatnonzero((self.low > 0.0) & np.isfinite(self.high))
+
+    def exponent(self) -> FloatArray:
+        """(value, least, largest); nan with less than two points."""
+        return self._range(lambda x: (x - x.mean()) / ((x - x.mean()) ** 2).sum())
+
+    def at_size(self, size: float) -> FloatArray:
+        """(value, least, largest) of the law at ``size``."""
+
+        def weights(x: FloatArray) -> FloatArray:
+            slope = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
+            return np.asarray(1.0 / len(x) + (np.log(size) - x.mean()) * slope)
+
+        return np.exp(self._range(weights))
+
+    def _range(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Of a sum over the logarithms with ``weights`` (k,) of the logarithms of what is varied."""
+        values, ends = [], []
+        for points in (self.usable, self.usable[1:]):
+            if len(points) < 2:
+                continue
+            least, most = np.log(self.low[points]), np.log(self.high[points])
+            each = weights(np.log(self.at[points]))
+            blur = float(np.abs(each) @ (0.5 * (most - least)))
+            values.append(float(each @ (0.5 * (least + most))))
+            ends += [values[-1] - blur, values[-1] + blur]
+        return np.array([values[0], min(ends), max(ends)]) if values else np.full(3, np.nan)
+
+
+def simulate(
+    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
+) -> dict[str, xr.Dataset]:
+    """Datasets ``slabs`` (slab), ``paths`` (slab, step) and ``powers`` (series).
+
+    Raises
+    ------
+    SweepError
+        If a slab cannot be solved.
+    """
+    found = slabs(parameters)
+    # the longest first, so that no worker is left with one at the end
+    order = sorted(dict.fromkeys(slab for _, slab in found), key=_work, reverse=True)
+    tasks = [_task(slab, parameters) for slab in order]
+    done = dict(zip(order, map_tasks(compute, tasks, workers=workers, progress=progress, what="slabs"), strict=True))
+    outcomes = [done[slab] for _, slab in found]
+    table = slab_table(found, outcomes)
+    table.attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
+    return labelled(
+        {"slabs": table, "paths": path_table(outcomes), "powers": power_table(table, parameters)}, parameters.base
+    )
+
+
+def slabs(parameters: Parameters) -> list[tuple[str, Slab]]:
+    """Names of series, each with one of its slabs; a slab that is in several series is there as often."""
+    return [
+        (
+            series.name,
+            Slab(
+                layers,
+                _odd(layers * across),
+                series.friction,
+                layers * stiffness,
+                confinement * (layers / PAPERS_LAYERS if series.confined == "as weight" else 1.0),
+                series.sides == "periodic",
+            ),
+        )
+        for series in parameters.series
+        for layers in series.layers
+        for across in series.disks_per_layer
+        for stiffness in series.stiffness_per_layer
+        for confinement in series.confinement
+    ]
+
+
+def _odd(number: float) -> int:
+    """The next odd whole number, so that a row has a disk in the middle."""
+    return 2 * int(np.ceil((number - 1e-9 - 1.0) / 2.0)) + 1
+
+
+def _work(slab: Slab) -> float:
+    """Roughly how long a slab takes."""
+    return slab.layers**2 * slab.disks_per_row * (20.0 if slab.friction else 1.0)
+
+
+def _task(slab: Slab, parameters: Parameters) -> Task:
+    return Task(
+        slab,
+        slab.scene(parameters.base),
+        parameters.visible,
+        parameters.first_force,
+        parameters.factor,
+        parameters.most_forces,
+        parameters.increment,
+        parameters.tolerance,
+    )
+
+
+def slab_table(found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome]) -> xr.Dataset:
+    """What each slab is, and its events."""
+
+    def column(values: list, text: str) -> xr.Variable:
+        return variable(("slab",), np.array(values), text)
+
+    data = {
+        f"{name}_bracket": variable(
+            ("slab", "bracket"),
+            np.array([(o.events[name].low, o.events[name].high) for o in outcomes]),
+            f"forces {FORCE} between which: {text}; nan if not up to the first",
+        )
+        for name, text in EVENTS.items()
+    }
+    data["linear_opening"] = column(
+        [o.linear_opening for o in outcomes],
+        f"force {FORCE} at which the first contact would open if contacts went on as under a small one",
+    )
+    data["confinement"] = column(
+        [o.confinement for o in outcomes], f"mean force of horizontal contacts in the central third at rest {FORCE}"
+    )
+    data["crossings"] = column([len(o.crossings) for o in outcomes], "stretches of the path that dynamics crossed")
+    each = [slab for _, slab in found]
+    return xr.Dataset(data).assign_coords(
+        series=column([name for name, _ in found], "series"),
+        layers=column([s.layers for s in each], "number of rows of the slab"),
+        disks_per_row=column([s.disks_per_row for s in each], "disks in the bottom row"),
+        friction=column([s.friction for s in each], "coefficient of friction between disks"),
+        normal_stiffness=column(
+            [s.normal_stiffness for s in each], "normal stiffness of contacts in mean weights per mean radius"
+        ),
+        periodic=column([int(s.periodic) for s in each], "1 for periodic sides, 0 for walls"),
+        bracket=variable(("bracket",), np.array(["low", "high"]), "ends of a bracket"),
+    )
+
+
+def path_table(outcomes: Sequence[Outcome]) -> xr.Dataset:
+    """What is measured at the forces of each slab; nan beyond its last one."""
+    steps = max(len(o.force) for o in outcomes)
+    texts = {
+        "force": f"applied force {FORCE}",
+        "dip": "how far the response at x = 0 is below the lower maximum beside it, per largest response",
+        "depth": f"depth of the region of opened contacts below the loaded disk {LENGTH}",
+        "width": f"largest width of the region of opened contacts {LENGTH}",
+        "opened": "contacts of the region",
+    }
+
+    def padded(values: FloatArray) -> FloatArray:
+        return np.concatenate([values, np.full(steps - len(values), np.nan)])
+
+    return xr.Dataset(
+        {
+            name: variable(("slab", "step"), np.stack([padded(getattr(o, name)) for o in outcomes]), text)
+            for name, text in texts.items()
+        }
+    )
+
+
+def power_table(table: xr.Dataset, parameters: Parameters) -> xr.Dataset:
+    """Powers of what each series varies, and where its events are at ``extrapolated`` layers."""
+    ends, events = ("value", "least", "largest"), ("first_opening", "crossover", "reaches_floor")
+    shape = (len(parameters.series), len(events), len(ends))
+    exponents, far = np.full(shape, np.nan), np.full(shape, np.nan)
+    for s, series in enumerate(parameters.series):
+        one = table.isel(slab=np.flatnonzero(table["series"].values == series.name))
+        at = _varied(one, series)
+        for e, event in enumerate(events):
+            law = Power(at, *one[f"{event}_bracket"].values.T)
+            exponents[s, e] = law.exponent()
+            if series.varied == "layers":
+                far[s, e] = law.at_size(parameters.extrapolated)
+    dims = ("series", "event", "end")
+    range_ = "range over the fits with and without the smallest, and over the brackets"
+    data = xr.Dataset(
+        {
+            "exponent": variable(
+                dims, exponents, f"power of what is varied with which the event's force grows; {range_}"
+            ),
+            "extrapolated": variable(dims, far, f"force {FORCE} of the event by this power law; {range_}"),
+        },
+        coords={
+            "series": variable("series", [one.name for one in parameters.series], "series"),
+            "friction": variable("series", [one.friction for one in parameters.series], "coefficient of friction"),
+            "varied": variable("series", [one.varied for one in parameters.series], "what differs along the series"),
+            "confined": variable(
+                "series",
+                ["walls" if one.sides == "walls" else one.confined for one in parameters.series],
+                "what sets the force of horizontal contacts at rest",
+            ),
+            "event": variable("event", list(events), "event"),
+            "end": variable("end", list(ends), "value and ends of the interval"),
+        },
+    )
+    data.attrs["layers"] = parameters.extrapolated
+    return data
+
+
+def _varied(one: xr.Dataset, series: Series) -> FloatArray:
+    """(slab,) what differs along a series, as it came to be."""
+    assert series.varied in VARIED
+    values = {
+        "layers": one["layers"],
+        "disks_per_layer": one["disks_per_row"] / one["layers"],
+        "stiffness_per_layer": one["normal_stiffness"] / one["layers"],
+        "confinement": one["confinement"],
+    }
+    return np.asarray(values[series.varied].values, float)
