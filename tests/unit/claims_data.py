@@ -478,6 +478,26 @@ def scaling_study():
     }
 
 
+def width_study():
+    power = np.array([[[0.98], [0.93]], [[0.97], [0.9]]])  # (case, definition, fit)
+    return {
+        name: dataset(
+            {
+                "polydispersity": ("case", [0.0, 0.1]),
+                "friction": ("case", [0.0, 0.2]),
+                "gravity": ("case", ["at-once", "frictionless"]),
+                "force": ("case", [0.0, 15.0]),
+                "realizations": ("case", [1, 6]),
+                "definition": ["half_maximum", "half_force"],
+            },
+            power=(("case", "definition", "fit"), power),
+            elastic_power=(("case", "definition", "fit"), power),
+            interval=(("case", "definition", "level"), power + np.array([-0.03, 0.02])),
+        )
+        for name in ("inside", "floors")
+    }
+
+
 def everything():
     """Datasets in which every claim of the paper that is measured holds, in every reading."""
     return {
@@ -498,4 +518,5 @@ def everything():
         "numerics": numerics_study(),
         "influence": influence_study(),
         "crossover_scaling": scaling_study(),
+        "peak_width": width_study(),
     }

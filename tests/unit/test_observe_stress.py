@@ -12,6 +12,8 @@ from granular_response.observe.stress import (
     coarse_grained_stress,
     contact_forces,
     grid_points,
+    line_forces,
+    line_stress,
     load_forces,
     pressure,
 )
@@ -119,3 +121,24 @@ def test_bad_options_are_refused(option):
     for value in (0.0, -1.0):
         with pytest.raises(ValueError, match=option):
             coarse_grained_stress(contact, np.zeros((1, 2)), **{option: value})
+
+
+def test_what_crosses_a_line_does_so_where_the_branch_crosses_it():
+    contact = one_contact([1.0, 3.0], [1.0, 2.0], [0.3, 0.8])  # pushes the upper disk up: compression
+    at, force = line_forces(contact, 1.5)
+    assert (at.tolist(), force.tolist()) == ([0.25], [0.8])
+    assert line_forces(one_contact([0.0, 1.0], [-1.0, -2.0], [-0.3, -0.8]), 1.5)[1].tolist() == [
+        0.8
+    ]  # partners swapped
+    assert line_forces(contact, 3.5)[0].size == 0
+    x = np.array([0.25, 1.25])
+    assert line_stress(contact, 1.5, x, 2.0) == pytest.approx(0.8 * np.exp([0.0, -0.25]) / (2.0 * np.sqrt(np.pi)))
+
+
+def test_the_stress_is_the_mean_over_heights_of_that_on_lines():
+    """Both hand down the same force: a strip in x and z of the one is a strip in x of the other."""
+    contact = one_contact([1.0, 3.0], [1.0, 2.0], [0.3, 0.8])
+    x, z = np.arange(-9.0, 11.0, 0.1), np.arange(-8.0, 13.0, 0.1)
+    whole = coarse_grained_stress(contact, grid_points(x, z), 1.5, cutoff=12.0)[..., 1, 1].sum(axis=0) * 0.1
+    lines = sum(line_stress(contact, height, x, 1.5) for height in np.arange(1.005, 3.0, 0.01)) * 0.01
+    assert whole == pytest.approx(lines, abs=1e-6)

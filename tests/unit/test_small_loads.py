@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 import granular_response as gr
+from granular_response.observe.difference import pair_force_difference, wall_force_difference
 from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.scene import Scene
-from granular_response.solve import EquilibriumError, influence, solve_scene
+from granular_response.solve import EquilibriumError, contact_answers, influence, solve_scene
+from granular_response.state import FLOOR
 
 SMALL = np.array([3e-5, -1e-4, 2e-5])
 CASES = {
@@ -91,3 +93,31 @@ def test_a_result_has_it_labelled_and_a_stored_one_too(tmp_path):
     assert np.array_equal(gr.open_result(tmp_path / "r.nc").influence(state=0).values, found.values)
     with pytest.raises(IndexError, match="state = 7"):
         result.influence(state=7)
+
+
+@pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
+def test_every_contact_answers_as_to_a_small_load(changes):
+    solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
+    rest, loaded = solution.rest, solution.loaded[0]
+    pairs, walls = contact_answers(solution.problem, rest, np.array([19, 80]))
+    assert pairs.shape == (2, len(rest.pairs.first), 2) and walls.shape == (2, len(rest.walls.first), 2)
+    assert pairs[1] == pytest.approx(pair_force_difference(rest, loaded) / 1e-4, abs=1e-4)
+    assert walls[1] == pytest.approx(wall_force_difference(rest, loaded) / 1e-4, abs=1e-4)
+    assert np.abs(pairs[1]).max() > 0.1
+
+
+@pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
+def test_what_contacts_with_the_floor_answer_is_the_influence(changes):
+    """One solution for each load against one with the transposed tangent for each floor disk."""
+    solution = solve_scene(described(changes, 80, [0.0, -1e-4, 0.0]))
+    rest = solution.rest
+    loads, disks = np.array([40, 83]), floor_disks([rest])
+    _, walls = contact_answers(solution.problem, rest, loads, sliding="stick")
+    floor = rest.walls.second == FLOOR
+    found = np.zeros((2, solution.problem.n))
+    for row in range(2):
+        np.add.at(found[row], rest.walls.first[floor], walls[row, floor, 1])
+    expected = -influence(solution.problem, rest, disks, sliding="stick")[:, loads, 1].T
+    assert found[:, disks] == pytest.approx(expected, abs=1e-9)
+    with pytest.raises(ValueError, match="sliding = 'slip': must be refuse or stick"):
+        contact_answers(solution.problem, rest, loads, sliding="slip")

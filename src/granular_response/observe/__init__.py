@@ -8,4 +8,5 @@
 ``difference``  rest and loaded state subtracted contact by contact
 ``stress``      coarse-grained stress and its balance
 ``profile``     contact force against horizontal position at a depth
+``widths``      how wide a response is, and the power of depth with which that grows
 """

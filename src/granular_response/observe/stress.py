@@ -32,6 +32,7 @@ from scipy.spatial import cKDTree
 from scipy.special import erf
 
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
+from granular_response.observe.floor import smoothed_response
 from granular_response.state import FloatArray, State
 
 #: Evaluations of a contact at a point that are held in memory at once.
@@ -49,7 +50,7 @@ class ContactForces:
 
 def contact_forces(state: State) -> ContactForces:
     """All touching contacts of a state, walls included."""
-    return _contact_forces(state, state.pair_force(), state.wall_force())
+    return given_forces(state, state.pair_force(), state.wall_force())
 
 
 def load_forces(rest: State, loaded: State) -> ContactForces:
@@ -60,10 +61,11 @@ def load_forces(rest: State, loaded: State) -> ContactForces:
     field, by the product of rest forces and displacements. Raises ``ValueError`` if the states list
     different candidates.
     """
-    return _contact_forces(loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded))
+    return given_forces(loaded, pair_force_difference(rest, loaded), wall_force_difference(rest, loaded))
 
 
-def _contact_forces(state: State, pair_force: FloatArray, wall_force: FloatArray) -> ContactForces:
+def given_forces(state: State, pair_force: FloatArray, wall_force: FloatArray) -> ContactForces:
+    """Forces (m, 2) and (w, 2) on the first partners of the contacts of ``state``, not its own; zeros are left out."""
     position, pairs, walls = state.position, state.pairs, state.walls
     at_wall = position[walls.first]
     on_wall = state.box.on_wall(at_wall, walls.second)
@@ -107,6 +109,28 @@ def coarse_grained_stress(
         for k in range(4):
             stress[:, k] += np.bincount(at, weights=weight * components[c, k], minlength=flat.shape[0])
     return stress.reshape(*points.shape[:-1], 2, 2)
+
+
+def line_forces(contacts: ContactForces, height: float) -> tuple[FloatArray, FloatArray]:
+    """(k,) places along x and vertical forces of the contacts whose branch crosses the horizontal line at ``height``.
+
+    Positive where the contact hands force down. Their sum is, exactly, the vertical load on the disks with their
+    centres above the line, less what side walls bear of it.
+    """
+    top, bottom = contacts.point[:, 1], contacts.point[:, 1] - contacts.branch[:, 1]
+    crossing = (top > height) != (bottom > height)
+    point, branch, force = contacts.point[crossing], contacts.branch[crossing], contacts.force[crossing]
+    at = point[:, 0] - branch[:, 0] * (point[:, 1] - height) / branch[:, 1]
+    return at, force[:, 1] * np.sign(branch[:, 1])
+
+
+def line_stress(contacts: ContactForces, height: float, x: FloatArray, width: float = 2.0) -> FloatArray:
+    """(len(x),) vertical stress on the horizontal line at ``height``, compression positive, coarse-grained along x.
+
+    The forces that cross the line (:func:`line_forces`) under the Gaussian ``exp(-(x/width)^2) / (width sqrt(pi))``:
+    the stress above, averaged over no height. Raises ``ValueError`` unless ``width`` is positive.
+    """
+    return smoothed_response(x, *line_forces(contacts, height), width)
 
 
 def grid_points(x: FloatArray, z: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .path import PathError, PathRecord, follow
     from .problem import Problem
     from .settle import NotSettled
-    from .small_loads import influence
+    from .small_loads import contact_answers, influence
     from .solution import Solution, continue_solution, loaded_states, rest_state, solve_scene
     from .timestep import UnstableTimeStep
 
@@ -37,6 +37,7 @@ _HOME = {
     "PathError": "path",
     "PathRecord": "path",
     "follow": "path",
+    "contact_answers": "small_loads",
     "influence": "small_loads",
     "Problem": "problem",
     "NotSettled": "settle",
@@ -73,6 +74,7 @@ __all__ = [
     "Stop",
     "UnstableTimeStep",
     "certify",
+    "contact_answers",
     "continue_solution",
     "finish",
     "follow",

@@ -3,7 +3,8 @@
 A stable state answers a force that is too small to change the status of any contact by ``dq = K^-1 f``, with the
 tangent stiffness K, and the vertical force on a floor disk changes by ``c . dq``, with the row c of its floor contact.
 So the influence of every disk on one floor disk is one solution with the transposed tangent, ``K^T y = c``: as many
-solutions as there are floor disks, whatever the number of loads.
+solutions as there are floor disks, whatever the number of loads. What a few loads do to all contacts takes a solution
+for each load.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 from ..state import FLOOR, FloatArray, State
 from .equilibrium import EquilibriumError
 from .problem import Problem
-from .system import StaticSystem
+from .system import StaticSystem, Trial
 
 #: A contact is at the Coulomb limit when what is left is less than this part of it.
 AT_LIMIT = 1e-9
@@ -55,20 +56,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     EquilibriumError
         For a state that is not certified as stable, or that has contacts at the Coulomb limit where these are refused.
     """
-    if sliding not in ("refuse", "stick"):
-        raise ValueError(f"sliding = {sliding!r}: must be refuse or stick")
-    if not (state.reached.certificate and state.reached.certificate.stable):
-        raise EquilibriumError("the state is not certified as stable: small loads have no small answer")
-    count = at_limit(problem, state)
-    if count and sliding == "refuse":
-        raise EquilibriumError(
-            f"{count} contacts are at the Coulomb limit: the answer to a small load depends on its direction; "
-            "sliding = 'stick' takes them as sticking"
-        )
-    system = StaticSystem(problem, state)
-    known = system.start(state)
-    never = np.full(len(system.first), np.inf), np.full(len(system.wall_disk), np.inf)
-    trial = system.trial(known, known.q, never)
+    system, trial = _sticking(problem, state, sliding)
     factor, transposed = system.transposed_factor(trial)
     n, freedoms = problem.n, problem.freedoms
     result = np.zeros((len(disks), n, freedoms))
@@ -85,3 +73,64 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     if problem.packing.periodic and not problem.wall_friction:
         result[:, :, 0] = np.nan
     return result
+
+
+def contact_answers(
+    problem: Problem, state: State, disks: np.ndarray, *, sliding: str = "refuse"
+) -> tuple[FloatArray, FloatArray]:
+    """What a unit force downwards on one disk after another adds to every contact force, in the limit of small loads.
+
+    Parameters
+    ----------
+    problem, state, sliding : as in :func:`influence`.
+    disks : (k,) the loaded disks.
+
+    Returns
+    -------
+    (k, m, 2) and (k, w, 2): what is added to the force on ``pairs.first`` and on ``walls.first`` of the state, per
+    force, at contacts that stay where they are. NaN for disks with less than two contacts, which nothing bears.
+
+    Raises
+    ------
+    As :func:`influence`.
+    """
+    system, trial = _sticking(problem, state, sliding)
+    factor, tangent = system.factorise(trial), system.tangent(trial)
+    n, freedoms, radius = problem.n, problem.freedoms, problem.packing.radius
+    held = np.isin(np.arange(system.dof), system.held)
+    on_pairs = np.empty((len(disks), len(system.first), 2))
+    on_walls = np.empty((len(disks), len(system.wall_disk), 2))
+    for row, disk in enumerate(disks):
+        force = np.zeros((freedoms, n))
+        force[1, disk] = -1.0
+        right = system.interleave(np.where(held, 0.0, force.ravel()))
+        y = factor.solve(right)
+        y += factor.solve(right - tangent @ y)  # the tangent was held by a tiny stiffness
+        moved = system.deinterleave(y).reshape(freedoms, n)
+        rim = radius * moved[2] if freedoms > 2 else np.zeros(n)
+        i, j, k = system.first, system.second, system.wall_disk
+        pairs = np.stack([moved[0, i] - moved[0, j], moved[1, i] - moved[1, j], rim[i] + rim[j]])
+        walls = np.stack([moved[0, k], moved[1, k], rim[k]])
+        on_pairs[row] = np.einsum("cab,bc->ca", trial.pair_tangent[:, :2], pairs)
+        on_walls[row] = np.einsum("cab,bc->ca", trial.wall_tangent[:, :2], walls)
+    borne = state.contact_count()[disks] >= 2
+    on_pairs[~borne] = on_walls[~borne] = np.nan
+    return on_pairs, on_walls
+
+
+def _sticking(problem: Problem, state: State, sliding: str) -> tuple[StaticSystem, Trial]:
+    """The equations at the state, every closed contact sticking; raises as :func:`influence`."""
+    if sliding not in ("refuse", "stick"):
+        raise ValueError(f"sliding = {sliding!r}: must be refuse or stick")
+    if not (state.reached.certificate and state.reached.certificate.stable):
+        raise EquilibriumError("the state is not certified as stable: small loads have no small answer")
+    count = at_limit(problem, state)
+    if count and sliding == "refuse":
+        raise EquilibriumError(
+            f"{count} contacts are at the Coulomb limit: the answer to a small load depends on its direction; "
+            "sliding = 'stick' takes them as sticking"
+        )
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    never = np.full(len(system.first), np.inf), np.full(len(system.wall_disk), np.inf)
+    return system, system.trial(known, known.q, never)

@@ -23,6 +23,7 @@ from ..groups.friction_linear_range import claims as friction_linear_range
 from ..groups.frictionless_crossover import claims as frictionless_crossover
 from ..groups.influence import claims as influence
 from ..groups.numerics import claims as numerics
+from ..groups.peak_width import claims as peak_width
 from ..groups.phase_diagram import claims as phase_diagram
 from ..groups.pile_dip import claims as pile_dip
 from ..groups.polydisperse_averages import claims as polydisperse_averages
@@ -57,6 +58,7 @@ CLAIMS: tuple[Claim, ...] = tuple(
             *frictionless_crossover.CLAIMS,
             *influence.CLAIMS,
             *numerics.CLAIMS,
+            *peak_width.CLAIMS,
             *phase_diagram.CLAIMS,
             *pile_dip.CLAIMS,
             *polydisperse_averages.CLAIMS,

@@ -1,0 +1,93 @@
+"""Claims B6 and B7, beyond the paper: is the response as wide as it is deep (Sec. II)?"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ...claims.claim import Claim, Data, Finding, NotMeasured, Quantity, Reading, about
+from ...claims.words import Bounds
+
+GROUP = "peak_width"
+#: Power of depth with which the width of an elastic response grows; force that diffuses has half of it, so that
+#: "about" it, within a quarter, is nearer to it than to that.
+ELASTIC = 1.0
+#: The two definitions of the width.
+WIDTHS = {"half_maximum": "half maximum", "half_force": "half of the force"}
+
+
+def inside_slabs(data: Data, words: Bounds) -> Finding:
+    """On lines inside the highest slab of each case."""
+    return _growth(data, "inside", words, "power of the depth")
+
+
+def on_floors(data: Data, words: Bounds) -> Finding:
+    """On the floors of slabs of growing height."""
+    return _growth(data, "floors", words, "power of the height")
+
+
+def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
+    study = data.get(
+        GROUP, name, "power", "interval", "elastic_power", "polydispersity", "friction", "gravity", "force"
+    )
+    readings, elastic, found = [], [], []
+    for case in range(study.sizes["case"]):
+        one = study.isel(case=case)
+        by = {words_of_it: one.sel(definition=definition) for definition, words_of_it in WIDTHS.items()}
+        readings.append(
+            Reading(
+                material(one), *(about(f"{what}, {width}", power(these), ELASTIC, words) for width, these in by.items())
+            )
+        )
+        found += [condition.found for condition in readings[-1].conditions]
+        elastic += [float(these["elastic_power"].values[0]) for these in by.values()]
+    values = [quantity.value for quantity in found]
+    return Finding(
+        f"the width grows as the power {min(values):.2g} to {max(values):.2g}, by the same code {min(elastic):.2g} to "
+        f"{max(elastic):.2g} in elastic slabs of the same heights; no interval goes below "
+        f"{min(quantity.low for quantity in found):.2g}",
+        readings,
+        "Proportional is taken as the power 1 within a quarter, nearer to 1 than to the 1/2 of force that diffuses, by "
+        "both definitions of the width",
+    )
+
+
+def power(found: xr.Dataset) -> Quantity:
+    """One power with its interval; raises NotMeasured where there is none."""
+    value, (low, high) = float(found["power"].values[0]), found["interval"].values
+    if not np.isfinite([value, low, high]).all():
+        raise NotMeasured(f"data/{GROUP}.nc holds a width without a power")
+    realizations = int(found["realizations"]) if "realizations" in found.coords else 1
+    return Quantity(value, float(low), float(high), "confidence" if realizations > 1 else "range")
+
+
+def material(one: xr.Dataset) -> str:
+    """A case in words."""
+    delta, force = float(one["polydispersity"]), float(one["force"])
+    prepared = ", prepared without friction" if str(one["gravity"].values) == "frictionless" else ""
+    return (
+        f"{f'δ = {delta:g}' if delta else 'lattice'}, friction {float(one['friction']):g}{prepared}, "
+        f"{f'force of {force:g} at 20 layers' if force else 'small force'}"
+    )
+
+
+CLAIMS = (
+    Claim(
+        "B6",
+        "beyond the paper, II",
+        "power of the depth with which the width of the response inside a slab grows, by two definitions of the width",
+        "the width is proportional to the depth, as in an elastic body, not to its root",
+        inside_slabs,
+        (),
+        GROUP,
+    ),
+    Claim(
+        "B7",
+        "beyond the paper, II.B",
+        "power of the height of a slab with which the width of the response on its floor grows",
+        "the width on the floor is proportional to the depth of the slab",
+        on_floors,
+        (),
+        GROUP,
+    ),
+)

@@ -1,0 +1,98 @@
+"""Widths of the response in slabs of 4 to 12 layers, from parameters through a file to figures and claims."""
+
+import numpy as np
+import pytest
+import reduced
+
+from granular_response.paper.claims.claim import Data
+from granular_response.paper.claims.verdict import judge
+from granular_response.paper.groups.peak_width import draw, simulate
+from granular_response.paper.groups.peak_width.claims import CLAIMS
+from granular_response.paper.groups.peak_width.parameters import Parameters
+from granular_response.scene import SceneError
+from granular_response.store import files as store
+
+PARAMETERS = reduced.parameters("peak_width")
+SMALL, LARGE, DISORDERED = 0, 1, 2
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("peak_width") / "group.nc"
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "peak_width"})
+    return store.read(path)
+
+
+def test_values_are_the_stored_ones(datasets, num_regression):
+    inside, floors = datasets["inside"], datasets["floors"]
+    num_regression.check(
+        {
+            "inside": inside["length"].isel(definition=slice(0, 2)).values.ravel(),
+            "floors": floors["length"].isel(definition=slice(0, 2)).values.ravel(),
+            "powers": floors["power"].isel(definition=slice(0, 2)).values.ravel(),
+            "intervals": floors["interval"].isel(definition=slice(0, 2)).values.ravel(),
+        },
+        default_tolerance={"rtol": 1e-6, "atol": 1e-9},
+    )
+
+
+def test_beside_smooth_walls_every_line_bears_the_whole_force(datasets):
+    for data in datasets.values():
+        share = data["transmitted"].isel(case=[SMALL, LARGE]).values
+        assert share[np.isfinite(share)] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_lattice_is_as_wide_as_the_elastic_slab(datasets):
+    """Twelve layers already, beyond the grains: the same lines, and floors, of a series in closed form."""
+    inside, floors = (datasets[name].isel(case=SMALL, definition=slice(0, 2)) for name in ("inside", "floors"))
+    fitted = inside["fitted"].values == 1.0
+    assert fitted.sum() >= 5
+    assert inside["length"].values[fitted] == pytest.approx(inside["elastic_length"].values[fitted], rel=0.1)
+    assert floors["length"].values[-1] == pytest.approx(floors["elastic_length"].values[-1], rel=0.05)
+
+
+def test_beyond_the_first_opening_the_lattice_has_two_peaks(datasets):
+    inside = datasets["inside"].sel(definition="peak_position")
+    at = inside["fitted"].values[LARGE] == 1.0
+    assert np.isfinite(inside["length"].values[LARGE, at]).all()
+    assert np.isnan(inside["length"].values[SMALL, at]).all()
+
+
+def test_intervals_hold_the_power(datasets):
+    floors = datasets["floors"].isel(definition=slice(0, 2))
+    low, high = np.moveaxis(floors["interval"].values, -1, 0)
+    value = floors["power"].isel(fit=0).values
+    assert (low <= value).all() and (value <= high).all()
+    assert (low < high).all()
+
+
+def test_figures_have_their_panels(datasets):
+    figures = draw.draw(datasets)
+    assert set(figures) == {"peak_width_depth", "peak_width_powers"}
+    assert len(figures["peak_width_depth"].axes) == 6
+    assert len(figures["peak_width_powers"].axes) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "verdict"), [("B6", 1.0, "reproduced"), ("B6", 0.5, "contradicted"), ("B7", 0.76, "undecided")]
+)
+def test_the_claims_follow_the_powers(datasets, name, value, verdict):
+    changed = {key: data.copy() for key, data in datasets.items()}
+    for data in changed.values():
+        data["power"] = data["power"].fillna(0.0) * 0.0 + value
+        data["interval"] = data["interval"].fillna(0.0) * 0.0 + value + np.array([-0.02, 0.02])
+    claim = next(one for one in CLAIMS if one.id == name)
+    assert judge(claim, Data({"peak_width": changed})).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("cases", [{"polydispersity": 0.1, "friction": 0.2, "layers": [4], "realizations": 2}], "must be at least 3"),
+        ("cases", [{"polydispersity": 0.0, "friction": 0.2, "layers": [6, 4]}], "must be growing numbers"),
+        ("spacing", 0.5, "must be below a tenth of reach"),
+    ],
+)
+def test_parameters_that_mean_nothing_are_refused(key, value, message):
+    with pytest.raises(SceneError, match=message):
+        Parameters(**PARAMETERS | {key: value})
