@@ -498,6 +498,25 @@ def width_study():
     }
 
 
+def moduli_study():
+    """Two cases with friction and one without, which alone differs much from its slab."""
+    difference = np.full((3, 2, 4, 4, 2), np.nan)
+    spread = np.array([-0.004, 0.0, 0.002, 0.004])[:, None, None]
+    difference[:, 0] = 0.3
+    difference[:2, 1], difference[2, 1] = 0.03 + spread, 0.9 + spread
+    return {
+        "packings": dataset(
+            {
+                "polydispersity": ("case", [0.1, 0.25, 0.1]),
+                "friction": ("case", [0.2, 0.2, 0.0]),
+                "solid": ["affine", "suppressed", "free", "isotropic"],
+            },
+            layers=(("case", "size"), np.array([[8.0, 16.0]] * 3)),
+            difference=(("case", "size", "realization", "solid", "smoothing"), difference),
+        )
+    }
+
+
 def everything():
     """Datasets in which every claim of the paper that is measured holds, in every reading."""
     return {
@@ -519,4 +538,5 @@ def everything():
         "influence": influence_study(),
         "crossover_scaling": scaling_study(),
         "peak_width": width_study(),
+        "moduli": moduli_study(),
     }

@@ -150,6 +150,15 @@ def by_case(columns):
     return np.array(columns)[:, None]
 
 
+def by_solid(rows):
+    """Along the solids, whose last dimension is the smoothing."""
+    return np.array(rows)[:, None]
+
+
+#: The second case alone differs from its slab.
+ONE_TOO_FAR = np.array([1.0, 10.0, 1.0])[:, None, None, None, None]
+
+
 def alternating(one, other):
     """Draws of crossover forces that are far apart, in neighbouring cases the other way round."""
     first = (np.arange(14)[:, None] + np.arange(41)) % 2 == 0
@@ -262,6 +271,10 @@ PLANTED = [
     ("B6", scaled("peak_width", "inside", "interval", [[[1.0]], [[1.6]]]), "depends on the reading"),
     ("B6", put("peak_width", "inside", "interval", [0.7, 0.8]), "undecided"),
     ("B7", scaled("peak_width", "floors", "interval", 0.5), "contradicted"),
+    ("B4", scaled("moduli", "packings", "difference", 10.0), "contradicted"),
+    ("B4", scaled("moduli", "packings", "difference", ONE_TOO_FAR), "depends on the reading"),
+    ("B4", scaled("moduli", "packings", "difference", by_solid([1.0, 1.0, 1.0, 10.0])), "reproduced"),
+    ("B5", scaled("moduli", "packings", "difference", by_solid([1.0, 1.0, 1.0, 10.0])), "contradicted"),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), "depends on the reading"),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), "depends on the reading"),
     ("U2", put("superposition", "linear_range", "nonlinear_from", NAN), "undecided"),

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .settle import NotSettled
     from .small_loads import contact_answers, influence
     from .solution import Solution, continue_solution, loaded_states, rest_state, solve_scene
+    from .strain import strained
     from .timestep import UnstableTimeStep
 
 # Names are looked up on first use: whoever reads states alone does not load the solvers.
@@ -46,6 +47,7 @@ _HOME = {
     "loaded_states": "solution",
     "rest_state": "solution",
     "solve_scene": "solution",
+    "strained": "strain",
     "UnstableTimeStep": "timestep",
 }
 _ERRORS = ("DynamicsError", "EquilibriumError", "NotSettled", "PathError", "UnstableTimeStep")
@@ -84,4 +86,5 @@ __all__ = [
     "relax",
     "rest_state",
     "solve_scene",
+    "strained",
 ]

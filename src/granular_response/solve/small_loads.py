@@ -56,7 +56,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     EquilibriumError
         For a state that is not certified as stable, or that has contacts at the Coulomb limit where these are refused.
     """
-    system, trial = _sticking(problem, state, sliding)
+    system, trial = sticking(problem, state, sliding)
     factor, transposed = system.transposed_factor(trial)
     n, freedoms = problem.n, problem.freedoms
     result = np.zeros((len(disks), n, freedoms))
@@ -94,7 +94,7 @@ def contact_answers(
     ------
     As :func:`influence`.
     """
-    system, trial = _sticking(problem, state, sliding)
+    system, trial = sticking(problem, state, sliding)
     factor, tangent = system.factorise(trial), system.tangent(trial)
     n, freedoms, radius = problem.n, problem.freedoms, problem.packing.radius
     held = np.isin(np.arange(system.dof), system.held)
@@ -118,7 +118,7 @@ def contact_answers(
     return on_pairs, on_walls
 
 
-def _sticking(problem: Problem, state: State, sliding: str) -> tuple[StaticSystem, Trial]:
+def sticking(problem: Problem, state: State, sliding: str) -> tuple[StaticSystem, Trial]:
     """The equations at the state, every closed contact sticking; raises as :func:`influence`."""
     if sliding not in ("refuse", "stick"):
         raise ValueError(f"sliding = {sliding!r}: must be refuse or stick")

@@ -15,7 +15,7 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 
 from ..kernels import statics
 from ..kernels.neighbours import close_pairs
-from ..state import SLIDING, Contacts, FloatArray, State, wall_normals
+from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .linear import Factor, elimination
 from .problem import Problem
 
@@ -315,6 +315,12 @@ class StaticSystem:
         statics.stiffnesses(trial.configuration.pair_overlap, self._pairs.shape, self._pairs.law, stiffness)
         g = np.zeros_like(trial.pair_tangent)
         g[:, :2, :2] = -stiffness[:, None, None] * normal[:, :, None] * normal[:, None, :]
+        if self.problem.pair_friction:
+            tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+            stiff = np.where(trial.pair_status == STICKING, self._pairs.law.tangential_stiffness, 0.0)
+            along = stiff[:, None] * tangent
+            g[:, :2, :2] -= along[:, :, None] * tangent[:, None, :]
+            g[:, :2, 2], g[:, 2, :2], g[:, 2, 2] = along, -along, stiff
         return replace(trial, pair_tangent=g)
 
     def definite_factor(self, trial: Trial, shift: float) -> Factor | None:

@@ -22,6 +22,7 @@ from ..groups.friction_fields import claims as friction_fields
 from ..groups.friction_linear_range import claims as friction_linear_range
 from ..groups.frictionless_crossover import claims as frictionless_crossover
 from ..groups.influence import claims as influence
+from ..groups.moduli import claims as moduli
 from ..groups.numerics import claims as numerics
 from ..groups.peak_width import claims as peak_width
 from ..groups.phase_diagram import claims as phase_diagram
@@ -57,6 +58,7 @@ CLAIMS: tuple[Claim, ...] = tuple(
             *friction_linear_range.CLAIMS,
             *frictionless_crossover.CLAIMS,
             *influence.CLAIMS,
+            *moduli.CLAIMS,
             *numerics.CLAIMS,
             *peak_width.CLAIMS,
             *phase_diagram.CLAIMS,

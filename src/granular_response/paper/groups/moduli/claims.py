@@ -1,0 +1,76 @@
+"""Claims B4 and B5, beyond the paper: disordered packings as elastic slabs, with nothing to fit (Sec. I)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ...claims.bootstrap import over_realizations
+from ...claims.claim import Claim, Condition, Data, Finding, Reading
+from ...claims.words import Bounds
+
+GROUP = "moduli"
+
+#: "Can be described by": nearly the same.
+WORD = "nearly"
+
+
+def _largest(study: xr.Dataset, case: int) -> xr.Dataset:
+    """The largest packings of a case."""
+    layers = study["layers"].values[case]
+    return study.isel(case=case, size=int(np.nanargmax(layers)), smoothing=0)
+
+
+def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
+    study = data.get(GROUP, "packings", "difference", "layers", "polydispersity", "friction")
+    readings, values, without = [], [], []
+    for case in range(study.sizes["case"]):
+        one = _largest(study, case)
+        found = over_realizations(one["difference"].sel(solid=solid).values, np.mean)
+        if not float(one["friction"]) > 0.0:
+            without.append(found)
+            continue
+        values.append(found.value)
+        name = f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}"
+        what = f"largest difference to the {of} slab per its largest pressure, mean of packings"
+        condition = Condition(what, found, most=words[WORD], words=(WORD,), unit="%")
+        readings.append(Reading(f"{name}, {float(one['layers']):g} layers", condition))
+    remark = "Mean over the small loads on the top disks of a packing, smoothed with w = 3; no parameter is fitted"
+    if without:
+        remark += f". Without friction they differ by {without[0].text('%')}"
+    ends = f"{100.0 * min(values):.2g} to {100.0 * max(values):.2g} %"
+    return Finding(
+        f"with friction they differ by {ends} of the largest pressure",
+        readings,
+        remark,
+    )
+
+
+def by_their_moduli(data: Data, words: Bounds) -> Finding:
+    return _described(data, words, "free", "elastic")
+
+
+def isotropic(data: Data, words: Bounds) -> Finding:
+    return _described(data, words, "isotropic", "isotropic")
+
+
+CLAIMS = (
+    Claim(
+        "B4",
+        "beyond the paper, I",
+        "response of disordered packings to small loads beside the elastic slab of their own measured moduli",
+        "large systems under small forces can be described by elasticity",
+        by_their_moduli,
+        (),
+        GROUP,
+    ),
+    Claim(
+        "B5",
+        "beyond the paper, I",
+        "the same beside the isotropic slab nearest to these moduli",
+        "large systems under small forces can be described by isotropic elasticity",
+        isotropic,
+        (),
+        GROUP,
+    ),
+)
