@@ -148,9 +148,19 @@ def test_powers_and_their_intervals_are_those_of_every_corner():
         every = corners(slice(None), what) + corners(slice(1, None), what)
         assert found[1:] == pytest.approx([min(every), max(every)])
         assert found[1] < found[0] < found[2]
+    far = law.at_size(1000.0, 1.0)
+    assert far[1] == pytest.approx(low[-1] * 1000.0 / 9.0)  # far below the fits
+    assert far[2] == law.at_size(1000.0)[2]
     assert np.isnan(simulate.Power(at[:1], low[:1], high[:1]).exponent()).all()
     unseen = simulate.Power(at, low, np.array([*high[:3], np.nan]))
     assert unseen.exponent() == pytest.approx(simulate.Power(at[:3], low[:3], high[:3]).exponent())
+
+
+def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
+    series = {one.name: one for one in parameters.series}
+    known = {name: simulate.continuum(one) for name, one in series.items() if one.varied == "layers"}
+    assert known == {"constant confinement": 1.0, "walls": 1.0, "friction": 2.0}
+    assert simulate.continuum(series["friction"].model_copy(update={"confined": "constant"})) is None
 
 
 def test_figures_have_their_panels_and_captions(datasets, parameters):

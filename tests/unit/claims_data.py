@@ -461,7 +461,7 @@ def influence_study():
 def scaling_study():
     """Powers 2 of the layers with and without friction, and a series of widths that no claim reads."""
     ends = np.array([2.0, 1.95, 2.05])
-    exponent = np.broadcast_to(ends, (3, 2, 3)).copy()
+    exponent = np.broadcast_to(ends, (3, 3, 3)).copy()
     return {
         "powers": dataset(
             {
@@ -469,7 +469,7 @@ def scaling_study():
                 "friction": ("series", [0.0, 0.2, 0.0]),
                 "varied": ("series", ["layers", "layers", "disks_per_layer"]),
                 "confined": ("series", ["walls", "as weight", "constant"]),
-                "event": ["first_opening", "crossover"],
+                "event": ["first_opening", "crossover", "reaches_floor"],
                 "end": ["value", "least", "largest"],
             },
             exponent=(("series", "event", "end"), exponent),

@@ -49,25 +49,24 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
 
 def of_weight(data: Data, words: Bounds) -> Finding:
     near = words["nearly"]
-    series = [(name, one) for name, one in _powers(data, "crossover") if _by_itself(one)]
-    if not series:
-        raise NotMeasured(f"data/{GROUP}.nc: powers holds no series in which gravity could decide")
-    texts = [f"{_quantity(one['exponent']).text()} ({name})" for name, one in series]
-    return Finding(
-        "power of the layers: " + "; ".join(texts),
-        [
+    readings, texts = [], []
+    for event, what in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks")):
+        series = [(name, _quantity(one["exponent"])) for name, one in _powers(data, event) if _by_itself(one)]
+        texts.append(f"{what}: " + "; ".join(f"{power.text()} ({name})" for name, power in series))
+        readings += [
             Reading(
-                name,
+                f"{what}, {name}",
                 Condition(
-                    "power of the layers",
-                    _quantity(one["exponent"]),
-                    (1.0 - near) * OF_WEIGHT,
-                    (1.0 + near) * OF_WEIGHT,
-                    ("nearly",),
+                    "power of the layers", power, (1.0 - near) * OF_WEIGHT, (1.0 + near) * OF_WEIGHT, ("nearly",)
                 ),
             )
-            for name, one in series
-        ],
+            for name, power in series
+        ]
+    if not readings:
+        raise NotMeasured(f"data/{GROUP}.nc: powers holds no series in which gravity could decide")
+    return Finding(
+        "powers of the layers: " + "; ".join(texts),
+        readings,
         "A weight grows as the layers squared, in two dimensions. Without friction horizontal contacts bear what "
         "the sides press on them, not the weight above",
     )
@@ -91,7 +90,7 @@ CLAIMS = (
     Claim(
         "B9",
         "beyond the paper, IV.C",
-        "the same power, over that of the weight of a piece of the slab as wide as deep",
+        "powers of the layers: of the force at which the open region reaches the floor, and of the crossover",
         "contacts open in a competition of the force with the compression due to gravity",
         of_weight,
         (),

@@ -49,9 +49,6 @@ EVENTS = {
     "reaches_floor": "the region of opened contacts below the load contains a contact of the bottom row",
 }
 
-#: What is fitted: all slabs of a series, and those but the smallest.
-FITS = ("all", "without the smallest")
-
 
 @dataclass(frozen=True)
 class Slab:
@@ -213,14 +210,23 @@ class Power:
         """(value, least, largest); nan with less than two points."""
         return self._range(lambda x: (x - x.mean()) / ((x - x.mean()) ** 2).sum())
 
-    def at_size(self, size: float) -> FloatArray:
-        """(value, least, largest) of the law at ``size``."""
+    def at_size(self, size: float, continuum: float | None = None) -> FloatArray:
+        """(value, least, largest) of the law at ``size``.
+
+        With the power of the ``continuum``, that power from the last point on is one more reading of the interval.
+        """
 
         def weights(x: FloatArray) -> FloatArray:
             slope = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
             return np.asarray(1.0 / len(x) + (np.log(size) - x.mean()) * slope)
 
-        return np.exp(self._range(weights))
+        found = np.exp(self._range(weights))
+        if continuum is not None and len(self.usable):
+            last = self.usable[-1]
+            grown = float((size / self.at[last]) ** continuum)
+            found[1] = min(found[1], self.low[last] * grown)
+            found[2] = max(found[2], self.high[last] * grown)
+        return found
 
     def _range(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
         """Of a sum over the logarithms with ``weights`` (k,) of the logarithms of what is varied."""
@@ -374,7 +380,9 @@ def power_table(table: xr.Dataset, parameters: Parameters) -> xr.Dataset:
             law = Power(at, *one[f"{event}_bracket"].values.T)
             exponents[s, e] = law.exponent()
             if series.varied == "layers":
-                far[s, e] = law.at_size(parameters.extrapolated)
+                far[s, e] = law.at_size(
+                    parameters.extrapolated, continuum(series) if event != "first_opening" else None
+                )
     dims = ("series", "event", "end")
     range_ = "range over the fits with and without the smallest, and over the brackets"
     data = xr.Dataset(
@@ -382,7 +390,12 @@ def power_table(table: xr.Dataset, parameters: Parameters) -> xr.Dataset:
             "exponent": variable(
                 dims, exponents, f"power of what is varied with which the event's force grows; {range_}"
             ),
-            "extrapolated": variable(dims, far, f"force {FORCE} of the event by this power law; {range_}"),
+            "extrapolated": variable(
+                dims,
+                far,
+                f"force {FORCE} of the event by this power law; {range_}, and the largest slab with the power of the "
+                "continuum",
+            ),
         },
         coords={
             "series": variable("series", [one.name for one in parameters.series], "series"),
@@ -399,6 +412,18 @@ def power_table(table: xr.Dataset, parameters: Parameters) -> xr.Dataset:
     )
     data.attrs["layers"] = parameters.extrapolated
     return data
+
+
+def continuum(series: Series) -> float | None:
+    """Power of the layers of what happens at the scale of the whole slab, where disks are small.
+
+    Equal slabs of any size are one slab where all that stands against a force grows with the layers squared: weights,
+    and a confinement that grows as they do. Without friction it is the confinement alone, a stress, on a length. With
+    friction and a constant confinement there are two scales, and no such power: None.
+    """
+    if series.confined == "as weight" and series.sides == "periodic":
+        return 2.0
+    return 1.0 if series.friction == 0.0 else None
 
 
 def _varied(one: xr.Dataset, series: Series) -> FloatArray:
