@@ -166,7 +166,7 @@ def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
 def test_figures_have_their_panels_and_captions(datasets, parameters):
     figures = draw.draw(datasets)
     assert set(figures) == set(captions(datasets, parameters))
-    assert [len(figure.axes) for figure in figures.values()] == [2, 2, 3]
+    assert [len(figure.axes) for figure in figures.values()] == [4, 2, 3]
 
 
 def test_claims_are_judged(datasets):

@@ -21,14 +21,14 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     return {
         "crossover_scaling": Caption(
             "Not in the paper: what the number of layers N does. (a) Force from which the floor response has two "
-            f"peaks, a dip at x = 0 of {parameters.visible:g} of its largest value; (b) force at which the first "
-            "contact opens in the central third. Bars are brackets; lines and numbers the power of N, with its range "
-            "over the fits with and without the smallest slab and over the brackets. P is the force of horizontal "
-            "contacts at rest: constant, in proportion to N as the weight, or what the paper's walls make it. "
-            f"Periodic sides but where walls are named; {layers} layers; k_N = {stiffness} N, so that gravity "
-            "makes the same overlaps in all.",
-            "Double logarithmic panels in which the crossover rises along straight lines, steeper with friction, "
-            "while the first opening rises little where the confinement is constant.",
+            f"peaks, a dip at x = 0 of {parameters.visible:g} of its largest value; (b) force at which the region of "
+            "open contacts reaches the floor; (c) force at which the first contact opens in the central third. Bars "
+            "are brackets; lines and numbers powers of N, with the range over the fits with and without the smallest "
+            "slab and over the brackets. P is the force of horizontal contacts at rest: constant, in proportion to N "
+            "as the weight, or what the paper's walls make it. Periodic sides but where walls are named; "
+            f"{layers} layers; k_N = {stiffness} N, so that gravity makes the same overlaps in all.",
+            "Double logarithmic panels. Two peaks come along straight lines, about twice as steep with friction as "
+            "without; the region's lines are as steep where P grows with N; the first opening rises least.",
             said,
         ),
         "crossover_scaling_regions": Caption(
@@ -40,7 +40,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         ),
         "crossover_scaling_apart": Caption(
             "What else sets the force from which there are two peaks, each varied alone: (a) width, (b) stiffness at "
-            "the same P, (c) force P of horizontal contacts at rest. Numbers are powers with ranges, as for layers.",
+            "the same P, (c) force P of horizontal contacts at rest. Numbers are powers with ranges, as for layers; "
+            "with friction the force levels off where P is small.",
             "Nearly level lines for width and stiffness; against the confinement a straight rise without friction "
             "and hardly any with friction.",
             said,

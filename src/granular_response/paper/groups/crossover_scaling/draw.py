@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,6 +15,13 @@ from granular_response.plot import style
 
 #: Height of a row of the lattice (radii).
 ROW = float(np.sqrt(3.0))
+
+#: Events of the first figure.
+NAMES = {
+    "crossover": "two peaks from",
+    "reaches_floor": "open region at the floor",
+    "first_opening": "first contact opens",
+}
 
 #: What is varied beside the layers, and its label.
 APART = {
@@ -62,28 +70,36 @@ def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
-    """(a) crossover, (b) first opening against layers; broken lines: power laws."""
-    figure, (panels,) = style.figure(1, 2, width="double", height=3.4)
-    for axes, event in zip(panels, ("crossover", "first_opening"), strict=True):
+    """(a) crossover, (b) region at the floor, (c) first opening against layers, with power laws; names beside them."""
+    figure, panels = style.figure(2, 2, width="double", height=5.6)
+    shown = dict(zip(("crossover", "reaches_floor", "first_opening"), panels.ravel(), strict=False))
+    for letter, (event, axes) in zip("abc", shown.items(), strict=True):
         for look, series in enumerate(of_layers(powers)):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             layers = one["layers"].values.astype(float)
             middle, half = _brackets(one, event)
             power, least, largest = powers["exponent"].isel(series=series).sel(event=event).values
-            marked = style.marked_line(look) | {"linestyle": "none", "markersize": 4.5}
-            label = f"{name(powers, series)}: {said(power)} ({said(least)} to {said(largest)})"
-            axes.errorbar(layers, middle, half, capsize=2, label=label, **marked)
+            label = f"{said(power)} ({said(least)} to {said(largest)})"
+            axes.errorbar(layers, middle, half, capsize=2, label=label, **_symbol(look))
             ends = np.array([layers.min(), layers.max()])
             through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
-            axes.plot(ends, through, color=marked["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
+            axes.plot(ends, through, color=_symbol(look)["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
         axes.set(xscale="log", yscale="log", xlabel="layers $N$", ylabel=style.FORCE)
         _plain(axes, sorted(set(slabs["layers"].values.tolist())))
         low, high = axes.get_ylim()
-        axes.set_ylim(low, high * (high / low) ** 0.85)  # room for the legend
-        axes.legend(loc="upper left", title="power of $N$", fontsize=7)
-    for axes, letter, text in zip(panels, "ab", ("two peaks from", "first contact opens"), strict=True):
-        style.letter(axes, letter, place="above", text=text)
+        axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
+        axes.legend(loc="upper left", title="power of $N$", fontsize=7, ncols=2, columnspacing=1.0)
+        style.letter(axes, letter, place="above", text=NAMES[event])
+    key = panels[1, 1]
+    key.set_axis_off()
+    for look, series in enumerate(of_layers(powers)):
+        key.plot([], [], label=name(powers, series), **_symbol(look))
+    key.legend(loc="center")
     return figure
+
+
+def _symbol(look: int) -> dict[str, Any]:
+    return style.marked_line(look) | {"linestyle": "none", "markersize": 4.5}
 
 
 def _plain(axes: Axes, ticks: list[int]) -> None:
