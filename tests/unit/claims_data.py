@@ -446,6 +446,31 @@ def superposition_study():
     }
 
 
+def hysteresis_study():
+    """Loops that are reversible as far as the response is linear, and lose nothing a second time."""
+    low = np.full((2, 3, 2), np.nan)
+    low[0, 0] = [4.0, 4.1]
+    low[1] = [[0.5, 0.5], [0.6, 0.58], [0.55, 0.6]]
+    materials = {"polydispersity": ("case", [0.0, 0.1]), "friction": ("case", [0.2, 0.2])}
+    along = ("case", "realization", "turn")
+    nothing = np.where(np.isfinite(low), 1e-4, np.nan)
+    return {
+        "events": dataset(
+            materials | {"event": ["linear_range", "reversible_range"]},
+            low=(("case", "realization", "event"), low),
+            high=(("case", "realization", "event"), 1.02 * low),
+        ),
+        "loops": dataset(
+            materials,
+            force=(("case", "turn"), [[1.0, 15.0], [3.0, np.nan]]),
+            work=(along, np.where(np.isfinite(low), 1.0, np.nan)),
+            slid_again=(along, nothing),
+            crossed_again=(along, 0.0 * nothing),
+            floor_repeated=(along, nothing),
+        ),
+    }
+
+
 def influence_study():
     power = np.full((2, 4, 1, 3), np.nan)
     power[0, 0] = [1.98, 1.97, 1.99]  # a lattice: one realization, and the range over the fits
@@ -535,6 +560,7 @@ def everything():
         "phase_diagram": phases_study(),
         "superposition": superposition_study(),
         "numerics": numerics_study(),
+        "hysteresis": hysteresis_study(),
         "influence": influence_study(),
         "crossover_scaling": scaling_study(),
         "peak_width": width_study(),

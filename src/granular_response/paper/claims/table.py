@@ -21,6 +21,7 @@ from ..groups.crossover_scaling import claims as crossover_scaling
 from ..groups.friction_fields import claims as friction_fields
 from ..groups.friction_linear_range import claims as friction_linear_range
 from ..groups.frictionless_crossover import claims as frictionless_crossover
+from ..groups.hysteresis import claims as hysteresis
 from ..groups.influence import claims as influence
 from ..groups.moduli import claims as moduli
 from ..groups.numerics import claims as numerics
@@ -57,6 +58,7 @@ CLAIMS: tuple[Claim, ...] = tuple(
             *friction_fields.CLAIMS,
             *friction_linear_range.CLAIMS,
             *frictionless_crossover.CLAIMS,
+            *hysteresis.CLAIMS,
             *influence.CLAIMS,
             *moduli.CLAIMS,
             *numerics.CLAIMS,

@@ -1,0 +1,127 @@
+"""Claims B2 and B3, beyond the paper: whether what is nonlinear is irreversible, and what a second loading finds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from ...claims.bootstrap import over_realizations
+from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "hysteresis"
+#: Realizations from which on they have an interval of confidence.
+FEWEST = 3
+
+
+def _name(case: xr.Dataset) -> str:
+    return f"polydispersity {float(case['polydispersity']):g}, friction {float(case['friction']):g}"
+
+
+def over_packings(each: Sequence[Quantity]) -> Quantity:
+    """One packing as it is; of several the median with its interval, or where they are few or some are bounds, what
+    they span."""
+    if len(each) == 1:
+        return each[0]
+    if len(each) >= FEWEST and all(one.happens for one in each):
+        return over_realizations([one.value for one in each])
+    middle = float(np.median([one.value for one in each]))
+    return Quantity(middle, min(one.low for one in each), max(one.high for one in each), "range")
+
+
+def ranges(data: Data, words: Bounds) -> Finding:
+    events = data.get(GROUP, "events", "low", "high", "polydispersity", "friction")
+    readings: list[Reading] = []
+    ends: dict[bool, list[Quantity]] = {True: [], False: []}
+    for case in range(events.sizes["case"]):
+        one = events.isel(case=case)
+        brackets = {
+            name: np.stack([one.sel(event=name)[end].values for end in ("low", "high")], axis=1)
+            for name in ("linear_range", "reversible_range")
+        }
+        each = [
+            Quantity.bracket(*reversible).per(Quantity.bracket(*linear))
+            for reversible, linear in zip(brackets["reversible_range"], brackets["linear_range"], strict=True)
+            if np.isfinite(linear).all()
+        ]
+        if not each:
+            continue
+        found = over_packings(each)
+        ends[bool(one["friction"] > 0.0)].append(found)
+        about = words["about"]
+        condition = Condition("reversible over linear range", found, 1.0 - about, 1.0 + about, ("about",))
+        readings.append(Reading(_name(one), condition))
+    if not readings:
+        raise NotMeasured("no packing leaves its linear range")
+    parts = [
+        f"{'with' if friction else 'without'} friction {_span(found)}" for friction, found in ends.items() if found
+    ]
+    return Finding(
+        f"the reversible range over the linear one: {', '.join(parts)}",
+        readings,
+        "Reversible: a loop leaves no floor force changed by more than 1 % of the largest change under the load. "
+        "Linear: the response at x = 0 changes by less than 1 %",
+    )
+
+
+def _span(found: Sequence[Quantity]) -> str:
+    low, high = min(one.low for one in found), max(one.high for one in found)
+    return f"{low:.2g} to {high:.2g}" if np.isfinite(high) else f"above {low:.2g}"
+
+
+def repeated(data: Data, words: Bounds) -> Finding:
+    needed = ("force", "work", "slid_again", "crossed_again", "floor_repeated", "polydispersity", "friction")
+    loops = data.get(GROUP, "loops", *needed)
+    readings, lost, changed = [], [], []
+    for case in range(loops.sizes["case"]):
+        one = loops.isel(case=case)
+        last = int(np.flatnonzero(np.isfinite(one["force"].values))[-1])
+        one = one.isel(turn=last)
+        part = _of_realizations((one["slid_again"] + one["crossed_again"]).values / one["work"].values)
+        floor = _of_realizations(one["floor_repeated"].values)
+        lost.append(part.value)
+        changed.append(floor.value)
+        readings.append(
+            Reading(
+                f"{_name(one)}, {float(one['force']):g} mg",
+                Condition("part of the work lost again", part, most=words["visible"], words=("visible",), unit="%"),
+                Condition("change of the response", floor, most=words["visible"], words=("visible",), unit="%"),
+            )
+        )
+    return Finding(
+        f"a second loading loses up to {100.0 * max(lost):.2g} % of the work, and changes the response by up to "
+        f"{100.0 * max(changed):.1g} %",
+        readings,
+        "From the largest force to none and back; the response by its largest change of a floor force. Elastic is "
+        "taken as losing less than 1 % of the work",
+    )
+
+
+def _of_realizations(values: np.ndarray) -> Quantity:
+    """One packing has no interval, of several the mean has one."""
+    found = values[np.isfinite(values)]
+    return over_realizations(found, np.mean) if len(found) > 1 else Quantity.exact(found[0])
+
+
+CLAIMS = (
+    Claim(
+        "B2",
+        "beyond the paper, I and VII",
+        "range in which loading leaves nothing behind, over the range in which the response is linear",
+        "what is nonlinear is irreversible, and what is linear elastic",
+        ranges,
+        (),
+        GROUP,
+    ),
+    Claim(
+        "B3",
+        "beyond the paper, IV",
+        "what is lost and changed when the same force is applied a second time",
+        "with its contacts modified by the load, a packing is incrementally elastic",
+        repeated,
+        (),
+        GROUP,
+    ),
+)

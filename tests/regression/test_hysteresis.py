@@ -1,0 +1,137 @@
+"""Loading and unloading a slab of 6 layers, from parameters through a file to figures and claims."""
+
+import numpy as np
+import pytest
+import reduced
+
+from granular_response.paper.claims.claim import Data
+from granular_response.paper.claims.verdict import judge
+from granular_response.paper.groups.hysteresis import captions, draw, simulate
+from granular_response.paper.groups.hysteresis.claims import CLAIMS
+from granular_response.paper.groups.hysteresis.parameters import Parameters
+from granular_response.scene import SceneError
+from granular_response.solve import Problem, loaded_states, minimise
+from granular_response.solve import solution as solvers
+from granular_response.store import files as store
+
+PARAMETERS = reduced.parameters("hysteresis")
+#: Cases of the reduced parameters.
+SMOOTH, ROUGH, DISORDERED = 0, 1, 2
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    path = tmp_path_factory.mktemp("hysteresis") / "group.nc"
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "hysteresis"})
+    return store.read(path)
+
+
+def part_of_work(loops, name):
+    return (loops[name] / loops["work"]).values
+
+
+def test_values_are_the_stored_ones(datasets, num_regression):
+    loops = datasets["loops"]
+    num_regression.check(
+        {
+            name: loops[name].isel(case=ROUGH, realization=0).values
+            for name in ("work", "lost", "slid", "slid_again", "floor_left", "displacement_left")
+        },
+        default_tolerance={"rtol": 1e-5, "atol": 1e-9},
+    )
+
+
+def test_without_friction_nothing_is_lost_and_nothing_stays(datasets):
+    loops = datasets["loops"].isel(case=SMOOTH, realization=0, turn=slice(0, 2))
+    assert (loops["opened_contacts"] > 0).any() and (np.abs(loops["nonlinearity"]) > 0.05).any()
+    for name in ("lost", "kept", "lost_again"):
+        assert np.abs(part_of_work(loops, name)).max() < 1e-8
+    assert (loops["floor_left"] < 1e-8).all() and (loops["slid"] == 0.0).all()
+
+
+def test_what_is_neither_given_back_nor_kept_has_slid(datasets):
+    loops = datasets["loops"]
+    for again in ("", "_again"):
+        slid = part_of_work(loops, f"slid{again}")
+        left_over = part_of_work(loops, f"lost{again}") - part_of_work(loops, f"kept{again}") - slid
+        quiet = loops[f"crossed{again}"].values == 0.0
+        assert np.abs(left_over[quiet]).max() < 1e-3
+        assert np.nanmax(np.abs(left_over[: ROUGH + 1])) < 1e-4
+    assert np.nanmax(part_of_work(loops, "slid")) > 0.05
+
+
+def test_books_close_better_with_smaller_increments():
+    scene = Parameters.model_validate(PARAMETERS).of(Parameters.model_validate(PARAMETERS).cases[ROUGH], 0)
+    problem = Problem.from_scene(scene)
+    rest = solvers.rest_state(problem)
+    problem = problem.with_loads(rest.position)
+
+    def left_over(count):
+        ways = np.linspace(0.0, 4.0, count + 1)
+        states = [rest, *loaded_states(problem, rest, [*ways[1:], *ways[-2::-1]])[1]]
+        books = simulate.keep_books(problem, states)
+        return abs(books.work - books.stored - books.slid) / books.slid
+
+    coarse, fine = left_over(6), left_over(48)
+    assert fine < 1e-4 and fine < 0.2 * coarse
+
+
+def test_sliding_stops_where_friction_is_high():
+    """A load too small to slide anything, on a slab pressed together: the same springs going and coming."""
+    scene = Parameters.model_validate(PARAMETERS).of(Parameters.model_validate(PARAMETERS).cases[ROUGH], 0)
+    scene = scene.updated({"contact.friction": 100.0})
+    problem = Problem.from_scene(scene)
+    rest = solvers.rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    states = [rest, *loaded_states(problem, rest, [0.05, 0.1, 0.05, 0.0])[1]]
+    books = simulate.keep_books(problem, states)
+    assert books.slid == pytest.approx(0.0, abs=1e-12) and abs(books.work) < 1e-12
+
+
+def test_without_friction_the_path_ends_in_the_minimum_of_the_energy():
+    parameters = Parameters.model_validate(PARAMETERS)
+    problem = Problem.from_scene(parameters.of(parameters.cases[SMOOTH], 0))
+    rest = solvers.rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    back = loaded_states(problem, rest, [1.0, 2.0, 1.0])[1][-1]
+    assert np.abs(back.position - minimise(problem, rest, load_factor=1.0).position).max() < 1e-9
+
+
+def test_the_reversible_range_is_where_a_loop_begins_to_leave_something(datasets):
+    events, loops = datasets["events"], datasets["loops"]
+    for case in (ROUGH, DISORDERED):
+        for realization in range(PARAMETERS["cases"][case].get("realizations", 1)):
+            one = events.sel(event="reversible_range").isel(case=case, realization=realization)
+            loop = loops.isel(case=case, realization=realization)
+            force, left = loop["force"].values, loop["floor_left"].values
+            assert (left[force < float(one["low"]) * (1 - 1e-9)] <= PARAMETERS["left"]).all()
+            if np.isfinite(one["high"]):
+                assert (left[force >= float(one["high"])][:1] > PARAMETERS["left"]).all()
+    without = events.sel(event="reversible_range").isel(case=SMOOTH, realization=0)
+    assert np.isnan(without["high"]) and without["low"] == PARAMETERS["cases"][SMOOTH]["forces"][-1]
+
+
+def test_figures_have_their_panels_and_captions(datasets):
+    figures = draw.draw(datasets)
+    assert {name: len(figure.axes) for name, figure in figures.items()} == {
+        "hysteresis_loops": 2,
+        "hysteresis_ranges": 3,
+    }
+    assert set(captions.captions(datasets, Parameters.model_validate(PARAMETERS))) == set(figures)
+
+
+def test_the_claims_are_measured(datasets):
+    found = [judge(claim, Data({"hysteresis": datasets})) for claim in CLAIMS]
+    assert all(entry.finding is not None for entry in found)
+    without = found[0].finding.readings[0].conditions[0]
+    assert without.outcome == "fails" and without.found.low > 1.0
+
+
+def test_loads_of_all_ways_are_the_same():
+    assert simulate.grid([1.0, 4.0], 2) == [0.0, 0.5, 1.0, 2.5, 4.0]
+
+
+@pytest.mark.parametrize(("key", "value"), [("left", 0.0), ("tolerance", 2.0), ("cases", [])])
+def test_wrong_parameters_are_named(key, value):
+    with pytest.raises(SceneError, match=key):
+        Parameters(**PARAMETERS | {key: value})
