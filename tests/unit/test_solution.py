@@ -81,7 +81,7 @@ def test_a_path_whose_every_increment_fails_gives_up_after_a_few(monkeypatch, st
 
     tried = []
 
-    def fails(*_):
+    def fails(*_, **__):
         tried.append(1)
         assert len(tried) < 50
         return None

@@ -19,6 +19,7 @@ from granular_response.solve import (
     relax,
     rest_state,
 )  # fmt: skip
+from granular_response.state import OPEN
 
 FLOOR = np.arange(13)
 
@@ -106,6 +107,43 @@ def test_default_increments_are_within_the_aim_of_accuracy(settled):
     force = 4.0
     fine = floor_force(follow(problem, rest, [force], longest_step=0.02)[0], FLOOR)
     assert np.abs(floor_force(follow(problem, rest, [force])[0], FLOOR) - fine).max() / force < 1e-4
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.2, 1.0])
+def test_increments_keep_the_tolerance(friction):
+    """Responses and open contacts are those of a path in increments of a fifth of the first.
+
+    The estimate is no bound: the tolerance is kept within a factor of two.
+    """
+    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+    problem = Problem.from_scene(scene(8, 21, contact__friction=friction, loads=load))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    forces = [4.0, 15.0, 50.0]
+    record, short = PathRecord(), PathRecord()
+    states = follow(problem, rest, forces, tolerance=1e-5, record=record)
+    fine = follow(problem, rest, forces, longest_step=0.2 * path.FIRST_STEP * problem.n**0.5, record=short)
+    bottom = np.arange(21)
+    for state, other in zip(states, fine, strict=True):
+        error = np.abs(floor_force(state, bottom) - floor_force(other, bottom)).max()
+        assert error <= 2e-5 * state.load_factor
+        assert np.array_equal(state.pairs.status == OPEN, other.pairs.status == OPEN)
+        assert state.certificate.stable and state.certificate.force_residual < 1e-10
+    assert record.crossings == short.crossings == []
+    assert record.comparisons > 0 and record.work.increments < 0.25 * short.work.increments
+
+
+def test_a_smaller_tolerance_takes_shorter_increments_and_leaves_less(settled):
+    problem, rest = settled
+    fine = floor_force(follow(problem, rest, [4.0], longest_step=0.002)[0], FLOOR)
+    errors, increments = [], []
+    for tolerance in (1e-5, 1e-6):
+        record = PathRecord()
+        state = follow(problem, rest, [4.0], tolerance=tolerance, record=record)[0]
+        errors.append(np.abs(floor_force(state, FLOOR) - fine).max() / 4.0)
+        increments.append(record.work.increments)
+    assert errors[0] < 2e-5 and errors[1] < 2e-6
+    assert increments[1] > increments[0]
 
 
 def test_a_stretch_that_costs_too_much_is_left_to_dynamics(settled, monkeypatch):

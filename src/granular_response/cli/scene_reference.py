@@ -44,6 +44,7 @@ UNITS = {
     "time_step": "sqrt(R/g)",
     "ramp_time": "sqrt(R/g)",
     "load_factors": "",
+    "path_tolerance": "",
     "stop_kinetic_energy": "disk weight × mean radius",
 }
 #: No key accepts this.

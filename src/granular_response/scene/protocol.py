@@ -70,6 +70,12 @@ class Protocol(Description):
         "disks; rings: mean mass, and moment of inertia of a ring of the disk's radius, for every disk, while weights "
         "stay as they are. Turning limits the time step less then, and the step grows with the limit.",
     )
+    path_tolerance: Positive | None = Field(
+        default=None,
+        description="Error of a floor or wall force, as a part of the load, that the increments of a path may leave by "
+        "their own estimate. Their lengths follow from it, and with 1e-5 there are fewer. Left out, they are short "
+        "throughout.",
+    )
     time_step: TimeStep | None = Field(
         default=None,
         description="Time step in sqrt(R/g); auto takes the largest one that is safe for the scene. Left out, it is "

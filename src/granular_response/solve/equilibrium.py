@@ -16,6 +16,8 @@ from .system import Configuration, StaticSystem, Trial
 
 #: Largest force or torque left on any disk, in units of a mean disk weight.
 TOLERANCE = 1e-10
+#: Unbalanced force at which Newton's method ends without trying to do better.
+ENOUGH = 1e-3 * TOLERANCE
 #: Friction below which Newton's method may not find which contacts slide.
 LEAST_FRICTION = 1e-4
 #: Most factorisations of a Newton solution.
@@ -66,13 +68,15 @@ def newton(
     start: FloatArray | None = None,
     *,
     tolerance: float = TOLERANCE,
+    enough: float = ENOUGH,
     maximum_iterations: int = NEWTON_ITERATIONS,
 ) -> tuple[Trial, NewtonReport]:
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
     Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
     for a moment). A factorisation serves as long as no contact changes its status and the residual falls
-    tenfold with it. Returns the last trial and a report; ``report.converged`` says whether it is a solution,
+    tenfold with it. The end is a residual below ``enough``, or below ``tolerance`` where it falls no further.
+    Returns the last trial and a report; ``report.converged`` says whether it is a solution,
     ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """
     n = system.problem.n
@@ -84,7 +88,7 @@ def newton(
     stalled = iterations = 0
     slow = False
     while True:
-        if size < 1e-3 * tolerance or (size < tolerance and stalled):
+        if size < enough or (size < tolerance and stalled):
             return trial, NewtonReport(True, iterations, size)
         try:
             factor = None if slow else system.kept_factor(trial)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..state import FloatArray
-from .equilibrium import newton
+from .equilibrium import ENOUGH, newton
 from .line_search import shortened
 from .system import Configuration, StaticSystem, Trial
 
@@ -30,6 +30,8 @@ PATIENCE, SLOW = 6, 0.05
 MOST_WORK = 150
 #: Levenberg shift of the minimisation, in units of the normal stiffness.
 SHIFT = 1e-7
+#: Unbalanced force (mean disk weights) up to which a state is left that is only passed: the next increment takes it up.
+PASSED = 1e-8
 #: Residual at which a minimisation with fixed limits ends; they change anyway.
 ROUGH = 1e-7
 #: Part to which the energy's slope falls along a step.
@@ -47,19 +49,29 @@ class Work:
 
 
 def solve_increment(
-    system: StaticSystem, known: Configuration, external: FloatArray, guess: FloatArray, work: Work
+    system: StaticSystem,
+    known: Configuration,
+    external: FloatArray,
+    guess: FloatArray,
+    work: Work,
+    *,
+    passing: bool = False,
+    stubborn: bool = True,
 ) -> Trial | None:
     """Equilibrium under ``external``, one increment after ``known``; None where none is found.
 
-    ``guess`` (dof,) is a prediction of the displacements.
+    ``guess`` (dof,) is a prediction of the displacements. ``passing`` : whether the state is only passed on the way, so
+    that an unbalanced force of ``PASSED`` will do. ``stubborn`` : whether limits are held fixed where Newton's method
+    fails, which costs more than a shorter increment.
     """
-    trial, report = newton(system, known, external, guess, maximum_iterations=DIRECT_ITERATIONS)
+    enough = PASSED if passing else ENOUGH
+    trial, report = newton(system, known, external, guess, enough=enough, maximum_iterations=DIRECT_ITERATIONS)
     work.factorisations += report.iterations
     if report.converged:
         work.increments += 1
         return trial
     pair_mu, wall_mu = system.problem.pair_law.friction, system.problem.wall_law.friction
-    if not system.problem.rotations:
+    if not system.problem.rotations or not stubborn:
         return None
     here = system.trial(known, known.q)
     limits = (pair_mu * here.pair_normal, wall_mu * here.wall_normal)
@@ -76,7 +88,7 @@ def solve_increment(
         if done >= PATIENCE and change > SLOW:
             return None
         if done > FIRST_TRY:
-            true, report = newton(system, known, external, q, maximum_iterations=DIRECT_ITERATIONS - 2)
+            true, report = newton(system, known, external, q, enough=enough, maximum_iterations=DIRECT_ITERATIONS - 2)
             work.factorisations += report.iterations
             if report.converged:
                 work.increments += 1

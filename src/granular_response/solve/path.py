@@ -1,15 +1,17 @@
 """Quasi-static loading: a sequence of equilibria under a growing or falling load (the limit of infinitely slow ramps).
 
 Each increment is solved with the return map of ``kernels.statics`` (see :mod:`.increment`). Where a contact goes on
-opening, sliding or sticking throughout an increment the return map is exact for any length of the increment.
+opening, sliding or sticking throughout an increment the return map is exact for any length of the increment. With a
+tolerance, increments grow as long as their errors (see :mod:`.increment_error`) stay within it.
 Where no equilibrium is found on the shortest increment, or the equilibrium has lost its stability, the branch has
 ended: explicit dynamics carries the packing to the next equilibrium and statics goes on from there. So
 it does where an increment, or a stretch of load, has cost more factorisations than the limits below. Every such
 crossing is recorded with its load and its reason.
 
-Stability is looked at about once per mean disk weight of load. With sliding contacts a negative eigenvalue of the
-tangent is only a suspicion (the tangent belongs to one direction of sliding), so it is tried: dynamics starts
-from the state displaced a little along the suspicious direction, and either comes back or leaves.
+Stability is looked at about once per mean disk weight of load, and with a tolerance only if any contact has changed
+since. With sliding contacts a negative eigenvalue of the tangent is only a suspicion (the tangent belongs to one
+direction of sliding), so it is tried: dynamics starts from the state displaced a little along the suspicious direction,
+and either comes back or leaves.
 """
 
 from __future__ import annotations
@@ -19,24 +21,31 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..state import Crossing, Reached, State
+from ..state import Crossing, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop, relax
 from .equilibrium import certify, external_force
 from .increment import Work, solve_increment
+from .increment_error import Place, error_of_two, slip
 from .problem import Problem
 from .settle import CROSSING as CROSSING_OVER
 from .settle import CROSSING_STOP, NotSettled, nudged, settle
 from .system import Configuration, StaticSystem, Trial
 from .timestep import resolve_time_step
 
-#: Longest load increment in mean disk weights, times the square root of the number of disks: the deeper a packing,
-#: the more load it takes to change as many contacts. With it the response of the paper's slab is within 1e-5 of the
-#: limit of small increments.
-LONGEST_STEP = 0.0033
-#: Longest increment of a large load, as a part of it.
+#: First load increment in mean disk weights, times the square root of the number of disks: the deeper a packing, the
+#: more load it takes to change as many contacts.
+FIRST_STEP = 0.0033
+#: First increment of a large load, as a part of it.
 LARGE_LOAD = 0.005
-#: Shortest increment as a part of the longest.
-SHORTEST = 0.25
+#: Longest and shortest increment as parts of the first.
+LONGEST, SHORTEST = 5.0, 0.25
+#: Tolerance for which first increments are short enough without a look at their error.
+TRUSTED_FOR = 1e-5
+#: Factorisations that an easy increment takes at most.
+EASY = 3
+#: By which an increment is longer than easy ones before, and shorter than one that needed fixed limits; and so many
+#: increments in turn must need none before one is longer than the first.
+GROWTH, SHRINK, CALM = 1.4, 0.9, 5
 #: Load that dynamics crosses at first, in mean disk weights; doubled while statics does not go on after it.
 CROSSING = 0.1
 #: Load between two looks at the stability.
@@ -63,6 +72,7 @@ class PathRecord:
     crossings: list[Crossing] = field(default_factory=list)
     stability_checks: int = 0
     stability_trials: int = 0
+    comparisons: int = 0  #: of two increments with a single one
 
 
 def follow(
@@ -73,6 +83,7 @@ def follow(
     integrator: str = "beeman",
     time_step: float | None = None,
     longest_step: float | None = None,
+    tolerance: float | None = None,
     crossing_ramp: float = 20.0,
     maximum_steps: int = 2_000_000,
     progress: Callable[[float], None] | None = None,
@@ -87,7 +98,9 @@ def follow(
         also from a file, and then goes on to the last bit as if it had not been cut.
     factors : increasing multipliers of the loads.
     time_step : where dynamics takes over, in sqrt(R/g); that of the protocol if not given, looked at only when needed.
-    longest_step : bound on an increment, in mean disk weights; chosen by the size of the packing if not given.
+    longest_step : bound on an increment, in mean disk weights, in place of increments by their error.
+    tolerance : error of a floor or wall force that increments may leave, per load; that of the protocol if not given.
+        Increments are short throughout where neither says one.
     crossing_ramp : duration of the load ramp where dynamics takes over, in sqrt(R/g).
     maximum_steps : most time steps in which dynamics must come to rest there.
 
@@ -97,7 +110,9 @@ def follow(
         When dynamics does not settle either: the packing collapses or cycles under this load.
     """
     dynamics = _DynamicsOptions(integrator, time_step, crossing_ramp, maximum_steps)
-    return _Path(problem, rest, dynamics, longest_step, progress, record).states(factors)
+    if tolerance is None:
+        tolerance = problem.scene.protocol.path_tolerance
+    return _Path(problem, rest, dynamics, longest_step, tolerance, progress, record).states(factors)
 
 
 @dataclass(frozen=True)
@@ -118,17 +133,26 @@ def _towards(here: float, target: float, step: float) -> float:
 class _Path:
     """The present end of a load path."""
 
-    def __init__(self, problem, rest, dynamics: _DynamicsOptions, longest_step, progress, record):
+    def __init__(self, problem, rest, dynamics: _DynamicsOptions, longest_step, tolerance, progress, record):
         self.problem: Problem = problem
         self.record: PathRecord = PathRecord() if record is None else record
         self.progress = progress
         self.dynamics = dynamics
         self.unit = problem.load_size
-        #: part of the load that an increment may have; nothing is added to what the caller asks for
+        #: part of the load that a first increment may have; nothing is added to what the caller asks for
         self.part = LARGE_LOAD if longest_step is None else 0.0
-        self.least_longest = (LONGEST_STEP * problem.n**0.5 if longest_step is None else longest_step) / self.unit
-        self.shortest = SHORTEST * self.least_longest
+        self.least_first = (FIRST_STEP * problem.n**0.5 if longest_step is None else longest_step) / self.unit
+        self.shortest = SHORTEST * self.least_first
+        #: None where increments keep to the first length
+        self.tolerance: float | None = tolerance if longest_step is None else None
+        self.stretch = 1.0 if self.tolerance is None else LONGEST
+        #: length of the increments that are trusted, as a part of the first; without friction all are exact
+        looks = self.tolerance is not None and problem.rotations
+        self.fineness = min(1.0, tolerance / TRUSTED_FOR) if looks else np.inf
         self.factor = rest.load_factor
+        self.middle: Place | None = None
+        #: a state ahead that is known, but was too far away for the tolerance
+        self.beyond: Place | None = None
         self._restart(rest)
 
     def _restart(self, state: State) -> None:
@@ -136,7 +160,11 @@ class _Path:
 
         So a path may be cut at any of its states and taken up again without a change to the last bit.
         """
-        self.step = self.longest
+        self.step = self.first
+        #: increments in turn that Newton's method alone has found
+        self.calm = CALM
+        #: load factor of the last state that was kept, and error of wall forces since
+        self.kept_at, self.spent = self.factor, 0.0
         self.crossing = CROSSING / self.unit
         #: load and work at which the work limit begins to count
         self.mark = (self.factor, self.record.work.factorisations)
@@ -147,8 +175,9 @@ class _Path:
         self.system = StaticSystem(self.problem, state)
         self.known: Configuration = self.system.start(state)
         self.trial: Trial = self.system.trial(self.known, self.known.q)
-        self.rate: np.ndarray | None = None
+        self.rate: FloatArray | None = None
         self.modes = 0
+        self._begin_pair()
         #: the last state whose stability was looked at
         self.stable_at = self.factor
         self.stable_known, self.stable_trial = self.known, self.trial
@@ -157,9 +186,11 @@ class _Path:
         self._balance()
         results = []
         for target in factors:
+            left = abs(target - self.factor)
             while self.factor != target:
                 self._advance(target)
-                if self.progress is not None:
+                if self.progress is not None and abs(target - self.factor) < left:  # not where it went back
+                    left = abs(target - self.factor)
                     self.progress(self.factor)
             results.append(self._state())
             self._restart(results[-1])
@@ -179,6 +210,7 @@ class _Path:
             )
         self.known, self.trial = found.configuration, found
         self.stable_known, self.stable_trial = self.known, self.trial
+        self._begin_pair()
         self._look_at_stability()
 
     def _advance(self, target: float) -> None:
@@ -186,38 +218,110 @@ class _Path:
         if self._worked_too_much():
             self._cross(_towards(self.mark[0], target, STABILITY_STEP / self.unit), "too much work")
             return
-        new = _towards(self.factor, target, self.step)
-        if abs(target - new) < 0.1 * self.step:
-            new = target
-        increment = new - self.factor
-        guess = self.known.q if self.rate is None else self.known.q + increment * self.rate
-        guess = self.system.displaced(guess, new)
-        rounds = self.record.work.rounds
-        found = solve_increment(self.system, self.known, external_force(self.problem, new), guess, self.record.work)
+        new = self._next(target)
+        increment = abs(new - self.factor)
+        work = self.record.work
+        rounds, factorisations = work.rounds, work.factorisations
+        found = solve_increment(
+            self.system, self.known, external_force(self.problem, new), self._guess(new), work,
+            passing=new != target and self.tolerance is not None,
+            stubborn=self.tolerance is None or increment < 1.2 * self.first,
+        )  # fmt: skip
         if found is None:
-            if abs(increment) > 1.2 * self.shortest:  # the last one before a target is up to 1.1 steps long
-                self.step = max(0.5 * abs(increment), self.shortest)
+            if increment > 1.2 * self.shortest:  # the last one before a target is up to 1.1 steps long
+                self.step = min(max(0.5 * increment, self.shortest), self.first)
                 self.rate = None
+                self.calm = 0
             else:
                 self._cross(_towards(self.factor, target, self.crossing), "no equilibrium")
                 self.crossing *= 2.0
             return
         self.crossing = max(0.5 * self.crossing, CROSSING / self.unit)
-        self.rate = (found.configuration.q - self.known.q) / increment
-        self.known, self.trial, self.factor = found.configuration, found, new
-        easy = self.record.work.rounds == rounds
-        self.step = min(self.step * (1.4 if easy else 0.9), self.longest)
+        self.rate = (found.configuration.q - self.known.q) / (new - self.factor)
+        before = Place(self.factor, self.known, self.trial)
+        self.factor, self.known, self.trial = new, found.configuration, found
+        if work.rounds > rounds:
+            self.growth, self.calm = SHRINK, 0
+        elif self.tolerance is not None and work.factorisations - factorisations > EASY:
+            self.growth = min(self.growth, 1.0)
+        if self.middle is not None:
+            if not self._keeps_tolerance(target):
+                return
+        elif new != target and increment > 1.2 * self.trusted:
+            self.middle = Place(new, found.configuration, found)
+            return
+        self._go_on_from(before)
         if new == target and self.system.meets_unlisted(self.known.q):
             self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
             self._cross(target, "rearrangement")
             return
-        if new == target or abs(new - self.stable_at) >= STABILITY_STEP / self.unit:
+        if new == target or self._may_have_become_unstable():
             self._look_at_stability()
 
+    def _next(self, target: float) -> float:
+        """Load factor at the end of the next increment; an increment whose error must be known is not the last one."""
+        left = abs(target - self.factor)
+        if self.middle is None and self.trusted < self.step and 1.1 * self.trusted < left < 2.1 * self.step:
+            self.step = 0.5 * left
+        new = _towards(self.factor, target, self.step)
+        return target if abs(target - new) < 0.1 * self.step else new
+
+    def _guess(self, new: float) -> FloatArray:
+        """(dof,) displacements expected at load factor ``new``."""
+        if self.beyond is not None and self.beyond.factor == new:
+            return self.beyond.known.q
+        guess = self.known.q if self.rate is None else self.known.q + (new - self.factor) * self.rate
+        return self.system.displaced(guess, new)
+
+    def _keeps_tolerance(self, target: float) -> bool:
+        """Whether the last two increments are as good as they must be; back to where they began if they are not.
+
+        Errors of all increments between two states that are kept add up to less than the tolerance times the load
+        between them; where one takes much of that, the next ones are no longer.
+        """
+        start, middle = self.start, self.middle
+        assert middle is not None and self.tolerance is not None
+        end = Place(self.factor, self.known, self.trial)
+        error = error_of_two(self.system, start, middle, end, self.record.work)
+        self.record.comparisons += 1
+        share = self.tolerance * self.unit * abs(end.factor - start.factor)
+        first = abs(middle.factor - start.factor)
+        left = self.tolerance * self.unit * abs(target - self.kept_at) - self.spent
+        if error > left and first > 1.2 * self.trusted:
+            self.factor, self.known, self.trial = start.factor, start.known, start.trial
+            self.beyond, self.middle, self.growth = middle, None, 1.0
+            self.rate = (middle.known.q - start.known.q) / (middle.factor - start.factor)
+            self.step = max(0.5 * first, self.trusted)
+            return False
+        self.spent += min(error, max(left, 0.0))
+        if error > share:
+            self.growth = min(self.growth, 1.0)
+        return True
+
+    def _go_on_from(self, before: Place) -> None:
+        """Go on from here, the end of an increment from ``before``."""
+        self.calm += 1
+        self.step = min(self.step * self.growth, self.first * (self.stretch if self.calm > CALM else 1.0))
+        sliding = None
+        if self.step > self.trusted:
+            sliding = slip(self.system, before.trial, self.trial) / abs(self.factor - before.factor)
+        self._begin_pair(sliding)
+
+    def _begin_pair(self, sliding: FloatArray | None = None) -> None:
+        """The error of the next two increments is that against a single one from here."""
+        self.start = Place(self.factor, self.known, self.trial, sliding)
+        self.middle = self.beyond = None
+        self.growth = GROWTH
+
     @property
-    def longest(self) -> float:
-        """Longest increment here."""
-        return max(self.least_longest, self.part * abs(self.factor))
+    def first(self) -> float:
+        """Length of a first increment here."""
+        return max(self.least_first, self.part * abs(self.factor))
+
+    @property
+    def trusted(self) -> float:
+        """Length of increments whose error is not looked at."""
+        return self.fineness * self.first
 
     def _worked_too_much(self) -> bool:
         """Whether the last stretch of load has cost more than it may."""
@@ -225,6 +329,12 @@ class _Path:
         if abs(self.factor - self.mark[0]) >= STABILITY_STEP / self.unit:
             self.mark = (self.factor, work)
         return work - self.mark[1] > MOST_WORK
+
+    def _may_have_become_unstable(self) -> bool:
+        """Whether enough has happened since the last look; without a change of any contact the tangent is the same."""
+        if abs(self.factor - self.stable_at) < STABILITY_STEP / self.unit:
+            return False
+        return self.tolerance is None or not np.array_equal(self.trial.sense, self.stable_trial.sense)
 
     def _look_at_stability(self) -> None:
         self.modes = self.system.negative_modes(self.trial)
@@ -289,7 +399,7 @@ class _Path:
         moved = float(np.abs(settled.position - here.position).max())
         self.record.crossings.append(Crossing(float(start), float(new), reason, moved))
         self.mark = (new, self.record.work.factorisations)
-        self.step = self.longest
+        self.step = self.first
 
     def _state(self) -> State:
         state = self.system.state(self.trial, self.factor)

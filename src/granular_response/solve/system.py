@@ -36,6 +36,11 @@ class Configuration:
     pair_overlap: FloatArray  #: (m,)
     wall_overlap: FloatArray  #: (w,)
 
+    @property
+    def springs(self) -> FloatArray:
+        """(m + w,) springs of all candidates."""
+        return np.concatenate([self.pair_spring, self.wall_spring])
+
 
 @dataclass(frozen=True)
 class Trial:
