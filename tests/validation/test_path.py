@@ -111,7 +111,7 @@ def test_default_increments_are_within_the_aim_of_accuracy(settled):
 
 @pytest.mark.parametrize("friction", [0.05, 0.2, 1.0])
 def test_increments_keep_the_tolerance(friction):
-    """Responses and open contacts are those of a path in increments of a fifth of the first.
+    """Responses and open contacts are those of a path in increments of two fifths of the first.
 
     The estimate is no bound: the tolerance is kept within a factor of two.
     """
@@ -122,7 +122,7 @@ def test_increments_keep_the_tolerance(friction):
     forces = [4.0, 15.0, 50.0]
     record, short = PathRecord(), PathRecord()
     states = follow(problem, rest, forces, tolerance=1e-5, record=record)
-    fine = follow(problem, rest, forces, longest_step=0.2 * path.FIRST_STEP * problem.n**0.5, record=short)
+    fine = follow(problem, rest, forces, longest_step=0.4 * path.FIRST_STEP * problem.n**0.5, record=short)
     bottom = np.arange(21)
     for state, other in zip(states, fine, strict=True):
         error = np.abs(floor_force(state, bottom) - floor_force(other, bottom)).max()
@@ -130,7 +130,7 @@ def test_increments_keep_the_tolerance(friction):
         assert np.array_equal(state.pairs.status == OPEN, other.pairs.status == OPEN)
         assert state.certificate.stable and state.certificate.force_residual < 1e-10
     assert record.crossings == short.crossings == []
-    assert record.comparisons > 0 and record.work.increments < 0.25 * short.work.increments
+    assert record.comparisons > 0 and record.work.increments < 0.5 * short.work.increments
 
 
 def test_a_smaller_tolerance_takes_shorter_increments_and_leaves_less(settled):
