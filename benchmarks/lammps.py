@@ -3,9 +3,10 @@
 The linear law (matched on a two-disk collision): `gran/hooke/history` takes damping per effective mass, so a pair's
 `gamma` is twice and a wall's once the square root of the stiffness; `dampflag` must be 1. Units are the reduced ones.
 
-The 3/2 law is `granular` with `hertz` and `linear_history`: its normal forces are ours to rounding, for unequal disks
-and walls too. `damping velocity` makes the dashpots absolute; the tangential one is given over the normal one. The arm
-of its torque ends at the middle of the overlap, ours at the rim.
+Its newer style `granular` has the linear law too (`hooke`), and the 3/2 law (`hertz`) with `linear_history`: normal
+forces of the latter are ours to rounding, for unequal disks and walls too. `damping velocity` makes the dashpots
+absolute; the tangential one is given over the normal one. The arm of its torque ends at the middle of the overlap, ours
+at the rim.
 
     python benchmarks/lammps.py FRICTION LATTICE_CONSTANT OUT.json     what tests/data stores for the 3/2 law
 """
@@ -15,38 +16,41 @@ from __future__ import annotations
 import json
 import math
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import peers
 
-from granular_response.contact import Law
+from granular_response.contact import Hertz, Linear
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem
 
 #: Timed runs after the settling.
 REPEATS = 8
+#: Files with the heights of the bottom row, at rest and loaded.
+DUMPS = ("rest.dump", "loaded.dump")
 
 
 @dataclass(frozen=True)
 class Run:
-    """What one LAMMPS run gave: steps and seconds of the last stage, and vertical forces on the bottom row."""
+    """What one run gave: steps and seconds of both stages, and vertical forces on the bottom row."""
 
     steps: int
     seconds: float
     floor_rest: np.ndarray
     floor: np.ndarray
-    energy_rest: float  #: Kinetic energy per disk, without that of rotation.
-    energy: float
+    energy_rest: float | None  #: Kinetic energy per disk, without that of rotation; None where the code tells none.
+    energy: float | None
+    processor: float | None  #: Seconds of the processor for all steps, where the system tells them.
 
 
 def executable() -> str | None:
     """Path of `lmp`, or None where it is not installed."""
-    return shutil.which("lmp")
+    return peers.found("lmp")
 
 
 def version(command: str | None = None) -> str | None:
@@ -59,9 +63,10 @@ def version(command: str | None = None) -> str | None:
     return found.group(2).strip() if found else "unknown"
 
 
-def data(packing: Packing, types: int = 1) -> str:
-    """The disks as `read_data` takes them, all of the first of ``types`` types."""
-    density = packing.mass / (4.0 / 3.0 * math.pi * packing.radius**3)
+def data(packing: Packing, types: int = 1, density: np.ndarray | None = None) -> str:
+    """The disks as `read_data` takes them, all of the first of ``types`` types; without ``density``, spheres."""
+    if density is None:
+        density = packing.mass / (4.0 / 3.0 * math.pi * packing.radius**3)
     top = float(packing.position[:, 1].max()) + 10.0
     lines = [
         "slab", "", f"{packing.n} atoms", f"{types} atom types",
@@ -83,24 +88,35 @@ def _linear(friction: float) -> tuple[str, str]:
     return f"{style}\npair_coeff * *", f"{kind} {2 * k} {2 * kt} {(2 * k) ** 0.5!r} {(2 * kt) ** 0.5!r} 0 1"
 
 
-def _hertz(friction: float) -> tuple[str, str]:
-    """The 3/2 law between disks, and at walls; the constants are those of the scene's laws."""
-    problem = Problem.from_scene(Scene().updated({"contact.law": "hertz", "contact.friction": friction}))
+def _granular(law: str, friction: float) -> tuple[str, str]:
+    """A law of `pair_style granular` between disks, and at walls; the constants are those of the scene's laws."""
+    problem = Problem.from_scene(Scene().updated({"contact.law": law, "contact.friction": friction}))
+    return f"pair_style granular\npair_coeff * * {model(problem.pair_law)}", f"granular {model(problem.wall_law)}"
 
-    def model(law: Law) -> str:
-        constant = law.factor / math.sqrt(law.reduced_radius)
-        part = law.tangential_damping / law.normal_damping
-        kind = "linear_history" if law.friction else "linear_nohistory"
-        stiffness = f"{law.tangential_stiffness!r} " if law.friction else ""
-        tangential = f"{kind} {stiffness}{part!r} {law.friction!r}"
-        return f"hertz {constant!r} {law.normal_damping!r} tangential {tangential} damping velocity"
 
-    pair, wall = model(problem.pair_law), model(problem.wall_law)
-    return f"pair_style granular\npair_coeff * * {pair}", f"granular {wall}"
+def model(law: Linear | Hertz) -> str:
+    """A law of ours in the words of `granular`."""
+    if isinstance(law, Hertz):
+        kind, constant = "hertz", law.factor / math.sqrt(law.reduced_radius)
+    else:
+        kind, constant = "hooke", law.normal_stiffness
+    part = law.tangential_damping / law.normal_damping if law.normal_damping else 0.0
+    tangential = f"linear_history {law.tangential_stiffness!r} " if law.friction else "linear_nohistory "
+    return (
+        f"{kind} {constant!r} {law.normal_damping!r} tangential {tangential}{part!r} {law.friction!r} damping velocity"
+    )
+
+
+#: Contact laws, between disks and at walls, by name: `linear` is the linear law of the old styles.
+LAWS: dict[str, Callable[[float], tuple[str, str]]] = {
+    "linear": _linear,
+    "granular": lambda friction: _granular("linear", friction),
+    "hertz": lambda friction: _granular("hertz", friction),
+}
 
 
 def _script(friction: float, packing: Packing, time_step: float, body: str, law: str = "linear") -> str:
-    pair, wall = _hertz(friction) if law == "hertz" else _linear(friction)
+    pair, wall = LAWS[law](friction)
     bottom = int((packing.row == 0).sum())
     return f"""
 units si
@@ -127,69 +143,82 @@ compute heights bottom property/atom y
 """
 
 
-def run(command: str, disks: str, script: str) -> tuple[list[tuple[int, float]], Path]:
-    """Steps and seconds of each `run` of a script, and the folder with what it wrote."""
-    folder = Path(tempfile.mkdtemp())
-    (folder / "slab.data").write_text(disks)
-    (folder / "in.slab").write_text(script)
-    done = subprocess.run(
-        [command, "-in", "in.slab", "-screen", "none", "-log", "log"], cwd=folder, capture_output=True, text=True
-    )
-    log = (folder / "log").read_text() if (folder / "log").exists() else ""
-    if done.returncode:
-        errors = [line for line in log.splitlines() if "ERROR" in line]
-        shutil.rmtree(folder)
-        raise RuntimeError(f"{command} failed: {' '.join(errors) or done.stderr}")
-    loops = re.findall(r"Loop time of ([\d.eE+-]+) on \d+ procs for (\d+) steps", log)
-    return [(int(steps), float(seconds)) for seconds, steps in loops], folder
+def steps_used(
+    packing: Packing, friction: float, settle: int, steps: int, time_step: float, command: str, repeats: int,
+    law: str = "linear",
+) -> peers.Used:  # fmt: skip
+    """What steps take after ``settle`` steps under gravity, which are the first stage."""
+    body = peers.settled_stages(settle, steps, repeats)
+    with peers.script(command, data(packing), _script(friction, packing, time_step, body, law)) as (used, _):
+        return used
 
 
-def step_time(
-    packing: Packing, friction: float, settle: int, steps: int, time_step: float = 4e-4, command: str | None = None,
-    repeats: int = REPEATS,
-) -> float:  # fmt: skip
-    """Seconds per step after `settle` steps under gravity: the least of ``repeats``."""
-    body = "\n".join([f"run {settle}", *[f"run {steps}"] * repeats])
-    loops, folder = run(command or executable(), data(packing), _script(friction, packing, time_step, body))
-    shutil.rmtree(folder)
-    return min(seconds / steps for steps, seconds in loops[1:])
+def step_time(packing: Packing, friction: float, settle: int, steps: int, time_step: float = 4e-4) -> float:
+    """Processor seconds of a step of `lmp` after ``settle`` steps under gravity, the least of several repeats.
+
+    Seconds by the clock where the system does not tell those of the processor.
+    """
+    least = steps_used(packing, friction, settle, steps, time_step, executable(), REPEATS).least()
+    return least["processor"] or least["seconds"]
 
 
-def response(
-    packing: Packing, friction: float, disk: int, force: float, ramp: float, rest_steps: int, load_steps: int,
-    time_step: float = 5e-4, law: str = "linear",
-) -> Run:  # fmt: skip
-    """Floor forces at rest and under a vertical load on one disk, ramped linearly over `ramp`."""
+def loaded_stages(
+    disk: int, force: float, ramp: float, rest_steps: int, load_steps: int, time_step: float, dump: str,
+    still: str = "omega 0 0 0", after: str = "",
+) -> str:  # fmt: skip
+    """Rest, then a vertical load on one disk that grows linearly over ``ramp``.
+
+    Heights of the bottom row are written with ``dump`` after each, and ``after`` is done; ``still`` stops rotations.
+    """
     ramp_steps = round(ramp / time_step)
-    body = f"""
-run {rest_steps}
-print "energy $(ke/atoms:%.3e)"
-write_dump bottom custom rest.dump id y modify sort id format float %.17g
+    return f"""
+{peers.stage(rest_steps, first=True)}
+{after}
+write_dump bottom custom {DUMPS[0]} id y modify {dump}
 velocity all set 0 0 0
-set group all omega 0 0 0
+set group all {still}
 reset_timestep 0
 group loaded id {disk + 1}
 variable push equal -{force!r}*(step<{ramp_steps})*step/{ramp_steps}-{force!r}*(step>={ramp_steps})
 fix push loaded addforce 0.0 v_push 0.0
-run {load_steps}
-print "energy $(ke/atoms:%.3e)"
-write_dump bottom custom loaded.dump id y modify sort id format float %.17g
+{peers.stage(load_steps, first=True)}
+{after}
+write_dump bottom custom {DUMPS[1]} id y modify {dump}
 """
-    loops, folder = run(executable(), data(packing), _script(friction, packing, time_step, body, law))
+
+
+def response(
+    packing: Packing, friction: float, disk: int, force: float, ramp: float, rest_steps: int, load_steps: int,
+    time_step: float = 5e-4, law: str = "linear", command: str | None = None,
+) -> Run:  # fmt: skip
+    """Floor forces at rest and under a vertical load on one disk, ramped linearly over `ramp`."""
+    body = loaded_stages(
+        disk, force, ramp, rest_steps, load_steps, time_step, "sort id format float %.17g",
+        after='print "energy $(ke/atoms:%.3e)"',
+    )  # fmt: skip
+    text = _script(friction, packing, time_step, body, law)
+    with peers.script(command or executable(), data(packing), text) as (used, folder):
+        log = (folder / "log").read_text()
+        energy = [float(value) for value in re.findall(r"^energy ([\d.eE+-]+)", log, re.MULTILINE)]
+        return loaded_run(packing, used, heights(folder), energy, law)
+
+
+def loaded_run(packing: Packing, used: peers.Used, found: list[np.ndarray], energy: list[float], law: str) -> Run:
+    """Floor forces from the heights of the bottom row at rest and loaded."""
     radius = packing.radius[packing.row == 0]
-    overlap = [np.maximum(radius - _heights(folder / name), 0.0) for name in ("rest.dump", "loaded.dump")]
+    overlap = [np.maximum(radius - height, 0.0) for height in found]
     floor = [4000.0**1.5 * xi**1.5 if law == "hertz" else 6000.0 * xi for xi in overlap]
-    log = (folder / "log").read_text()
-    energy = re.findall(r"^energy ([\d.eE+-]+)", log, re.MULTILINE)
-    shutil.rmtree(folder)
-    return Run(
-        sum(s for s, _ in loops), sum(t for _, t in loops), floor[0], floor[1], float(energy[0]), float(energy[1])
-    )
+    whole = used.whole()
+    return Run(whole["steps"], whole["seconds"], *floor, *(energy or (None, None)), whole["processor"])
 
 
-def _heights(path: Path) -> np.ndarray:
-    rows = path.read_text().split("ITEM: ATOMS id y", 1)[1].split()
-    return np.array(rows, float).reshape(-1, 2)[:, 1]
+def heights(folder: Path) -> list[np.ndarray]:
+    """Heights of the bottom row in the dumps at rest and loaded, by number of the disk."""
+    found = []
+    for name in DUMPS:
+        rows = (folder / name).read_text().split("ITEM: ATOMS id y", 1)[1].split()
+        found.append(np.array(rows, float).reshape(-1, 2)[:, 1])
+    return found
 
 
 def profile(friction: float, lattice_constant: float) -> dict:
@@ -201,7 +230,7 @@ def profile(friction: float, lattice_constant: float) -> dict:
     force, steps, time_step = 4.0, 120_000, 5e-4
     disk = int(np.flatnonzero(packing.row == packing.row.max())[30])
     run = response(packing, friction, disk, force, 20.0, steps, steps, time_step, law="hertz")
-    pair, wall = _hertz(friction)
+    pair, wall = LAWS["hertz"](friction)
     return {
         "code": f"LAMMPS {version()}",
         "pair": pair,

@@ -1,23 +1,29 @@
 """The same slab in LIGGGHTS, where `liggghts` is installed (Debian: `apt-get install liggghts`).
 
-The contact law is that of `lammps.py`, its constants given for each pair of types; type 2 is the wall. Its disks are
-spheres held in the plane, so they turn a little more easily than ours: for times of steps only.
+The contact law is that of `lammps.py`, its constants given for each pair of types; type 2 is the wall. In two
+dimensions its masses and moments of inertia are those of disks, of a density per area.
 """
 
 from __future__ import annotations
 
+import math
 import re
-import shutil
 import subprocess
 
 import lammps
+import peers
 
 from granular_response.scene import Packing
+
+#: The linear law with tangential springs.
+MODEL = "gran model hooke/stiffness tangential history"
+#: What stops rotations.
+STILL = "omegax 0 omegay 0 omegaz 0"
 
 
 def executable() -> str | None:
     """Path of `liggghts`, or None where it is not installed."""
-    return shutil.which("liggghts")
+    return peers.found("liggghts")
 
 
 def version(command: str) -> str:
@@ -29,7 +35,6 @@ def version(command: str) -> str:
 
 def _script(friction: float, packing: Packing, time_step: float, body: str) -> str:
     k, kt = 3000.0, 2400.0
-    model = "gran model hooke/stiffness tangential history"
 
     def constant(name: str, pair: float, wall: float) -> str:
         return f"fix {name} all property/global {name} peratomtypepair 2 {pair!r} {wall!r} {wall!r} {wall!r}"
@@ -38,23 +43,42 @@ def _script(friction: float, packing: Packing, time_step: float, body: str) -> s
         constant("kn", k, 2 * k), constant("kt", kt, 2 * kt), constant("gamman", 2 * k**0.5, (2 * k) ** 0.5),
         constant("gammat", 2 * kt**0.5, (2 * kt) ** 0.5), constant("coefficientFriction", friction, 0.0),
     ]  # fmt: skip
+    bottom = f"<= {int((packing.row == 0).sum())}"
     planes = {"floor": "yplane 0.0", "left": "xplane 0.0", "right": f"xplane {packing.width!r}"}
-    walls = [f"fix {name} all wall/{model} primitive type 2 {plane}" for name, plane in planes.items()]
+    walls = [f"fix {name} all wall/{MODEL} primitive type 2 {plane}" for name, plane in planes.items()]
     lines = [
         "units si", "dimension 2", "boundary f f p", "newton off", "communicate single vel yes", "atom_style sphere",
-        "atom_modify map array", "read_data slab.data", *constants, f"pair_style {model}", "pair_coeff * *",
+        "atom_modify map array", "read_data slab.data", *constants, f"pair_style {MODEL}", "pair_coeff * *",
         "neighbor 0.3 bin", "neigh_modify delay 0 every 1 check yes", f"timestep {time_step!r}",
+        f"group bottom id {bottom}",
         "fix weight all gravity 1.0 vector 0 -1 0", *walls, "fix move all nve/sphere", "fix plane all enforce2d",
         "thermo 100000", body,
     ]  # fmt: skip
     return "\n".join(lines) + "\n"
 
 
-def step_time(
+def _data(packing: Packing) -> str:
+    """The disks: in two dimensions their density is that of an area."""
+    return lammps.data(packing, 2, packing.mass / (math.pi * packing.radius**2))
+
+
+def steps_used(
     packing: Packing, friction: float, settle: int, steps: int, time_step: float, command: str, repeats: int
-) -> float:
-    """Seconds per step after ``settle`` steps under gravity: the least of ``repeats``."""
-    body = "\n".join([f"run {settle}", *[f"run {steps}"] * repeats])
-    loops, folder = lammps.run(command, lammps.data(packing, 2), _script(friction, packing, time_step, body))
-    shutil.rmtree(folder)
-    return min(seconds / steps for steps, seconds in loops[1:])
+) -> peers.Used:
+    """What steps take after ``settle`` steps under gravity, which are the first stage."""
+    text = _script(friction, packing, time_step, peers.settled_stages(settle, steps, repeats))
+    with peers.script(command, _data(packing), text) as (used, _):
+        return used
+
+
+def response(
+    packing: Packing, friction: float, disk: int, force: float, ramp: float, rest_steps: int, load_steps: int,
+    time_step: float, command: str,
+) -> lammps.Run:  # fmt: skip
+    """Floor forces at rest and under a vertical load on one disk, ramped linearly over ``ramp``."""
+    body = lammps.loaded_stages(
+        disk, force, ramp, rest_steps, load_steps, time_step, 'sort id format "%d %.17g"', STILL
+    )
+    text = _script(friction, packing, time_step, body)
+    with peers.script(command, _data(packing), text) as (used, folder):
+        return lammps.loaded_run(packing, used, lammps.heights(folder), [], "linear")

@@ -163,6 +163,100 @@ def convergence(metrics: Metrics) -> Figure:
     return figure
 
 
+#: Of old styles of codes.
+OLD_MARKS = {"X": "x", "P": "+"}
+
+
+def _codes(rows: Rows) -> dict[str, dict[str, Any]]:
+    """How each code is drawn in all pictures of the arena: ours first, full; styles of one code in one colour."""
+    colours = {
+        "granular_response": style.GREEN, "LAMMPS": style.VERMILION, "newest LAMMPS": style.ORANGE,
+        "LIGGGHTS": style.PURPLE, "YADE": style.SKY,
+    }  # fmt: skip
+    marks = {"granular_response": "o", "LAMMPS": "X", "newest LAMMPS": "P", "LIGGGHTS": "s", "YADE": "^"}
+    drawn = {}
+    for code in dict.fromkeys(row["code"] for row in rows):
+        family, _, kind = code.partition(", ")
+        mark = marks.get(family, "v")
+        old = kind in ("hooke/history", "dynamics")
+        label = {"granular_response": "ours"}.get(family, family) + (f", {kind}" if kind else "")
+        drawn[code] = {
+            "color": colours.get(family, style.MUTED), "label": label,
+            "marker": OLD_MARKS.get(mark, mark) if old else mark, "linestyle": "--" if old else "-",
+            "markerfacecolor": "white" if old else colours.get(family, style.MUTED),
+            "markersize": 4.5, "linewidth": 1.0,
+        }  # fmt: skip
+    return drawn
+
+
+@style.context()
+def arena(metrics: Metrics) -> Figure:
+    """Processor time of a step, and peak memory, against the number of disks."""
+    figure, axes = style.figure(1, 2, width="double", height=3.2)
+    drawn = _codes(metrics["runs"])
+    for panel, key in zip(axes[0], ("processor_microseconds", "peak_mebibytes"), strict=True):
+        for code, look in drawn.items():
+            rows = [row for row in pick(metrics["runs"], code=code) if row[key]]
+            panel.plot([row["disks"] for row in rows], [row[key] for row in rows], **look)
+        text = {"processor_microseconds": "processor time of a step [µs]", "peak_mebibytes": "peak memory [MiB]"}[key]
+        _logarithmic(panel, xlabel="disks", ylabel=text)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+@style.context()
+def responses(metrics: Metrics) -> Figure:
+    """Error of the floor response against processor time."""
+    scenes = list(dict.fromkeys(row["scene"] for row in metrics["runs"]))
+    figure, axes = style.figure(1, len(scenes), width="double", height=3.2, sharey=True)
+    drawn = _codes(metrics["runs"])
+    for panel, scene in zip(axes[0], scenes, strict=True):
+        for code, look in drawn.items():
+            rows = pick(metrics["runs"], scene=scene, code=code)
+            key = "processor" if all(row["processor"] for row in rows) else "seconds"
+            panel.plot([row[key] for row in rows], [max(row["error"], LEAST_DRAWN) for row in rows], **look)
+        _logarithmic(panel, xlabel="processor time [s]")
+        panel.set_title({"friction": "friction 0.2, $F$ = 15 $mg$"}.get(scene, "no friction, $F$ = 4 $mg$"), fontsize=9)
+    axes[0, 0].set_ylabel("largest error of the response")
+    handles = {}
+    for panel in axes[0]:
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=4)
+    return figure
+
+
+#: Errors below it are drawn there.
+LEAST_DRAWN = 1e-7
+
+
+@style.context()
+def bounces(metrics: Metrics) -> Figure:
+    """Energy that a disk keeps in a bounce against its angle from the normal."""
+    dashpots = list(dict.fromkeys(row["damping_ratio"] for row in metrics["runs"]))
+    figure, axes = style.figure(1, len(dashpots), width="double", height=3.2, sharey=True)
+    drawn = _codes(metrics["runs"])
+    for panel, damping in zip(axes[0], dashpots, strict=True):
+        for code, look in drawn.items():
+            rows = pick(metrics["runs"], damping_ratio=damping, code=code)
+            if code == "granular_response":
+                look = {**look, "zorder": 3, "markersize": 3}
+            else:  # open and without lines: most lie on ours
+                look = {**look, "linestyle": "none", "markerfacecolor": "none", "markersize": 6.5}
+            panel.plot([row["angle"] for row in rows], [row["energy_kept"] for row in rows], **look)
+        if damping == min(dashpots):
+            rows = pick(metrics["runs"], damping_ratio=damping, code="granular_response")
+            panel.plot(
+                [row["angle"] for row in rows], [row["if_it_slid"] for row in rows], color=style.BLACK, linestyle=":",
+                linewidth=1.0, label="slides all the time",
+            )  # fmt: skip
+        panel.set(xlabel="angle from the normal [°]", xlim=(0, 90), ylim=(0, 1.02))
+        panel.set_title(f"dashpots {damping:g} of critical", fontsize=9)
+    axes[0, 0].set_ylabel("energy after / before")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
 @style.context()
 def skipping(metrics: Metrics) -> Figure:
     """How much longer a step takes when an unneeded part is forced on."""
@@ -238,6 +332,9 @@ def depth(metrics: Metrics) -> Figure:
 DRAWN: dict[str, Callable[[Metrics], Figure]] = {
     "precision": precision,
     "kernel": kernel,
+    "arena": arena,
+    "responses": responses,
+    "bounces": bounces,
     "trajectory": trajectory,
     "convergence": convergence,
     "skipping": skipping,

@@ -30,10 +30,13 @@ FINEST = 0.05
 REPEATS = 2
 
 
-def solve(name: str, longest_step: float | None = None, **protocol: Any) -> tuple[np.ndarray, float]:
-    """Normalised response and seconds of the whole solution; ``longest_step`` asks for a path with such increments."""
+def solve_used(name: str, longest_step: float | None = None, **protocol: Any) -> tuple[np.ndarray, dict[str, float]]:
+    """Normalised response, and seconds by the clock and of the processor of the whole solution.
+
+    ``longest_step`` asks for a path with such increments.
+    """
     friction, force = SCENES[name]
-    start = time.perf_counter()
+    start, processor = time.perf_counter(), time.process_time()
     problem = Problem.from_scene(scene(friction, force, **protocol))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
@@ -41,8 +44,25 @@ def solve(name: str, longest_step: float | None = None, **protocol: Any) -> tupl
         loaded = loaded_states(problem, rest, [1.0])[1][0]
     else:
         loaded = follow(problem, rest, [1.0], longest_step=longest_step)[0]
-    seconds = time.perf_counter() - start
-    return (floor(loaded, problem) - floor(rest, problem)) / force, seconds
+    used = {"seconds": time.perf_counter() - start, "processor": time.process_time() - processor}
+    return (floor(loaded, problem) - floor(rest, problem)) / force, used
+
+
+def solve(name: str, longest_step: float | None = None, **protocol: Any) -> tuple[np.ndarray, float]:
+    """Normalised response and seconds of the whole solution."""
+    response, used = solve_used(name, longest_step, **protocol)
+    return response, used["seconds"]
+
+
+def quasi_static(name: str) -> tuple[np.ndarray, float]:
+    """The quasi-static limit, and how much another way to it differs: finer increments, or a path to the minimum."""
+    if SCENES[name][0]:
+        reference, _ = solve(name, FINEST, method="path")
+        other, _ = solve(name, 2 * FINEST, method="path")
+    else:
+        reference, _ = solve(name, method="auto")
+        other, _ = solve(name, 0.5, method="path")
+    return reference, float(np.abs(reference - other).max())
 
 
 def dynamics_settings() -> list[dict[str, Any]]:
@@ -65,15 +85,10 @@ def dynamics_settings() -> list[dict[str, Any]]:
 def measure(name: str) -> tuple[list[dict], dict]:
     """All runs of one scene, and what its reference is worth."""
     friction, force = SCENES[name]
+    reference, worth = quasi_static(name)
     if friction:
-        reference, _ = solve(name, FINEST, method="path")
-        coarser, _ = solve(name, 2 * FINEST, method="path")
-        worth = float(np.abs(reference - coarser).max())
         statics = [("path", step) for step in (4.0, 2.0, 1.0, 0.5, 0.25, 0.1)]
     else:
-        reference, _ = solve(name, method="auto")
-        coarser, _ = solve(name, 0.5, method="path")  # another way to the same minimum
-        worth = float(np.abs(reference - coarser).max())
         statics = [("minimise", None)]
     rows: list[dict] = []
 

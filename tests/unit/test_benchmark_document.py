@@ -94,28 +94,142 @@ def test_factorisations_of_one_slab_agree(script):
         assert all(row["relative_residual"] < 1e-10 for row in rows)
 
 
-def test_codes_that_are_not_installed_are_named(script, monkeypatch, tmp_path, capsys):
-    arena = script("arena")
+@pytest.fixture
+def nothing_installed(script, monkeypatch):
+    """No other code."""
     monkeypatch.delenv("ARENA_LMP", raising=False)
-    for code in (arena.lammps, arena.liggghts):
-        monkeypatch.setattr(code, "executable", lambda: None)
+    monkeypatch.setattr(script("peers").shutil, "which", lambda name: None)
+
+
+NAMES = ["LAMMPS", "newest LAMMPS", "LIGGGHTS", "YADE"]
+
+
+def test_codes_that_are_not_installed_are_named(script, nothing_installed, monkeypatch, tmp_path, capsys):
+    arena = script("arena")
     monkeypatch.setattr(arena.kernel, "SLABS", [(4, 9, 100, 20)])
-    monkeypatch.setattr(arena, "DISKS", (34,))
+    monkeypatch.setattr(arena, "STEPS", {34: 20})
+    monkeypatch.setattr(arena, "ROUNDS", 1)
     arena.main(str(tmp_path / "arena.json"))
     found = json.loads((tmp_path / "arena.json").read_text())
-    assert [(row["code"], row["disks"]) for row in found["runs"]] == [("granular_response", 34)]
-    assert found["runs"][0]["microseconds"] > 0.0
-    assert [text.partition(" (")[0] for text in found["skipped"]] == ["LAMMPS", "LAMMPS, newest", "LIGGGHTS"]
+    (row,) = found["runs"]
+    assert (row["code"], row["disks"], row["times_ours"]) == ("granular_response", 34, 1.0)
+    assert 0.0 < row["processor_microseconds"] <= row["processor_microseconds_worst_round"]
+    assert row["peak_mebibytes"] is None or row["peak_mebibytes"] > 20.0
+    assert [text.partition(" (")[0] for text in found["skipped"]] == NAMES
     assert "apt-get install liggghts" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("code", ["lammps", "liggghts"])
-def test_other_codes_take_the_slab(script, code):
-    peer = script(code)
-    if peer.executable() is None:
-        pytest.skip(f"{code} is not installed")
+def test_responses_of_ours_alone_come_within_their_errors(script, nothing_installed, monkeypatch, tmp_path):
+    responses = script("responses")
+    monkeypatch.setattr(responses, "REPEATS", 1)
+    monkeypatch.setattr(responses.precision, "SCENES", {"frictionless": (0.0, 4.0)})
+    monkeypatch.setattr(responses, "OURS", {"frictionless": {"minimisation": [{"method": "auto"}]}})
+    responses.main(str(tmp_path / "responses.json"))
+    found = json.loads((tmp_path / "responses.json").read_text())
+    (row,) = found["reached"]
+    assert row["least_error"] < 1e-9
+    assert row["1e-05"] == found["runs"][0]["processor"] > 0.0
+
+
+def test_the_least_time_within_an_error_is_of_the_runs_within_it(script):
+    runs = [
+        {"scene": "s", "code": "c", "error": error, "seconds": 9.0, "processor": time}
+        for error, time in ((5e-3, 1.0), (5e-4, 4.0), (2e-4, 3.0))
+    ]
+    (row,) = script("responses").reached(runs)
+    assert (row["0.01"], row["0.001"], row["0.0001"], row["least_error"]) == (1.0, 3.0, None, 2e-4)
+
+
+def test_a_bounce_never_gains_energy_and_slides_as_the_closed_form_says(script):
+    bounce, bounces = script("bounce"), script("bounces")
+    after = bounce.our_bounce(bounce.DAMPING[0])
+    kept, slid = bounce.energy(after), bounce.sliding(after)
+    assert (kept < 1.0).all()
+    # from where no spring holds the rim: tan(angle) = friction (1 + e) (1 + 1 / inertia) = 3
+    steep = np.tan(np.radians(bounce.ANGLES)) > 3.0
+    assert steep.sum() >= 5
+    assert kept[steep] == pytest.approx(slid[steep], abs=bounces.SLID)
+    assert (np.abs(kept - slid)[bounce.ANGLES < 60.0] > 1e-2).all()
+    damped = bounce.our_bounce(bounce.DAMPING[1])
+    assert (bounce.energy(damped) < 1.0).all()
+    # a linear spring and dashpot along the normal, until their spring is at rest length
+    assert -damped.velocity[:, 1] / bounce.incoming()[:, 1] == pytest.approx(0.163, abs=1e-3)
+
+
+def test_stored_bounces_agree_with_codes_that_have_the_same_law(document):
+    compared = {row["code"]: row for row in document.read()["bounces"]["compared"]}
+    for code in ("LAMMPS, granular", "newest LAMMPS, granular", "LAMMPS, hooke/history"):
+        assert max(compared[code]["from_ours_weak"], compared[code]["from_ours_strong"]) < 1e-3
+        assert abs(compared[code]["excess"]) < 1e-5
+    # what lammps/lammps#5007 is about
+    assert compared["newest LAMMPS, hooke/history"]["excess"] > 0.05
+
+
+def test_the_fastest_version_and_style_of_a_code_is_quoted(document):
+    steps = [
+        ("granular_response", 1.0),
+        ("LAMMPS, granular", 18.0),
+        ("newest LAMMPS, hooke/history", 11.4),
+        ("YADE", 53.0),
+    ]
+    reached = [
+        ("granular_response, load path", 2.0),
+        ("granular_response, dynamics", 1.0),
+        ("LAMMPS", 9.0),
+        ("YADE", None),
+    ]
+    found = {
+        "arena": {"runs": [{"disks": 908, "code": code, "times_ours": times} for code, times in steps]},
+        "responses": {"reached": [{"scene": "friction", "code": code, "0.0001": time} for code, time in reached]},
+    }
+    assert [row["measured"] for row in document.over_others(found)] == ["LAMMPS 11, YADE 53", "LAMMPS 9"]
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.0])
+def test_kernels_say_what_they_do(script, monkeypatch, friction):
+    """What Beeman's formulas have for each unknown, and of each pair one root and one quotient."""
+    limits = script("limits")
+    monkeypatch.setattr(limits, "LAYERS", 4)
+    monkeypatch.setattr(limits, "PER_ROW", 9)
+    counts = limits.counted(friction)
+    unknowns = (3 if friction else 2) * 34
+    assert counts["integration"]["additions"] == 8 * unknowns
+    assert counts["integration"]["multiplications"] == 9 * unknowns
+    pairs = counts["pair forces"]
+    assert pairs["roots"] == pairs["divisions"] > 34
+    loop = limits.mix(pairs, pairs["roots"] // 8 * 8, 200, 100, 3)
+    loop(2)
+    assert limits.dense(2, 0, symmetric=False) == 3.0  # one quotient, one product, one difference
+    assert limits.dense(60, 0, symmetric=True) == pytest.approx(60**3 / 3, rel=0.03)
+
+
+def test_times_of_other_codes_come_from_their_log_and_their_stamps(script, tmp_path):
+    peers = script("peers")
+    log = "Loop time of 2 on 1 procs for 10 steps with 3 atoms\nLoop time of 8 on 1 procs for 20 steps with 3 atoms\n"
+    (tmp_path / "processor").write_text("1000000000 7 3\n1500000000 8 4\n2000000000 9 5\n4000000000 9 6\n")
+    (tmp_path / "memory").write_text("VmHWM:\t    2048 kB\n")
+    used = peers.used(tmp_path, log)
+    assert used.stages == [peers.Stage(10, 2.0, 0.5), peers.Stage(20, 8.0, 2.0)]
+    assert used.least() == {"seconds": 0.4, "processor": 0.1, "peak_mebibytes": 2.0}
+    assert used.whole() == {"steps": 30, "seconds": 10.0, "processor": 2.5}
+    (tmp_path / "processor").unlink()
+    assert peers.used(tmp_path, log).least()["processor"] is None
+
+
+@pytest.mark.parametrize("name", ["lammps", "liggghts", "yade_dem"])
+def test_other_codes_take_the_slab_and_the_load(script, name):
+    code = script(name)
+    command = code.executable()
+    if command is None:
+        pytest.skip(f"{name} is not installed")
     packing = script("kernel").slab(4, 9, 0.2).packing
-    assert 0.0 < peer.step_time(packing, 0.2, 10, 20, 4e-4, peer.executable(), 1) < 1e-2
+    used = code.steps_used(packing, 0.2, 20, 20, 4e-4, command, 2)
+    assert [stage.steps for stage in used.stages] == [20, 20, 20]
+    assert 0.0 < used.least()["seconds"] < 1e-1
+    top = int(np.flatnonzero(packing.row == packing.row.max())[3])
+    run = code.response(packing, 0.2, top, 2.0, 1.0, 20_000, 20_000, time_step=5e-4, command=command)
+    assert run.floor_rest.sum() == pytest.approx(packing.n, rel=1e-3)
+    assert (run.floor - run.floor_rest).sum() == pytest.approx(2.0, rel=1e-3)
 
 
 @pytest.mark.parametrize("integrator", ["beeman", "verlet", "gear"])

