@@ -45,7 +45,7 @@ reproduce: setup ## Run what is not up to date: simulations, figures, claims, re
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	@names=$$(sed -n 's/^ *"\([a-z_]*\)": {"needs.*/\1/p' $(GROUP_LIST)); \
 	for half in 0 1; do \
-	  "$(BIN)/dvc" --wait-for-lock repro $$(echo "$$names" | awk -v h=$$half 'NR % 2 == h {print "draw@" $$1, "measure@" $$1}') \
+	  "$(BIN)/dvc" --wait-for-lock repro $$(echo "$$names" | awk -v h=$$half 'NR % 2 == h {print "draw@" $$1}') \
 	    < /dev/null & \
 	done; wait
 	"$(BIN)/dvc" repro

@@ -33,11 +33,11 @@ STARTS = {
     "simulate": SIMULATION,
     "draw": [
         "granular_response.paper.pipeline.drawing",
-        *(f"granular_response.paper.groups.{{}}.{module}" for module in ("parameters", "draw", "captions")),
-    ],
-    "measure": [
         "granular_response.paper.pipeline.measuring",
-        *(f"granular_response.paper.groups.{{}}.{module}" for module in ("claims", "numbers")),
+        *(
+            f"granular_response.paper.groups.{{}}.{module}"
+            for module in ("parameters", "draw", "captions", "claims", "numbers")
+        ),
     ],
     "claims": ["granular_response.paper.claims.table"],
     "report": ["granular_response.paper.report"],
@@ -192,12 +192,9 @@ def test_stages_have_the_agreed_form(kind, group, definition):
         assert definition["outs"] == [f"data/{group}.nc"]
         assert definition["params"] == ["common", group]
     elif kind == "draw":
-        assert definition["cmd"] == f"granular-response draw {group}"
+        assert definition["cmd"] == [f"granular-response {what} {group}" for what in ("draw", "measure")]
         assert definition["outs"] == [{f"figures/{group}": {"cache": False}}]
-        assert f"data/{group}.nc" in definition["deps"]
         assert "params" not in definition
-    elif kind == "measure":
-        assert definition["cmd"] == f"granular-response measure {group}"
         assert definition["metrics"] == [{f"figures/metrics/{group}.json": {"cache": False}}]
         assert f"data/{group}.nc" in definition["deps"]
     else:  # nothing is written that is not declared: no file named beside the outputs
@@ -214,7 +211,7 @@ def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():
     folders = {path.parent.name for path in SOURCE.glob("granular_response/paper/groups/*/__init__.py")}
     assert len(NAMES) == len(set(NAMES)) and set(NAMES) == folders == set(PARAMETERS) - {"common"}
     assert list(NAMES) == list(GROUPS)
-    assert all(groups_of(kind) == list(NAMES) for kind in ("simulate", "draw", "measure"))
+    assert all(groups_of(kind) == list(NAMES) for kind in ("simulate", "draw"))
     assert [f"figures/{group}" for group in sorted(NAMES)] == [
         dependency for dependency in PIPELINE["report"]["deps"] if re.fullmatch(r"figures/\w+", dependency)
     ]
@@ -270,7 +267,7 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, change, said):
 def test_dvc_reads_the_pipeline():
     repo = pytest.importorskip("dvc.repo")
     names = {stage.addressing for stage in repo.Repo(ROOT).index.stages}
-    assert {f"{kind}@{group}" for kind in ("simulate", "draw", "measure") for group in NAMES} <= names
+    assert {f"{kind}@{group}" for kind in ("simulate", "draw") for group in NAMES} <= names
 
 
 def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
