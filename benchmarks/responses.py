@@ -92,10 +92,27 @@ def reached(rows: list[dict]) -> list[dict]:
     return found
 
 
+def not_run(rows: list[dict], there: list[codes.Peer]) -> list[str]:
+    """Runs of the plans that are not among the records."""
+    done = {(row["code"], row["scene"], row.get("ramp_time")) for row in rows}
+    names = [peer.name for peer in there if peer.response is not None]
+    asked = [(name, scene, ramp) for scene in precision.SCENES for ramp, _, _ in PLANS for name in names]
+    return [f"{code}, {scene}, ramp {ramp:g}" for code, scene, ramp in asked if (code, scene, ramp) not in done]
+
+
 def main(path: str, most: int = 10**9) -> None:
     there, skipped = codes.there()
     for rows in responses(there, most):  # after every run: the last ones take long
-        write(path, {"time_step": TIME_STEP, "skipped": skipped, "runs": rows, "reached": reached(rows)})
+        write(
+            path,
+            {
+                "time_step": TIME_STEP,
+                "skipped": skipped,
+                "not_run": not_run(rows, there),
+                "runs": rows,
+                "reached": reached(rows),
+            },
+        )
 
 
 if __name__ == "__main__":
