@@ -15,6 +15,7 @@ SUMMARY, PICTURES = "summary", "figures"
 #: What the pictures show, by stem.
 CAPTIONS = {
     "arena": "Microseconds per step on one core, ours and those of other codes.",
+    "bounces": "Energy that a disk keeps when it bounces off a wall with friction, by angle, ours and by other codes.",
     "convergence": "Dynamics approaches the load path like one over the ramp time.",
     "depth": "Depth and width of the region of contacts that a load opens without friction, in slabs up to 240 layers "
     "deep; open symbols: it has reached the floor.",
@@ -22,6 +23,7 @@ CAPTIONS = {
     "linear": "Factorisations of the tangent stiffness of slabs at rest, ours beside those of libraries.",
     "precision": "Run time against the error of the floor response. Open symbols of integrators: without the static "
     "finish.",
+    "responses": "Processor time against the error of the floor response of 908 disks, ours and by other codes.",
     "scale": "Time and memory of whole runs against the number of disks.",
     "skipping": "What a scene pays if a part that it does not need is forced on.",
     "trajectory": "Error of trajectories against the time step.",
