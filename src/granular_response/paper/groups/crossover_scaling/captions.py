@@ -33,8 +33,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         ),
         "crossover_scaling_regions": Caption(
             "Depth of the region of open contacts below the load over that of the slab, against the force over what it "
-            "is scaled by: without friction layers times the force P of horizontal contacts at rest, with friction "
-            "layers squared.",
+            "is scaled by: (a) without friction layers times the force P of horizontal contacts at rest, (b) and (c) "
+            "with friction layers squared.",
             "Curves of slabs of different depths that fall on one another where the force is scaled.",
             said,
         ),
