@@ -36,8 +36,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "Response of the floor to a small vertical force on the top, mean over all disks of the top row "
             f"(smoothed, w = {parameters.width:g}; band: standard deviation over packings), and that of elastic slabs "
             "with the moduli measured by straining these packings: no parameter is fitted. Exact in the limit of small "
-            "forces; contacts at the limit of Coulomb stick. (a) to (f) packings as named. The floor has the friction of "
-            "the disks.",
+            "forces; contacts at the limit of Coulomb stick. (a) to (f) packings as named. The floor has the friction "
+            "of the disks.",
             "Six panels of single peaks; with friction the measured curve and those of the slabs lie on each other, "
             "without friction they do not.",
             said,

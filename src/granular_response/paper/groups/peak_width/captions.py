@@ -30,8 +30,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         "peak_width_depth": Caption(
             "Not in the paper: how wide the response is. Filled symbols: half width at half maximum of the vertical "
             "stress; open symbols: half width of the strip that bears half of the force; crosses: place of one of two "
-            "peaks, where there are two. (a) to (c) on lines inside the highest slab, (d) to (f) on the floors of slabs "
-            "of several heights. Grey lines: elastic slabs of the lattice's "
+            "peaks, where there are two. (a) to (c) on lines inside the highest slab, (d) to (f) on the floors of "
+            "slabs of several heights. Grey lines: elastic slabs of the lattice's "
             "moduli, for the first case of a panel. Black lines have the slopes 1 (elastic) and 1/2 (diffusion). "
             f"Disorder: of the mean profile of {most} realizations. {slabs}",
             "Six panels with double logarithmic axes: symbols along lines of slope 1 for lattices under small forces "
