@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.claim import Claims, Data, Finding, Reading, at_most
 from ...claims.words import Bounds
 
 GROUP = "contact_law"
+CLAIMS = Claims(GROUP)
 
 
+@CLAIMS.add(
+    "N8",
+    "III.B",
+    "responses with the linear normal force against the 3/2 power, matched at the typical overlap",
+    "a linear force describes the disks quite well",
+)
 def linear_fit(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "responses", "difference", "friction", "force")
     readings = []
@@ -16,12 +23,12 @@ def linear_fit(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"friction {mu:g}",
-                Condition(
+                at_most(
                     "largest difference of the responses, per largest response",
-                    Quantity.exact(float(one.max())),
-                    most=words["quite well"],
-                    words=("quite well",),
-                    unit="%",
+                    float(one.max()),
+                    words,
+                    "quite well",
+                    "%",
                 ),
             )
         )
@@ -32,16 +39,3 @@ def linear_fit(data: Data, words: Bounds) -> Finding:
         "Matched where both give the mean normal force at rest; the paper's statement is about its measured contacts, "
         "here it is asked of the response",
     )
-
-
-CLAIMS = (
-    Claim(
-        "N8",
-        "III.B",
-        "responses with the linear normal force against the 3/2 power, matched at the typical overlap",
-        "a linear force describes the disks quite well",
-        linear_fit,
-        (),
-        GROUP,
-    ),
-)

@@ -4,15 +4,36 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
+from ...claims.claim import (
+    Claims,
+    Condition,
+    Data,
+    Finding,
+    NotMeasured,
+    Quantity,
+    Reading,
+    at,
+    at_most,
+    hardly_lower,
+    higher,
+    lower,
+)
 from ...claims.words import Bounds
 
 GROUP = "friction_fields"
+CLAIMS = Claims(GROUP)
 
 #: "Near the load": within this distance (mean radii). Pressure is compared where it exceeds this part of its maximum.
 NEAR, FAINT = 6.0, 0.1
 
 
+@CLAIMS.add(
+    "S1a",
+    "V.D, Fig. 13",
+    "F = 15 mg, no friction: mean angle of the added forces to the contact lines",
+    "forces are aligned with the lattice directions",
+    13,
+)
 def along_lattice(data: Data, words: Bounds) -> Finding:
     tilt = float(at(data.get(GROUP, "stress", "misalignment", "friction"), friction=0.0)["misalignment"])
     return Finding(
@@ -20,17 +41,19 @@ def along_lattice(data: Data, words: Bounds) -> Finding:
         [
             Reading(
                 "friction 0",
-                Condition(
-                    "sine of the mean angle to the contact lines",
-                    Quantity.exact(np.sin(np.radians(tilt))),
-                    most=words["visible"],
-                    words=("visible",),
-                ),
+                at_most("sine of the mean angle to the contact lines", np.sin(np.radians(tilt)), words, "visible"),
             )
         ],
     )
 
 
+@CLAIMS.add(
+    "S1b",
+    "V.D, Fig. 13",
+    "F = 15 mg, friction 1: angle to the vertical of the forces below the load and their share of the force",
+    "a vertical chain is evident",
+    13,
+)
 def vertical_chain(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "axis_angle", "axis_share", "friction")
     without, full = at(study, friction=0.0), at(study, friction=1.0)
@@ -45,17 +68,19 @@ def vertical_chain(data: Data, words: Bounds) -> Finding:
                 Condition(
                     "angle of the forces below the load to the vertical, degrees", Quantity.exact(angle), most=15.0
                 ),
-                Condition(
-                    "their share of the force per that at friction 0",
-                    Quantity.exact(ratio),
-                    1.0 + words["marked"],
-                    words=("marked",),
-                ),
+                higher("their share of the force per that at friction 0", ratio, words, "marked"),
             )
         ],
     )
 
 
+@CLAIMS.add(
+    "S2",
+    "V.D, Fig. 14",
+    "F = 15 mg, friction 1: sigma_zz against that of a harmonic lattice",
+    "quite similar to the isotropic one",
+    14,
+)
 def stress(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "distance_to_lattice", "friction")
     value = {mu: float(at(study, friction=mu)["distance_to_lattice"]) for mu in (0.0, 1.0)}
@@ -64,24 +89,20 @@ def stress(data: Data, words: Bounds) -> Finding:
         [
             Reading(
                 "farther than 6 radii from the load",
-                Condition(
-                    "rms difference at friction 1",
-                    Quantity.exact(value[1.0]),
-                    most=words["similar"],
-                    words=("similar",),
-                    unit="%",
-                ),
-                Condition(
-                    "that difference per the one at friction 0",
-                    Quantity.exact(value[1.0] / value[0.0]),
-                    most=1.0 - words["marked"],
-                    words=("marked",),
-                ),
+                at_most("rms difference at friction 1", value[1.0], words, "similar", "%"),
+                lower("that difference per the one at friction 0", value[1.0] / value[0.0], words, "marked"),
             )
         ],
     )
 
 
+@CLAIMS.add(
+    "A3",
+    "abstract, V.D",
+    "F = 15 mg: difference of sigma_zz from the isotropic lattice at friction 0, 0.2 and 1",
+    "friction renders the response closer to that of isotropic elasticity",
+    14,
+)
 def closer_with_friction(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "distance_to_lattice", "friction").sortby("friction")
     friction, distance = study["friction"].values, study["distance_to_lattice"].values
@@ -92,17 +113,19 @@ def closer_with_friction(data: Data, words: Bounds) -> Finding:
         [
             Reading(
                 "farther than 6 radii from the load",
-                Condition(
-                    "largest ratio of neighbouring frictions",
-                    Quantity.exact(worst),
-                    most=1.0 - words["visible"],
-                    words=("visible",),
-                ),
+                lower("largest ratio of neighbouring frictions", worst, words, "visible"),
             )
         ],
     )
 
 
+@CLAIMS.add(
+    "S3",
+    "V.C",
+    "antisymmetric part of the stress over the pressure, within 6 radii of the load",
+    "only a few per cent of the pressure",
+    14,
+)
 def antisymmetric(data: Data, words: Bounds) -> Finding:
     names = ("antisymmetric_near", "antisymmetric_near_mean", "friction", "stress_xx", "stress_zz", "stress_xz")
     study = data.get(GROUP, "stress", *names, "stress_zx", "load_height", "x", "z")
@@ -141,6 +164,13 @@ def antisymmetric(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "S4",
+    "V.D, Fig. 15",
+    "F = 150 mg: added contact forces below the load over the largest at the same depth",
+    "friction changes force profiles with two maxima into ones with a maximum below the load",
+    15,
+)
 def profiles(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "profiles", "axis_magnitude", "friction", "row")
     off = float(at(study, friction=0.0)["axis_magnitude"].max())
@@ -150,76 +180,8 @@ def profiles(data: Data, words: Bounds) -> Finding:
         [
             Reading(
                 "150 mg",
-                Condition(
-                    "below the load per largest, friction 0",
-                    Quantity.exact(off),
-                    most=1.0 - words["marked"],
-                    words=("marked",),
-                ),
-                Condition(
-                    "below the load per largest, friction 1",
-                    Quantity.exact(on),
-                    1.0 - words["slightly"],
-                    words=("slightly",),
-                ),
+                lower("below the load per largest, friction 0", off, words, "marked"),
+                hardly_lower("below the load per largest, friction 1", on, words, "slightly"),
             )
         ],
     )
-
-
-CLAIMS = (
-    Claim(
-        "S1a",
-        "V.D, Fig. 13",
-        "F = 15 mg, no friction: mean angle of the added forces to the contact lines",
-        "forces are aligned with the lattice directions",
-        along_lattice,
-        (13,),
-        GROUP,
-    ),
-    Claim(
-        "S1b",
-        "V.D, Fig. 13",
-        "F = 15 mg, friction 1: angle to the vertical of the forces below the load and their share of the force",
-        "a vertical chain is evident",
-        vertical_chain,
-        (13,),
-        GROUP,
-    ),
-    Claim(
-        "S2",
-        "V.D, Fig. 14",
-        "F = 15 mg, friction 1: sigma_zz against that of a harmonic lattice",
-        "quite similar to the isotropic one",
-        stress,
-        (14,),
-        GROUP,
-    ),
-    Claim(
-        "A3",
-        "abstract, V.D",
-        "F = 15 mg: difference of sigma_zz from the isotropic lattice at friction 0, 0.2 and 1",
-        "friction renders the response closer to that of isotropic elasticity",
-        closer_with_friction,
-        (14,),
-        GROUP,
-    ),
-    Claim(
-        "S3",
-        "V.C",
-        "antisymmetric part of the stress over the pressure, within 6 radii of the load",
-        "only a few per cent of the pressure",
-        antisymmetric,
-        (14,),
-        GROUP,
-    ),
-    Claim(
-        "S4",
-        "V.D, Fig. 15",
-        "F = 150 mg: added contact forces below the load over the largest at the same depth",
-        "friction changes force profiles with two maxima into ones with a maximum below the load",
-        profiles,
-        (15,),
-        GROUP,
-    ),
-)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
 
 from ...claims import preparations
 from ...claims.claim import (
-    Claim,
+    Claims,
     Condition,
     Data,
     Finding,
@@ -19,6 +19,11 @@ from ...claims.claim import (
     Reading,
     about,
     at,
+    at_least,
+    at_most,
+    higher,
+    linear_until,
+    lower,
     rises,
     sampled,
 )
@@ -26,222 +31,167 @@ from ...claims.words import Bounds
 
 GROUP = "friction_linear_range"
 BREAKING = "symmetry_breaking"
+CLAIMS = Claims(GROUP)
 
 
-def first_opening(friction: float, paper: float) -> Measure:
+def _ways(
+    data: Data, event: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]], own: str
+) -> list[Reading]:
+    """What is asked of the brackets of an event, in the reading ``own`` and with gravity brought otherwise."""
+    here = Reading(own, *conditions(*(data.event(GROUP, event, mu) for mu in frictions)))
+    return [here, *preparations.readings(data, event, frictions, conditions)]
+
+
+def at_force(
+    event: str, friction: float, paper: float, *, what: str, text: str, first_sampled: bool = False
+) -> Measure:
+    """The paper's number for an event: "about" it, or the first of its sampled forces at or above it."""
+
     def measure(data: Data, words: Bounds) -> Finding:
-        event = data.event(GROUP, "first_opening", friction)
-        return Finding(
-            f"opens at {event.text('mg')}",
-            [
-                Reading("the first sampled force at or above it", sampled("first opening", event, paper, words)),
-                *preparations.readings(
-                    data, "first_opening", (friction,), lambda end: [sampled("first opening", end, paper, words)]
-                ),
-            ],
-        )
+        def asked(end: Quantity) -> list[Condition]:
+            return [sampled(what, end, paper, words) if first_sampled else about(what, end, paper, words, "mg")]
+
+        own = "the first sampled force at or above it" if first_sampled else "gravity at once"
+        found = data.event(GROUP, event, friction)
+        return Finding(f"{text} {found.text('mg')}", _ways(data, event, (friction,), asked, own))
 
     return measure
 
 
-def _range_end(data: Data, friction: float, tolerance: float) -> Quantity:
-    """Where the response at x = 0 is more than ``tolerance`` off that to the smallest force, between stored forces."""
-    curve = at(data.get(GROUP, "response", "response_at_centre", "force", "friction"), friction=friction)
-    value, force = curve["response_at_centre"].values, curve["force"].values
-    known = np.isfinite(value)
-    off = np.flatnonzero(np.abs(value[known] / value[0] - 1.0) > tolerance)
-    if not off.size:
-        return Quantity.bracket(float(force[known][-1]), float("nan"))
-    return Quantity.bracket(float(force[known][off[0] - 1]), float(force[known][off[0]]))
+for _k, _mu, _paper, _figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (3, 1.0, 6.0, (9,))):
+    CLAIMS.add(
+        f"F{_k}",
+        "V.B",
+        f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, by bisection on the "
+        "load path",
+        f"{_paper:g} mg",
+        *_figures,
+    )(at_force("first_opening", _mu, _paper, what="first opening", text="opens at", first_sampled=True))
 
 
 def _ranges(data: Data, frictions: tuple[float, ...]) -> dict[str, list[Quantity]]:
     """The ends of the linear range at each friction, by what counts as its end."""
+    study = data.get(GROUP, "response", "response_at_centre", "force", "friction")
+    curves = [at(study, friction=mu) for mu in frictions]
     return {
         "response 1 % off": [data.event(GROUP, "linear_range", mu) for mu in frictions],
-        "response 2 % off": [_range_end(data, mu, 0.02) for mu in frictions],
-        "response 5 % off": [_range_end(data, mu, 0.05) for mu in frictions],
+        "response 2 % off": [linear_until(curve, 0.02) for curve in curves],
+        "response 5 % off": [linear_until(curve, 0.05) for curve in curves],
         "first opening": [data.event(GROUP, "first_opening", mu) for mu in frictions],
     }
-
-
-def linear_range(data: Data, words: Bounds) -> Finding:
-    def asked(ratios: Sequence[Quantity]) -> list[Condition]:
-        return [
-            Condition(f"times larger at friction {mu:g}", ratio, (1.0 - words["almost"]) * 10.0, 10.0, ("almost",))
-            for mu, ratio in zip((0.2, 1.0), ratios, strict=True)
-        ]
-
-    readings, texts = [], []
-    for name, ends in _ranges(data, (0.0, 0.2, 1.0)).items():
-        ratios = [end.per(ends[0]) for end in ends[1:]]
-        texts.append(f"{ratios[0].value:.3g} and {ratios[1].value:.3g} times ({name})")
-        readings.append(Reading(name, *asked(ratios)))
-    for name, event in _OTHERWISE.items():
-        without = data.event(GROUP, event, 0.0)
-        readings += [
-            Reading(f"{name}, {reading.name}", *reading.conditions)
-            for reading in preparations.readings(
-                data, event, (0.2, 1.0), lambda *ends, without=without: asked([end.per(without) for end in ends])
-            )
-        ]
-    return Finding(
-        "at friction 0.2 and 1: " + ", ".join(texts),
-        readings,
-        "The paper does not say how far off a response is no longer linear, nor how gravity came",
-    )
 
 
 #: Ends of the linear range that other preparations have too, by event.
 _OTHERWISE = {"response 1 % off": "linear_range", "first opening": "first_opening"}
 
 
-def range_grows(data: Data, words: Bounds) -> Finding:
-    frictions = np.sort(np.unique(data.get(GROUP, "response", "friction")["friction"].values)).tolist()
-    found = _ranges(data, tuple(frictions))
-    return Finding(
-        f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
-        + "; ".join(f"{name} at {', '.join(f'{e.value:.3g}' for e in ends)} mg" for name, ends in found.items()),
-        [
-            *(Reading(name, rises("range", ends)) for name, ends in found.items()),
-            *(
-                Reading(f"{name}, {reading.name}", *reading.conditions)
-                for name, event in _OTHERWISE.items()
-                for reading in preparations.readings(
-                    data,
-                    event,
-                    tuple(frictions[1:]),
-                    lambda *ends, without=found[name][0]: [rises("range", [without, *ends])],
-                )
-            ),
-        ],
-        "It grows up to friction 0.2 or 0.5 and is shorter at 1; at the paper's own three frictions the first opening "
-        "grows",
-    )
-
-
-def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
-    axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
-    dip = axis["central_dip"].values
-    back = float(np.diff(dip).max())
-    return Finding(
-        f"dip at x = 0 at 15 mg from {dip[0]:.0%} without friction to {dip[-1]:.1%} at friction "
-        f"{float(axis['friction'][-1]):g}; largest step back {back:.2%} of the largest response",
-        [
-            Reading(
-                "floor response at 15 mg",
-                Condition(
-                    "largest growth of the dip with friction",
-                    Quantity.exact(back),
-                    most=words["visible"],
-                    words=("visible",),
-                    unit="%",
-                ),
-                Condition(
-                    "fall of the dip over all", Quantity.exact(dip[0] - dip[-1]), words["marked"], words=("marked",)
-                ),
+def _by_end(
+    data: Data, found: dict[str, list[Quantity]], frictions: tuple[float, ...], asked: Callable[..., list[Condition]]
+) -> list[Reading]:
+    """What is asked of the ends at no friction and at ``frictions``; without it preparations do not differ."""
+    return [
+        *(Reading(name, *asked(*ends)) for name, ends in found.items()),
+        *(
+            Reading(f"{name}, {reading.name}", *reading.conditions)
+            for name, event in _OTHERWISE.items()
+            for reading in preparations.readings(
+                data, event, frictions, lambda *ends, without=found[name][0]: asked(without, *ends)
             )
-        ],
+        ),
+    ]
+
+
+@CLAIMS.add(
+    "R1",
+    "V.A, Fig. 6",
+    "end of the linear range at x = 0, and first opening, at friction 0.2 and 1 over those without",
+    "almost ten times larger",
+    6,
+)
+def linear_range(data: Data, words: Bounds) -> Finding:
+    def asked(without: Quantity, *ends: Quantity) -> list[Condition]:
+        least = (1.0 - words["almost"]) * 10.0
+        return [
+            Condition(f"times larger at friction {mu:g}", end.per(without), least, 10.0, ("almost",))
+            for mu, end in zip((0.2, 1.0), ends, strict=True)
+        ]
+
+    found = _ranges(data, (0.0, 0.2, 1.0))
+    ratios = {name: [f"{end.per(ends[0]).value:.3g}" for end in ends[1:]] for name, ends in found.items()}
+    return Finding(
+        "at friction 0.2 and 1: " + ", ".join(f"{' and '.join(r)} times ({name})" for name, r in ratios.items()),
+        _by_end(data, found, (0.2, 1.0), asked),
+        "The paper does not say how far off a response is no longer linear, nor how gravity came",
     )
 
 
 def _curve(data: Data, friction: float, *names: str) -> xr.Dataset:
     curve = at(data.get(GROUP, "response", "force", "friction", *names), friction=friction)
-    known = np.isfinite(curve[names[0]].values)
-    return curve.isel(force=known)
+    return curve.isel(force=np.isfinite(curve[names[0]].values))
 
 
-def single_peak(data: Data, words: Bounds) -> Finding:
-    curve = _curve(data, 1.0, "double_peaked")
+def _up_to_50(data: Data, *names: str) -> xr.Dataset:
+    """The curve at friction 1."""
+    curve = _curve(data, 1.0, *names)
     force = curve["force"].values
     if not force.size or force.max() < 50.0:
         raise NotMeasured(f"data/{GROUP}.nc: response does not reach 50 mg at friction 1")
-    double = curve["double_peaked"].values[force <= 50.0]
+    return curve.isel(force=force <= 50.0)
+
+
+@CLAIMS.add("R2a", "V.A, Fig. 7", "friction 1: forces up to 50 mg with two peaks", "a single peak up to 50 mg", 7)
+def single_peak(data: Data, words: Bounds) -> Finding:
+    curve = _up_to_50(data, "double_peaked")
+    ways = {"gravity at once": (curve["force"].values, curve["double_peaked"].values)}
+    ways |= preparations.curves(data, 1.0, "double_peaked")
+    double = {way: int(np.count_nonzero(values[force <= 50.0])) for way, (force, values) in ways.items()}
+    size = curve.sizes["force"]
     return Finding(
-        f"one peak at {np.count_nonzero(double == 0)} of {double.size} forces up to 50 mg",
+        f"one peak at {size - double['gravity at once']} of {size} forces up to 50 mg",
         [
-            Reading(
-                "gravity at once",
-                Condition("forces up to 50 mg with two peaks", Quantity.exact(int(np.count_nonzero(double))), most=0.0),
-            ),
             *(
-                Reading(
-                    way,
-                    Condition(
-                        "forces up to 50 mg with two peaks",
-                        Quantity.exact(int(np.count_nonzero(values[force <= 50.0]))),
-                        most=0.0,
-                    ),
-                )
-                for way, (force, values) in preparations.curves(data, 1.0, "double_peaked").items()
+                Reading(way, Condition("forces up to 50 mg with two peaks", Quantity.exact(number), most=0.0))
+                for way, number in double.items()
             ),
             *preparations.one_peak_at_15(data, 1.0, words),
         ],
     )
 
 
+@CLAIMS.add(
+    "R2b",
+    "V.B, Fig. 7",
+    "friction 1: full width at half maximum at 50 mg over that at the smallest force",
+    "its shape becomes sharper",
+    7,
+)
 def sharper(data: Data, words: Bounds) -> Finding:
-    curve = _curve(data, 1.0, "half_maximum_width", "peak_height")
-    force = curve["force"].values
-    if not force.size or force.max() < 50.0:
-        raise NotMeasured(f"data/{GROUP}.nc: response does not reach 50 mg at friction 1")
-    last = int(np.flatnonzero(force <= 50.0)[-1])
+    curve = _up_to_50(data, "half_maximum_width", "peak_height")
     width, height = curve["half_maximum_width"].values, curve["peak_height"].values
+    narrower = lower("width at 50 mg per that at the smallest force", width[-1] / width[0], words, "visible")
     return Finding(
-        f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[last]:.1f} R, the height "
-        f"grows from {height[0]:.4f} to {height[last]:.4f}",
-        [
-            Reading(
-                "gravity at once",
-                Condition(
-                    "width at 50 mg per that at the smallest force",
-                    Quantity.exact(width[last] / width[0]),
-                    most=1.0 - words["visible"],
-                    words=("visible",),
-                ),
-            )
-        ],
+        f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[-1]:.1f} R, the height "
+        f"grows from {height[0]:.4f} to {height[-1]:.4f}",
+        [Reading("gravity at once", narrower)],
     )
 
 
-def crossover_at_20(data: Data, words: Bounds) -> Finding:
-    event = data.event(GROUP, "crossover", 0.2)
-    return Finding(
-        f"two peaks from {event.text('mg')}",
-        [
-            Reading("gravity at once", about("crossover", event, 20.0, words, "mg")),
-            *preparations.readings(data, "crossover", (0.2,), lambda end: [about("crossover", end, 20.0, words, "mg")]),
-        ],
-    )
+CLAIMS.add("R3a", "V.E, Fig. 16a", "friction 0.2: force of the crossover to two peaks", "about 20 mg", 7, 16)(
+    at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from")
+)
+CLAIMS.add(
+    "R3b", "V.E, Fig. 8", "friction 0.2: force at which the open region reaches the lowest row", "about 20 mg", 8
+)(at_force("reaches_floor", 0.2, 20.0, what="open region at the floor", text="open region at the floor from"))
+CLAIMS.add(
+    "R4a",
+    "V.E, Fig. 16a",
+    "friction 0.2: force from which the response with two peaks has a third one at x = 0, by bisection",
+    "from about 40 mg",
+    16,
+)(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
 
 
-def floor_at_20(data: Data, words: Bounds) -> Finding:
-    event = data.event(GROUP, "reaches_floor", 0.2)
-    return Finding(
-        f"open region at the floor from {event.text('mg')}",
-        [
-            Reading("gravity at once", about("open region at the floor", event, 20.0, words, "mg")),
-            *preparations.readings(
-                data,
-                "reaches_floor",
-                (0.2,),
-                lambda end: [about("open region at the floor", end, 20.0, words, "mg")],
-            ),
-        ],
-    )
-
-
-def third_peak(data: Data, words: Bounds) -> Finding:
-    event = data.event(GROUP, "third_peak", 0.2)
-    return Finding(
-        f"from {event.text('mg')}",
-        [
-            Reading("the first sampled force at or above it", sampled("third peak", event, 40.0, words)),
-            *preparations.readings(data, "third_peak", (0.2,), lambda end: [sampled("third peak", end, 40.0, words)]),
-        ],
-    )
-
-
+@CLAIMS.add("R4b", "V.E, Fig. 16a", "prominence of that peak at each stored force from 40 mg on", "small", 16)
 def third_peak_small(data: Data, words: Bounds) -> Finding:
     curve = _curve(data, 0.2, "third_peak_prominence")
     force, size = curve["force"].values, curve["third_peak_prominence"].values
@@ -252,16 +202,7 @@ def third_peak_small(data: Data, words: Bounds) -> Finding:
         f"prominence {size[beyond[0]]:.3f} of the largest response at {force[beyond[0]]:g} mg, up to "
         f"{size[beyond].max():.3f} at {force[beyond][size[beyond].argmax()]:g} mg",
         [
-            Reading(
-                f"{force[k]:g} mg",
-                Condition(
-                    "prominence per largest response",
-                    Quantity.exact(size[k]),
-                    most=words["small"],
-                    words=("small",),
-                    unit="%",
-                ),
-            )
+            Reading(f"{force[k]:g} mg", at_most("prominence per largest response", size[k], words, "small", "%"))
             for k in beyond
         ],
         "It keeps growing; the paper does not say up to which force it looked",
@@ -278,6 +219,17 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
     return runs, int(lost[0])
 
 
+#: How the force of those runs grows.
+RAMP = "ramp of 20 sqrt(R/g)"
+
+
+@CLAIMS.add(
+    "R5b",
+    "V.E, Fig. 16b",
+    "change of the asymmetry between the two neighbouring forces around that event",
+    "a sharp transition",
+    16,
+)
 def sharp(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     asymmetry, force = runs["asymmetry"].values, runs["force"].values
@@ -285,70 +237,69 @@ def sharp(data: Data, words: Bounds) -> Finding:
     return Finding(
         f"asymmetry from {asymmetry[first - 1]:.1e} at {force[first - 1]:g} mg to {asymmetry[first]:.2f} at "
         f"{force[first]:g} mg",
-        [
-            Reading(
-                "ramp of 20 sqrt(R/g)",
-                Condition(
-                    "change between two forces, per largest response",
-                    Quantity.exact(step),
-                    words["gradual"],
-                    words=("gradual",),
-                ),
-            )
-        ],
+        [Reading(RAMP, at_least("change between two forces, per largest response", step, words, "gradual"))],
     )
 
 
+@CLAIMS.add(
+    "R6a",
+    "V.E",
+    "contacts near the Coulomb limit on both sides of that change",
+    "a marked reduction in the number of sliding contacts",
+    16,
+)
 def sliding_drops(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     sliding, margins = runs["mobilised_contacts"].transpose("force", "margin").values, runs["margin"].values
-    readings = []
-    for k, margin in enumerate(margins.tolist()):
-        before, after = sliding[first - 1, k], sliding[first, k]
-        if before > 0:
-            readings.append(
-                Reading(
-                    f"within {margin:.0%} of the Coulomb limit",
-                    Condition(
-                        "sliding contacts after per before",
-                        Quantity.exact(after / before),
-                        most=1.0 - words["marked"],
-                        words=("marked",),
-                    ),
-                )
-            )
+    cases = list(zip(margins.tolist(), sliding[first - 1], sliding[first], strict=True))
+    readings = [
+        Reading(
+            f"within {margin:.0%} of the Coulomb limit",
+            lower("sliding contacts after per before", after / before, words, "marked"),
+        )
+        for margin, before, after in cases
+        if before > 0
+    ]
     if not readings:
         raise NotMeasured(f"data/{GROUP}.nc: large_forces holds no contact near the Coulomb limit before the change")
     return Finding(
         "contacts near the Coulomb limit before and after: "
-        + ", ".join(
-            f"{sliding[first - 1, k]:.0f} and {sliding[first, k]:.0f} (within {m:.0%})" for k, m in enumerate(margins)
-        ),
+        + ", ".join(f"{before:.0f} and {after:.0f} (within {margin:.0%})" for margin, before, after in cases),
         readings,
         "In equilibrium a contact that slid rests just below the limit; how near counts as sliding is a choice",
     )
 
 
+@CLAIMS.add(
+    "R6b",
+    "V.E",
+    "contacts without a mirror image on both sides of that change",
+    "the contact network becomes asymmetric",
+    16,
+)
 def network_changes(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     network = runs["network_asymmetry"].values
+    before, after = Quantity.exact(network[first - 1]), Quantity.exact(network[first:].min())
     return Finding(
         f"contacts without a mirror image: {network[first - 1]:.1%} before, {network[first]:.1%} after",
         [
             Reading(
-                "ramp of 20 sqrt(R/g)",
-                Condition("contacts without a mirror image before", Quantity.exact(network[first - 1]), most=0.0),
-                Condition(
-                    "smallest part without a mirror image after",
-                    Quantity.exact(network[first:].min()),
-                    0.0,
-                    strict=True,
-                ),
+                RAMP,
+                Condition("contacts without a mirror image before", before, most=0.0),
+                Condition("smallest part without a mirror image after", after, 0.0, strict=True),
             )
         ],
     )
 
 
+@CLAIMS.add(
+    "R7",
+    "V.E",
+    "beyond that change: responses at nearly equal forces that lean to opposite sides, one mirrored",
+    "very close forces can give almost exactly the reflected response",
+    16,
+)
 def mirror_images(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     after = runs.isel(force=slice(first, None))
@@ -372,44 +323,30 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
             f"{(copies < 0).sum()} to the left"
         )
     seen = f"{best[1]:g} and {best[2]:g} mg, difference {best[0]:.1%}" if pairs else "no pair of opposite sign"
-    return Finding(
-        f"{seen}{turned}",
-        [
-            Reading(
-                "ramp of 20 sqrt(R/g)",
-                Condition(
-                    "difference of one response and the mirrored other, per largest response",
-                    Quantity.exact(best[0]),
-                    most=words["holds"],
-                    words=("holds",),
-                    unit="%",
-                ),
-            )
-        ],
-    )
+    what = "difference of one response and the mirrored other, per largest response"
+    return Finding(f"{seen}{turned}", [Reading(RAMP, at_most(what, best[0], words, "holds", "%"))])
 
 
+@CLAIMS.add(
+    "R8a",
+    "V.B, Fig. 9",
+    "force at which the open region reaches the lowest row at friction 1 over that at 0.2",
+    "smaller than for 0.2",
+    8,
+    9,
+)
 def floor_earlier(data: Data, words: Bounds) -> Finding:
-    low, high = data.event(GROUP, "reaches_floor", 1.0), data.event(GROUP, "reaches_floor", 0.2)
+    def asked(low: Quantity, high: Quantity) -> list[Condition]:
+        return [Condition("force at friction 1 per that at 0.2", low.per(high), most=1.0, strict=True)]
+
+    low, high = (data.event(GROUP, "reaches_floor", mu) for mu in (1.0, 0.2))
     return Finding(
         f"at the floor from {low.text('mg')} (friction 1) and {high.text('mg')} (friction 0.2)",
-        [
-            Reading(
-                "gravity at once",
-                Condition("force at friction 1 per that at 0.2", low.per(high), most=1.0, strict=True),
-            ),
-            *preparations.readings(
-                data,
-                "reaches_floor",
-                (1.0, 0.2),
-                lambda low, high: [
-                    Condition("force at friction 1 per that at 0.2", low.per(high), most=1.0, strict=True)
-                ],
-            ),
-        ],
+        _ways(data, "reaches_floor", (1.0, 0.2), asked, "gravity at once"),
     )
 
 
+@CLAIMS.add("R8b", "V.B, Fig. 9", "peaks beyond it at friction 1", "one peak remains", 9)
 def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     floor = data.event(GROUP, "reaches_floor", 1.0)
     curve = _curve(data, 1.0, "double_peaked")
@@ -423,6 +360,40 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "R9", "V.A, Fig. 7", "force of the crossover to two peaks against friction", "rapidly increases with friction", 7
+)
+def crossover_rises(data: Data, words: Bounds) -> Finding:
+    frictions = np.sort(data.get(GROUP, "response", "double_peaked", "force", "friction")["friction"].values).tolist()
+    ends = []
+    for mu in frictions:
+        curve = _curve(data, mu, "double_peaked")
+        force, double = curve["force"].values, curve["double_peaked"].values
+        first = np.flatnonzero(double > 0)
+        if first.size and first[0] == 0:
+            raise NotMeasured(f"data/{GROUP}.nc: response has two peaks at the smallest force, friction {mu:g}")
+        k = int(first[0]) if first.size else len(force)
+        ends.append(Quantity.bracket(force[k - 1], force[k] if first.size else float("nan")))
+    return Finding(
+        "two peaks from, by friction: "
+        + ", ".join(f"{end.text('mg')} ({mu:g})" for mu, end in zip(frictions, ends, strict=True)),
+        [
+            Reading("gravity at once", rises("crossover force", ends)),
+            *preparations.readings(
+                data, "crossover", tuple(frictions[1:]), lambda *after: [rises("crossover force", [ends[0], *after])]
+            ),
+        ],
+    )
+
+
+@CLAIMS.add(
+    "R10",
+    "V.B, Figs. 4, 8",
+    "opened contacts at friction 0.2 over those without friction under the same force",
+    "the region of open contacts is considerably smaller",
+    4,
+    8,
+)
 def smaller_region(data: Data, words: Bounds) -> Finding:
     names = ("teardrop_depth", "teardrop_width", "reaches_floor", "opened_contacts")
     without, full = _curve(data, 0.0, *names), _curve(data, 0.2, *names)
@@ -432,46 +403,48 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     if not open_.any():
         raise NotMeasured(f"data/{GROUP}.nc: response holds no force at which the regions can be compared")
     ratio = full["opened_contacts"].values[open_] / without["opened_contacts"].values[open_]
+    found = Quantity.range(ratio, float(np.median(ratio)))
     return Finding(
         f"opened contacts at friction 0.2 per those without, until the region reaches the floor: {ratio.min():.2f} to "
         f"{ratio.max():.2f}",
         [
             Reading(
                 "gravity at once",
-                Condition(
-                    "opened contacts per those without friction, same force",
-                    Quantity.range(ratio, float(np.median(ratio))),
-                    most=1.0 - words["marked"],
-                    words=("marked",),
-                ),
+                lower("opened contacts per those without friction, same force", found, words, "marked"),
             )
         ],
     )
 
 
+@CLAIMS.add(
+    "R11",
+    "V.B, Figs. 4, 8",
+    "force at which the open region reaches the lowest row at friction 0.2 over that without friction",
+    "it reaches the floor only for a much larger force",
+    4,
+    8,
+)
 def floor_later(data: Data, words: Bounds) -> Finding:
-    late, early = data.event(GROUP, "reaches_floor", 0.2), data.event(GROUP, "reaches_floor", 0.0)
+    late, early = (data.event(GROUP, "reaches_floor", mu) for mu in (0.2, 0.0))
     return Finding(
         f"at the floor from {late.text('mg')} (friction 0.2) and {early.text('mg')} (without)",
-        [
-            Reading(
-                "gravity at once",
-                Condition("force with friction per without", late.per(early), 1.0 + words["marked"], words=("marked",)),
-            ),
-            *preparations.readings(
-                data,
-                "reaches_floor",
-                (0.2,),
-                lambda late: [
-                    Condition(
-                        "force with friction per without", late.per(early), 1.0 + words["marked"], words=("marked",)
-                    )
-                ],
-            ),
-        ],
+        _ways(
+            data,
+            "reaches_floor",
+            (0.2,),
+            lambda end: [higher("force with friction per without", end.per(early), words, "marked")],
+            "gravity at once",
+        ),
     )
 
 
+@CLAIMS.add(
+    "F11",
+    "V.A, Fig. 6",
+    "without friction: change of the response at x = 0 over the forces at which no contact has opened",
+    "a linear range even for frictionless particles",
+    6,
+)
 def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "first_opening", 0.0)
     curve = _curve(data, 0.0, "response_at_centre")
@@ -479,254 +452,77 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     if before.size < 2:
         raise NotMeasured(f"data/{GROUP}.nc: response holds too few forces before the first opening")
     change = float(np.ptp(before) / before[0])
+    what = "change of the response before a contact opens"
     return Finding(
         f"the response at x = 0 changes by {change:.2%} up to the first opening at {event.text('mg')}",
+        [Reading("gravity at once", at_most(what, change, words, "visible", "%"))],
+    )
+
+
+@CLAIMS.add(
+    "A1",
+    "abstract",
+    "end of the linear range, and first opening, against friction from 0 to 1",
+    "the larger the friction, the more extended the range of forces with an elastic response",
+    6,
+)
+def range_grows(data: Data, words: Bounds) -> Finding:
+    frictions = np.sort(np.unique(data.get(GROUP, "response", "friction")["friction"].values)).tolist()
+    found = _ranges(data, tuple(frictions))
+    return Finding(
+        f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
+        + "; ".join(f"{name} at {', '.join(f'{e.value:.3g}' for e in ends)} mg" for name, ends in found.items()),
+        _by_end(data, found, tuple(frictions[1:]), lambda *ends: [rises("range", ends)]),
+        "It grows up to friction 0.2 or 0.5 and is shorter at 1; at the paper's own three frictions the first opening "
+        "grows",
+    )
+
+
+@CLAIMS.add(
+    "A2",
+    "abstract",
+    "dip of the floor response at x = 0 under 15 mg against friction",
+    "the larger the friction, the smaller the anisotropy",
+    12,
+)
+def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
+    axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
+    dip = axis["central_dip"].values
+    back = float(np.diff(dip).max())
+    return Finding(
+        f"dip at x = 0 at 15 mg from {dip[0]:.0%} without friction to {dip[-1]:.1%} at friction "
+        f"{float(axis['friction'][-1]):g}; largest step back {back:.2%} of the largest response",
         [
             Reading(
-                "gravity at once",
-                Condition(
-                    "change of the response before a contact opens",
-                    Quantity.exact(change),
-                    most=words["visible"],
-                    words=("visible",),
-                    unit="%",
-                ),
+                "floor response at 15 mg",
+                at_most("largest growth of the dip with friction", back, words, "visible", "%"),
+                at_least("fall of the dip over all", dip[0] - dip[-1], words, "marked"),
             )
         ],
     )
 
 
-def crossover_rises(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "response", "double_peaked", "force", "friction").sortby("friction")
-    ends, texts = [], []
-    for mu in study["friction"].values.tolist():
-        curve = _curve(data, mu, "double_peaked")
-        force, double = curve["force"].values, curve["double_peaked"].values
-        first = np.flatnonzero(double > 0)
-        if first.size and first[0] == 0:
-            raise NotMeasured(f"data/{GROUP}.nc: response has two peaks at the smallest force, friction {mu:g}")
-        k = int(first[0]) if first.size else len(force)
-        ends.append(Quantity.bracket(force[k - 1], force[k] if first.size else float("nan")))
-        texts.append(f"{ends[-1].text('mg')} ({mu:g})")
-    return Finding(
-        "two peaks from, by friction: " + ", ".join(texts),
-        [
-            Reading("gravity at once", rises("crossover force", ends)),
-            *preparations.readings(
-                data,
-                "crossover",
-                tuple(study["friction"].values[1:].tolist()),
-                lambda *after: [rises("crossover force", [ends[0], *after])],
-            ),
-        ],
-    )
-
-
+@CLAIMS.add(
+    "K4",
+    "V.D, Fig. 12",
+    "F = 15 mg, k_T/k_N = 0.8: dip at x = 0 without and with much friction; friction at which two peaks turn into one, "
+    "by bisection",
+    "a crossover from two peaks to one",
+    12,
+)
 def friction_crossover(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "friction_crossover")
     axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
     first, last = float(axis["central_dip"][0]), float(axis["central_dip"][-1])
 
-    def asked(at_most: float) -> list[Condition]:
-        return [
-            Condition("dip without friction", Quantity.exact(first), words["visible"], words=("visible",), unit="%"),
-            Condition(
-                "dip with much friction", Quantity.exact(at_most), most=words["visible"], words=("visible",), unit="%"
-            ),
-        ]
+    def asked(dip: float) -> Sequence[Condition]:
+        return (
+            at_least("dip without friction", first, words, "visible", "%"),
+            at_most("dip with much friction", dip, words, "visible", "%"),
+        )
 
     largest = float(axis["friction"][-1])
     readings = [Reading("gravity at once", Condition("friction", event, 0.0, largest), *asked(last))]
     if preparations.LOADING in data.groups:
         readings += [Reading(name, *asked(dip)) for name, dip in preparations.dips(data, 1.0).items()]
     return Finding(f"two peaks up to friction {event.text()}, one above", readings)
-
-
-CLAIMS = (
-    *(
-        Claim(
-            f"F{k}",
-            "V.B",
-            f"friction {mu:g}: smallest force that opens a contact in the central third of the slab, by bisection on "
-            "the load path",
-            f"{paper:g} mg",
-            first_opening(mu, paper),
-            figures,
-            GROUP,
-        )
-        for k, mu, paper, figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (3, 1.0, 6.0, (9,)))
-    ),
-    Claim(
-        "R1",
-        "V.A, Fig. 6",
-        "end of the linear range at x = 0, and first opening, at friction 0.2 and 1 over those without",
-        "almost ten times larger",
-        linear_range,
-        (6,),
-        GROUP,
-    ),
-    Claim(
-        "R2a",
-        "V.A, Fig. 7",
-        "friction 1: forces up to 50 mg with two peaks",
-        "a single peak up to 50 mg",
-        single_peak,
-        (7,),
-        GROUP,
-    ),
-    Claim(
-        "R2b",
-        "V.B, Fig. 7",
-        "friction 1: full width at half maximum at 50 mg over that at the smallest force",
-        "its shape becomes sharper",
-        sharper,
-        (7,),
-        GROUP,
-    ),
-    Claim(
-        "R3a",
-        "V.E, Fig. 16a",
-        "friction 0.2: force of the crossover to two peaks",
-        "about 20 mg",
-        crossover_at_20,
-        (7, 16),
-        GROUP,
-    ),
-    Claim(
-        "R3b",
-        "V.E, Fig. 8",
-        "friction 0.2: force at which the open region reaches the lowest row",
-        "about 20 mg",
-        floor_at_20,
-        (8,),
-        GROUP,
-    ),
-    Claim(
-        "R4a",
-        "V.E, Fig. 16a",
-        "friction 0.2: force from which the response with two peaks has a third one at x = 0, by bisection",
-        "from about 40 mg",
-        third_peak,
-        (16,),
-        GROUP,
-    ),
-    Claim(
-        "R4b",
-        "V.E, Fig. 16a",
-        "prominence of that peak at each stored force from 40 mg on",
-        "small",
-        third_peak_small,
-        (16,),
-        GROUP,
-    ),
-    Claim(
-        "R5b",
-        "V.E, Fig. 16b",
-        "change of the asymmetry between the two neighbouring forces around that event",
-        "a sharp transition",
-        sharp,
-        (16,),
-        GROUP,
-    ),
-    Claim(
-        "R6a",
-        "V.E",
-        "contacts near the Coulomb limit on both sides of that change",
-        "a marked reduction in the number of sliding contacts",
-        sliding_drops,
-        (16,),
-        GROUP,
-    ),
-    Claim(
-        "R6b",
-        "V.E",
-        "contacts without a mirror image on both sides of that change",
-        "the contact network becomes asymmetric",
-        network_changes,
-        (16,),
-        GROUP,
-    ),
-    Claim(
-        "R7",
-        "V.E",
-        "beyond that change: responses at nearly equal forces that lean to opposite sides, one mirrored",
-        "very close forces can give almost exactly the reflected response",
-        mirror_images,
-        (16,),
-        GROUP,
-    ),
-    Claim(
-        "R8a",
-        "V.B, Fig. 9",
-        "force at which the open region reaches the lowest row at friction 1 over that at 0.2",
-        "smaller than for 0.2",
-        floor_earlier,
-        (8, 9),
-        GROUP,
-    ),
-    Claim("R8b", "V.B, Fig. 9", "peaks beyond it at friction 1", "one peak remains", one_peak_beyond, (9,), GROUP),
-    Claim(
-        "R9",
-        "V.A, Fig. 7",
-        "force of the crossover to two peaks against friction",
-        "rapidly increases with friction",
-        crossover_rises,
-        (7,),
-        GROUP,
-    ),
-    Claim(
-        "R10",
-        "V.B, Figs. 4, 8",
-        "opened contacts at friction 0.2 over those without friction under the same force",
-        "the region of open contacts is considerably smaller",
-        smaller_region,
-        (4, 8),
-        GROUP,
-    ),
-    Claim(
-        "R11",
-        "V.B, Figs. 4, 8",
-        "force at which the open region reaches the lowest row at friction 0.2 over that without friction",
-        "it reaches the floor only for a much larger force",
-        floor_later,
-        (4, 8),
-        GROUP,
-    ),
-    Claim(
-        "F11",
-        "V.A, Fig. 6",
-        "without friction: change of the response at x = 0 over the forces at which no contact has opened",
-        "a linear range even for frictionless particles",
-        elastic_without_friction,
-        (6,),
-        GROUP,
-    ),
-    Claim(
-        "A1",
-        "abstract",
-        "end of the linear range, and first opening, against friction from 0 to 1",
-        "the larger the friction, the more extended the range of forces with an elastic response",
-        range_grows,
-        (6,),
-        GROUP,
-    ),
-    Claim(
-        "A2",
-        "abstract",
-        "dip of the floor response at x = 0 under 15 mg against friction",
-        "the larger the friction, the smaller the anisotropy",
-        smaller_anisotropy,
-        (12,),
-        GROUP,
-    ),
-    Claim(
-        "K4",
-        "V.D, Fig. 12",
-        "F = 15 mg, k_T/k_N = 0.8: dip at x = 0 without and with much friction; friction at which two peaks turn into "
-        "one, by bisection",
-        "a crossover from two peaks to one",
-        friction_crossover,
-        (12,),
-        GROUP,
-    ),
-)

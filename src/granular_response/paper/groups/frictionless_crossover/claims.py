@@ -5,10 +5,22 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.claim import (
+    Claims,
+    Condition,
+    Data,
+    Finding,
+    NotMeasured,
+    Quantity,
+    Reading,
+    at_most,
+    hardly_lower,
+    near,
+)
 from ...claims.words import Bounds
 
 GROUP = "frictionless_crossover"
+CLAIMS = Claims(GROUP)
 
 #: The paper's stiffness of contacts.
 STIFFNESS = 3000.0
@@ -17,6 +29,14 @@ STIFFNESS = 3000.0
 ROW, DISK = float(np.sqrt(3.0)), 2.0
 
 
+@CLAIMS.add(
+    "F4a",
+    "IV.A, Fig. 3",
+    "without friction: force at which the floor response gets two peaks, each above the response at x = 0",
+    "one peak turns into two as the force grows",
+    3,
+    4,
+)
 def crossover(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "crossover")
     largest = float(data.get(GROUP, "response", "force")["force"].max())
@@ -26,6 +46,14 @@ def crossover(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "F4b",
+    "IV.A, Figs. 3, 4",
+    "that force per the force at which the open region reaches the lowest row",
+    "the crossover comes at slightly smaller forces than the open region's reaching the floor",
+    3,
+    4,
+)
 def before_the_floor(data: Data, words: Bounds) -> Finding:
     event, floor = data.event(GROUP, "crossover"), data.event(GROUP, "teardrop_reaches_floor")
     ratio = event.per(floor)
@@ -59,6 +87,13 @@ def _open_regions(data: Data) -> list[tuple[float, float, np.ndarray]]:
     return found
 
 
+@CLAIMS.add(
+    "F5a",
+    "IV.A, Fig. 4",
+    "without friction: directions of the opened contacts in their connected region below the load",
+    "horizontal contacts are opened",
+    4,
+)
 def horizontal(data: Data, words: Bounds) -> Finding:
     regions = _open_regions(data)
     least = min(share for _, share, _ in regions)
@@ -67,19 +102,21 @@ def horizontal(data: Data, words: Bounds) -> Finding:
         [
             Reading(
                 "until the region reaches the floor",
-                Condition(
-                    "smallest horizontal part of the opened contacts",
-                    Quantity.exact(least),
-                    1.0 - words["visible"],
-                    words=("visible",),
-                    unit="%",
-                ),
+                hardly_lower("smallest horizontal part of the opened contacts", least, words, "visible", "%"),
             )
         ],
         "At larger forces oblique contacts open too, close below the load; the paper describes none",
     )
 
 
+@CLAIMS.add(
+    "F5b",
+    "IV.A, Fig. 4",
+    "rows and depth of that region at growing forces",
+    "the region has the shape of a teardrop and grows with the force",
+    4,
+    5,
+)
 def teardrop(data: Data, words: Bounds) -> Finding:
     regions = [counts for _, _, counts in _open_regions(data)]
     response = data.get(GROUP, "response", "teardrop_depth", "reaches_floor", "force")
@@ -114,6 +151,14 @@ def _slabs(data: Data, *names: str) -> xr.Dataset:
     return data.get(GROUP, "sizes", "layers", "normal_stiffness", "force", *names).sortby("layers")
 
 
+@CLAIMS.add(
+    "F6",
+    "IV.B, Fig. 5",
+    "depth and width of the open region in deeper slabs over those in the thinnest, summed over the forces at "
+    "which the latter has not reached its floor",
+    "the size decreases only slightly as the depth of the slab increases",
+    5,
+)
 def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
     study = _slabs(data, "teardrop_depth", "teardrop_width", "reaches_floor")
     stiffnesses = np.unique(study["normal_stiffness"].values)
@@ -138,12 +183,7 @@ def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
                     "bracket",
                 )
                 conditions.append(
-                    Condition(
-                        f"{what} per that in {slabs['layers'].values[0]:.0f} layers",
-                        ratio,
-                        1.0 - words["slightly"],
-                        words=("slightly",),
-                    )
+                    hardly_lower(f"{what} per that in {slabs['layers'].values[0]:.0f} layers", ratio, words, "slightly")
                 )
                 if what == "depth":
                     texts.append(f"{ratio.value:.2f} in {slabs['layers'].values[k]:.0f} layers (k_N = {stiffness:g})")
@@ -170,6 +210,13 @@ def _deep_and_shallow(slabs: xr.Dataset, alike: str) -> list[tuple[int, int]]:
     ]
 
 
+@CLAIMS.add(
+    "F7",
+    "IV.B, VIII",
+    "crossover force in a deep slab over that in a shallow one",
+    "under the same load deep slabs have one peak, shallow ones two",
+    5,
+)
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
     for name, alike in (("sizes", "width grows with depth"), ("widths", "same width")):
@@ -182,8 +229,7 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
                 where = f"{shapes[0]} against {shapes[1]} disks, k_N = {stiffness:g}"
                 readings.append(
                     Reading(
-                        where,
-                        Condition("crossover force, deep per shallow", ends[1].per(ends[0]), 1.0, strict=True),
+                        where, Condition("crossover force, deep per shallow", ends[1].per(ends[0]), 1.0, strict=True)
                     )
                 )
                 texts.append(f"{ends[1].text('mg')} against {ends[0].text('mg')} ({where})")
@@ -196,6 +242,9 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "F8", "IV.C", "without friction: change of the response at x = 0 over k_N from 1000 to 1e5", "only about 2 %", 5
+)
 def stiffness_response(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stiffness", "response_at_centre", "normal_stiffness", "force")
     stiffness, force = study["normal_stiffness"].values, study["force"].values
@@ -219,6 +268,13 @@ def stiffness_response(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "F9",
+    "IV.C",
+    "depth and width of the open region against k_N, at forces at which it reaches no floor",
+    "they increase with k_N and saturate for k_N of 2000 and more",
+    5,
+)
 def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stiffness", "teardrop_depth", "teardrop_width", "reaches_floor", "normal_stiffness")
     study = study.sortby("normal_stiffness")
@@ -232,13 +288,7 @@ def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     for what, size in (("depth", depth[:, use]), ("width", width[:, use])):
         spread = float((np.ptp(size[high], axis=0) / size[-1]).max())
         conditions.append(
-            Condition(
-                f"largest change of the {what} for k_N of 2000 and more",
-                Quantity.exact(spread),
-                most=words["nearly"],
-                words=("nearly",),
-                unit="%",
-            )
+            at_most(f"largest change of the {what} for k_N of 2000 and more", spread, words, "nearly", "%")
         )
     grown = float(((depth[-1] - depth[0])[use] / ROW).max())
     return Finding(
@@ -254,6 +304,13 @@ def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "F10",
+    "IV.C",
+    "without friction: crossover force at k_N from 1000 up over that at 1e5",
+    "the crossover is essentially independent of the rigidity",
+    5,
+)
 def crossover_and_stiffness(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stiffness", "crossover_bracket", "normal_stiffness").sortby("normal_stiffness")
     stiffness = study["normal_stiffness"].values
@@ -267,102 +324,5 @@ def crossover_and_stiffness(data: Data, words: Bounds) -> Finding:
     spread = Quantity(ratios[0].value, min(r.low for r in ratios), max(r.high for r in ratios), "range")
     return Finding(
         f"crossover from k_N = 1000 to 1e5: {ends[0].text('mg')} to {ends[-1].text('mg')}",
-        [
-            Reading(
-                "15 layers",
-                Condition(
-                    "crossover force per that at the largest k_N",
-                    spread,
-                    1.0 - words["nearly"],
-                    1.0 + words["nearly"],
-                    ("nearly",),
-                ),
-            )
-        ],
+        [Reading("15 layers", near("crossover force per that at the largest k_N", spread, words, "nearly"))],
     )
-
-
-CLAIMS = (
-    Claim(
-        "F4a",
-        "IV.A, Fig. 3",
-        "without friction: force at which the floor response gets two peaks, each above the response at x = 0",
-        "one peak turns into two as the force grows",
-        crossover,
-        (3, 4),
-        GROUP,
-    ),
-    Claim(
-        "F4b",
-        "IV.A, Figs. 3, 4",
-        "that force per the force at which the open region reaches the lowest row",
-        "the crossover comes at slightly smaller forces than the open region's reaching the floor",
-        before_the_floor,
-        (3, 4),
-        GROUP,
-    ),
-    Claim(
-        "F5a",
-        "IV.A, Fig. 4",
-        "without friction: directions of the opened contacts in their connected region below the load",
-        "horizontal contacts are opened",
-        horizontal,
-        (4,),
-        GROUP,
-    ),
-    Claim(
-        "F5b",
-        "IV.A, Fig. 4",
-        "rows and depth of that region at growing forces",
-        "the region has the shape of a teardrop and grows with the force",
-        teardrop,
-        (4, 5),
-        GROUP,
-    ),
-    Claim(
-        "F6",
-        "IV.B, Fig. 5",
-        "depth and width of the open region in deeper slabs over those in the thinnest, summed over the forces at "
-        "which the latter has not reached its floor",
-        "the size decreases only slightly as the depth of the slab increases",
-        teardrop_and_depth,
-        (5,),
-        GROUP,
-    ),
-    Claim(
-        "F7",
-        "IV.B, VIII",
-        "crossover force in a deep slab over that in a shallow one",
-        "under the same load deep slabs have one peak, shallow ones two",
-        deep_and_shallow,
-        (5,),
-        GROUP,
-    ),
-    Claim(
-        "F8",
-        "IV.C",
-        "without friction: change of the response at x = 0 over k_N from 1000 to 1e5",
-        "only about 2 %",
-        stiffness_response,
-        (5,),
-        GROUP,
-    ),
-    Claim(
-        "F9",
-        "IV.C",
-        "depth and width of the open region against k_N, at forces at which it reaches no floor",
-        "they increase with k_N and saturate for k_N of 2000 and more",
-        stiffness_teardrop,
-        (5,),
-        GROUP,
-    ),
-    Claim(
-        "F10",
-        "IV.C",
-        "without friction: crossover force at k_N from 1000 up over that at 1e5",
-        "the crossover is essentially independent of the rigidity",
-        crossover_and_stiffness,
-        (5,),
-        GROUP,
-    ),
-)

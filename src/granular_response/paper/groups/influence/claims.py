@@ -5,14 +5,22 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "influence"
+CLAIMS = Claims(GROUP)
+
 #: Of the difference of two loads with the same force and torque, in an elastic body.
 ELASTIC = 2.0
 
 
+@CLAIMS.add(
+    "B1",
+    "beyond the paper, VI",
+    "power of the distance with which statically equivalent small loads differ on the floor",
+    "statically equivalent loads differ little far away, as in an elastic body (Saint-Venant)",
+)
 def saint_venant(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "saint_venant", "exponent", "polydispersity", "friction")
     most = words["quite well"]
@@ -42,16 +50,3 @@ def saint_venant(data: Data, words: Bounds) -> Finding:
         readings,
         "Small loads on the disks of every row, at rest. Elastic is taken as the power 2 within a fifth",
     )
-
-
-CLAIMS = (
-    Claim(
-        "B1",
-        "beyond the paper, VI",
-        "power of the distance with which statically equivalent small loads differ on the floor",
-        "statically equivalent loads differ little far away, as in an elastic body (Saint-Venant)",
-        saint_venant,
-        (),
-        GROUP,
-    ),
-)

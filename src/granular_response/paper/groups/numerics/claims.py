@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at, at_most
 from ...claims.words import Bounds
 
 FloatArray = NDArray[np.float64]
 
 GROUP = "numerics"
+CLAIMS = Claims(GROUP)
 
 #: How the energy that ends a run is read.
 RULES = {
@@ -20,6 +21,13 @@ RULES = {
 }
 
 
+@CLAIMS.add(
+    "N1",
+    "III.C",
+    "floor forces of a run that stops at 1e-13 per disk against the static equilibrium it was settling to, at rest "
+    "and under 15 mg",
+    "below 1 %",
+)
 def stop_energy(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stop_energy", "rest_error", "loaded_error", "stop_kinetic_energy", "friction")
     study = at(study, stop_kinetic_energy=1e-13)
@@ -42,20 +50,27 @@ def stop_energy(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "N2",
+    "III.C",
+    "statically finished frictionless states put back into the dynamics: largest kinetic energy per disk",
+    "below 1e-22",
+)
 def restart(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "restart", "kinetic_energy", "load")
     largest = float(study["kinetic_energy"].max())
     return Finding(
         f"at most {largest:.1e} per disk at every look",
-        [
-            Reading(
-                "every load and look",
-                Condition("kinetic energy per disk", Quantity.exact(largest), most=1e-22),
-            )
-        ],
+        [Reading("every load and look", Condition("kinetic energy per disk", Quantity.exact(largest), most=1e-22))],
     )
 
 
+@CLAIMS.add(
+    "N3a",
+    "III.C",
+    "friction 0.2, 15 mg, stopped at 1e-13: the other criteria of rest",
+    "network fixed for several hundred steps, two contacts for each disk, no sliding contact",
+)
 def at_rest(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "at_rest", "network_fixed_steps", "sliding_contacts", "loose_disks")
     fixed, sliding, loose = (float(study[n]) for n in ("network_fixed_steps", "sliding_contacts", "loose_disks"))
@@ -75,6 +90,7 @@ def at_rest(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add("N3b", "III.C", "the same: mean acceleration of a disk", "below 1e-5 g")
 def swing(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "swing", "mean_acceleration", "kinetic_energy", "stop_rule")
     readings, texts = [], []
@@ -92,24 +108,9 @@ def swing(data: Data, words: Bounds) -> Finding:
     )
 
 
-def disorder(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "disorder", "stopped", "finished", "x")
-    stopped, finished = study["stopped"].values, study["finished"].values
-    number = len(stopped)
-
-    def difference(picked: FloatArray, axis: int) -> FloatArray:
-        """Largest difference of the means of the realizations ``picked``, per largest value of the finished one."""
-        early, exact = stopped[picked].mean(axis=axis), finished[picked].mean(axis=axis)
-        return np.asarray(np.abs(early - exact).max(axis=-1) / exact.max(axis=-1))
-
-    single = float(np.median(np.abs(stopped - finished).max(axis=1) / finished.max(axis=1)))
-    found = over_realizations(np.arange(number), lambda picked, axis: difference(picked.astype(int), axis))
-    return Finding(
-        f"mean of {number}: {found.text('%')} of its largest value; single realizations: median {single:.2%}",
-        [Reading("1 %, as for floor forces", Condition("error of the mean response", found, most=0.01, unit="%"))],
-    )
-
-
+@CLAIMS.add(
+    "N4", "III.B", "friction 0.2, 15 mg: floor response with the paper's time step and with half of it", "no effect"
+)
 def time_step(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "time_step", "difference", "time_step").sortby("time_step", ascending=False)
     step = study["time_step"].values
@@ -122,6 +123,12 @@ def time_step(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "N5",
+    "III",
+    "friction 0.2, 15 mg: floor response by Gear's method with five values and by Beeman's, same time step",
+    "no significant change",
+)
 def integrators(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "integrators", "difference", "integrator")
     names = study["integrator"].values.tolist()
@@ -132,18 +139,15 @@ def integrators(data: Data, words: Bounds) -> Finding:
 
 
 def _unseen(difference: float, words: Bounds) -> Reading:
-    return Reading(
-        "friction 0.2, 15 mg",
-        Condition(
-            "difference per largest response",
-            Quantity.exact(difference),
-            most=words["visible"],
-            words=("visible",),
-            unit="%",
-        ),
-    )
+    return Reading("friction 0.2, 15 mg", at_most("difference per largest response", difference, words, "visible", "%"))
 
 
+@CLAIMS.add(
+    "N6",
+    "III.B",
+    "friction 0.2: time to rest under gravity against the damping of a contact",
+    "nu = sqrt(k), half of critical, relaxes fastest",
+)
 def damping(data: Data, words: Bounds) -> Finding:
     names = ("relaxation_time", "settled", "damping_ratio", "beeman_limit")
     study = data.get(GROUP, "damping", *names).sortby("damping_ratio")
@@ -179,78 +183,25 @@ def damping(data: Data, words: Bounds) -> Finding:
     )
 
 
-CLAIMS = (
-    Claim(
-        "N1",
-        "III.C",
-        "floor forces of a run that stops at 1e-13 per disk against the static equilibrium it was settling to, at rest "
-        "and under 15 mg",
-        "below 1 %",
-        stop_energy,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "N2",
-        "III.C",
-        "statically finished frictionless states put back into the dynamics: largest kinetic energy per disk",
-        "below 1e-22",
-        restart,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "N3a",
-        "III.C",
-        "friction 0.2, 15 mg, stopped at 1e-13: the other criteria of rest",
-        "network fixed for several hundred steps, two contacts for each disk, no sliding contact",
-        at_rest,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "N3b",
-        "III.C",
-        "the same: mean acceleration of a disk",
-        "below 1e-5 g",
-        swing,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "N4",
-        "III.B",
-        "friction 0.2, 15 mg: floor response with the paper's time step and with half of it",
-        "no effect",
-        time_step,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "N5",
-        "III",
-        "friction 0.2, 15 mg: floor response by Gear's method with five values and by Beeman's, same time step",
-        "no significant change",
-        integrators,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "N6",
-        "III.B",
-        "friction 0.2: time to rest under gravity against the damping of a contact",
-        "nu = sqrt(k), half of critical, relaxes fastest",
-        damping,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "N7",
-        "III.C",
-        "disordered averages stopped at 1e-9 per disk against statically finished ones",
-        "sufficient accuracy",
-        disorder,
-        (),
-        GROUP,
-    ),
+@CLAIMS.add(
+    "N7",
+    "III.C",
+    "disordered averages stopped at 1e-9 per disk against statically finished ones",
+    "sufficient accuracy",
 )
+def disorder(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "disorder", "stopped", "finished", "x")
+    stopped, finished = study["stopped"].values, study["finished"].values
+    number = len(stopped)
+
+    def difference(picked: FloatArray, axis: int) -> FloatArray:
+        """Largest difference of the means of the realizations ``picked``, per largest value of the finished one."""
+        early, exact = stopped[picked].mean(axis=axis), finished[picked].mean(axis=axis)
+        return np.asarray(np.abs(early - exact).max(axis=-1) / exact.max(axis=-1))
+
+    single = float(np.median(np.abs(stopped - finished).max(axis=1) / finished.max(axis=1)))
+    found = over_realizations(np.arange(number), lambda picked, axis: difference(picked.astype(int), axis))
+    return Finding(
+        f"mean of {number}: {found.text('%')} of its largest value; single realizations: median {single:.2%}",
+        [Reading("1 %, as for floor forces", Condition("error of the mean response", found, most=0.01, unit="%"))],
+    )

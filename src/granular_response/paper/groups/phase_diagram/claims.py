@@ -11,15 +11,32 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
+from ...claims.claim import (
+    Claims,
+    Condition,
+    Data,
+    Finding,
+    NotMeasured,
+    Quantity,
+    Reading,
+    at,
+    at_least,
+    at_most,
+    each,
+    hardly_lower,
+)
 from ...claims.words import Bounds
 
 FloatArray = NDArray[np.float64]
 
 GROUP = "phase_diagram"
+CLAIMS = Claims(GROUP)
 
 #: The start that this project uses, first, and the literal one.
 STARTS = ("touching-largest", "2.0")
+
+#: What a case is called by.
+_LABELS = ("polydispersity", "friction", "lattice_constant")
 
 #: Kinds of crossover force: found, or a bound because there are two peaks, or one, at every force.
 FOUND, BELOW, ABOVE = 0, 1, 2
@@ -60,29 +77,47 @@ def _with_interval(case: xr.Dataset, name: str) -> Quantity:
     return Quantity(float(case[name]), low, high, "confidence")
 
 
-def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
-    names = ("shape", "shape_interval", "applied_force", "level", "polydispersity", "friction", "lattice_constant")
-    study = at(data.get(GROUP, "shapes", *names), width=3.0)
-    readings, texts = [], []
+def _at_15(data: Data, name: str, *variables: str) -> list[tuple[str, xr.Dataset, xr.Dataset]]:
+    """By start: delta = 0.01 under 15 mg at friction 0 and at 0.2, w = 3."""
+    study = at(data.get(GROUP, name, *variables, *_LABELS), width=3.0)
+    force = data.get(GROUP, "shapes", "applied_force", *_LABELS)
+    found = []
     for start in _starts(study, 0.01):
-        shapes = []
+        pair = []
         for mu in (0.0, 0.2):
-            case = _case(study, 0.01, mu, start)
-            step = np.flatnonzero(np.isclose(case["applied_force"].values, 15.0))
-            if not step.size:
-                raise NotMeasured(f"data/{GROUP}.nc: no 15 mg at polydispersity 0.01, friction {mu:g}")
-            one = case.isel(step=int(step[0]))
-            shapes.append(_with_interval(one, "shape"))
-        texts.append(f"{shapes[0].text('%')} at friction 0, {shapes[1].text('%')} at 0.2 ({title(start)})")
+            try:
+                case, applied = (_case(one, 0.01, mu, start) for one in (study, force))
+            except NotMeasured:
+                break
+            step = np.flatnonzero(np.isclose(applied["applied_force"].values, 15.0))
+            if step.size:
+                pair.append(case.isel(step=int(step[0])))
+        if len(pair) == 2:
+            found.append((start, pair[0], pair[1]))
+    if not found:
+        raise NotMeasured(f"data/{GROUP}.nc: {name} holds no 15 mg at polydispersity 0.01, friction 0 and 0.2")
+    return found
+
+
+@CLAIMS.add(
+    "D1",
+    "VI, Fig. 19",
+    "delta = 0.01, 15 mg, w = 3: dip of the mean response at x = 0, made symmetric, at friction 0 and 0.2",
+    "two distinct peaks without friction, one with 0.2",
+    19,
+)
+def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
+    readings, texts = [], []
+    for start, *cases in _at_15(data, "shapes", "shape", "shape_interval", "level"):
+        without, full = (_with_interval(case, "shape") for case in cases)
+        texts.append(f"{without.text('%')} at friction 0, {full.text('%')} at 0.2 ({title(start)})")
         readings.append(
             Reading(
                 title(start),
-                Condition("dip at friction 0", shapes[0], words["visible"], words=("visible",), unit="%"),
-                Condition("dip at friction 0.2", shapes[1], most=words["visible"], words=("visible",), unit="%"),
+                at_least("dip at friction 0", without, words, "visible", "%"),
+                at_most("dip at friction 0.2", full, words, "visible", "%"),
             )
         )
-    if not readings:
-        raise NotMeasured(f"data/{GROUP}.nc: shapes holds no polydispersity 0.01")
     return Finding(
         "how far x = 0 is below the sides of the mean response, per its largest value: " + "; ".join(texts), readings
     )
@@ -136,7 +171,7 @@ def _crossover(case: xr.Dataset) -> Crossover:
 
 def _defined(data: Data, width: float, words: Bounds) -> xr.Dataset:
     """The crossovers if a dip counts from the bound of "visible" on."""
-    names = ("force", "kind", "interval", "level", "draws", "limits", "polydispersity", "friction", "lattice_constant")
+    names = ("force", "kind", "interval", "level", "draws", "limits", *_LABELS)
     usual = data.get(GROUP, "crossovers", *names)
     if np.isclose(usual.attrs.get("tolerance", words["visible"]), words["visible"]):
         return at(usual, width=width)
@@ -179,47 +214,31 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds too few crossover forces to compare")
         texts.append(f"{clear} of {total} steps clear of their intervals (w = {width:g})")
         readings.append(Reading(f"w = {width:g}", *conditions))
-    return Finding(
-        f"crossover force {rising} with {what}: " + ", ".join(texts),
-        readings,
-    )
+    return Finding(f"crossover force {rising} with {what}: " + ", ".join(texts), readings)
 
 
+@CLAIMS.add(
+    "D3a",
+    "VI.A, Figs. 21, 22",
+    "crossover force against friction at each polydispersity (0.01, 0.1, 0.25)",
+    "the larger the friction, the larger the crossover force",
+    21,
+    22,
+)
 def rises_with_friction(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "friction", "rises")
 
 
+@CLAIMS.add(
+    "D3b",
+    "VI.A, Figs. 21, 22",
+    "crossover force against polydispersity at each friction",
+    "the crossover force decreases with increasing polydispersity",
+    21,
+    22,
+)
 def falls_with_disorder(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "polydispersity", "falls")
-
-
-def below_lattice(data: Data, words: Bounds) -> Finding:
-    readings, texts = [], []
-    for width in (6.0, 3.0):
-        found = _crossovers(data, width, words)
-        ratios = {
-            key: found[key].per(found[(0.0, key[1])])
-            for key in sorted(found)
-            if key[0] > 0.0 and (0.0, key[1]) in found and found[key].comparable(found[(0.0, key[1])])
-        }
-        if not ratios:
-            raise NotMeasured(f"data/{GROUP}.nc: crossovers holds no lattice to compare with")
-        texts.append(f"{sum(r.high <= 1.0 for r in ratios.values())} of {len(ratios)} clear (w = {width:g})")
-        readings.append(
-            Reading(
-                f"w = {width:g}",
-                *(
-                    Condition(
-                        f"per lattice at polydispersity {delta:g}, friction {mu:g}",
-                        ratio,
-                        most=1.0,
-                        words=("visible",),
-                    )
-                    for (delta, mu), ratio in ratios.items()
-                ),
-            )
-        )
-    return Finding("crossover force below that of the lattice: " + ", ".join(texts), readings)
 
 
 def _away(crossovers: xr.Dataset, force: FloatArray, words: Bounds) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -235,6 +254,14 @@ def _away(crossovers: xr.Dataset, force: FloatArray, words: Bounds) -> tuple[NDA
     return below, above
 
 
+@CLAIMS.add(
+    "D5",
+    "VI.A",
+    "number of peaks of means of five realizations against that of the mean of all, at forces beyond the interval "
+    "of the crossover and more than half away from it",
+    "five are sufficient when the force is not too close to its crossover",
+    21,
+)
 def five_enough(data: Data, words: Bounds) -> Finding:
     shapes = at(data.get(GROUP, "shapes", "few_agree", "applied_force", "polydispersity"), width=6.0)
     crossover = at(data.get(GROUP, "crossovers", "force", "kind", "interval", "level", "realizations"), width=6.0)
@@ -254,11 +281,7 @@ def five_enough(data: Data, words: Bounds) -> Finding:
             Reading(
                 "w = 6",
                 Condition(
-                    "draws of five that agree",
-                    typical,
-                    1.0 - words["holds"],
-                    words=("holds", "similar"),
-                    unit="%",
+                    "draws of five that agree", typical, 1.0 - words["holds"], words=("holds", "similar"), unit="%"
                 ),
             )
         ],
@@ -266,6 +289,46 @@ def five_enough(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "D6",
+    "VIII, Fig. 22",
+    "crossover force of disordered slabs over that of the lattice with the same friction",
+    "in polydisperse systems the anisotropy becomes large at smaller forces",
+    22,
+)
+def below_lattice(data: Data, words: Bounds) -> Finding:
+    readings, texts = [], []
+    for width in (6.0, 3.0):
+        found = _crossovers(data, width, words)
+        ratios = {
+            key: found[key].per(found[(0.0, key[1])])
+            for key in sorted(found)
+            if key[0] > 0.0 and (0.0, key[1]) in found and found[key].comparable(found[(0.0, key[1])])
+        }
+        if not ratios:
+            raise NotMeasured(f"data/{GROUP}.nc: crossovers holds no lattice to compare with")
+        texts.append(f"{sum(r.high <= 1.0 for r in ratios.values())} of {len(ratios)} clear (w = {width:g})")
+        readings.append(
+            Reading(
+                f"w = {width:g}",
+                *(
+                    Condition(
+                        f"per lattice at polydispersity {delta:g}, friction {mu:g}", ratio, most=1.0, words=("visible",)
+                    )
+                    for (delta, mu), ratio in ratios.items()
+                ),
+            )
+        )
+    return Finding("crossover force below that of the lattice: " + ", ".join(texts), readings)
+
+
+@CLAIMS.add(
+    "D8",
+    "VI.A",
+    "delta = 0.01: crossover force from two starts of the packing",
+    "the crossover likely depends on the preparation too",
+    22,
+)
 def preparation(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
     for width in (6.0, 3.0):
@@ -293,147 +356,99 @@ def preparation(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "D4",
+    "VI.A",
+    "friction 1, w = 6: largest change between neighbouring forces of the dip at x = 0 or the asymmetry, of the "
+    "mean response and of realizations",
+    "a rather gradual crossover even for friction 1",
+    21,
+)
 def gradual(data: Data, words: Bounds) -> Finding:
-    names = ("polydispersity", "friction", "lattice_constant")
-    study = at(
-        data.get(GROUP, "shapes", "largest_step", "largest_step_interval", "level", *names),
-        width=6.0,
-    )
-    each = at(data.get(GROUP, "realizations", "shape", "asymmetry", *names), width=6.0)
-    single, means, texts = [], [], []
+    study = at(data.get(GROUP, "shapes", "largest_step", "largest_step_interval", "level", *_LABELS), width=6.0)
+    rows = at(data.get(GROUP, "realizations", "shape", "asymmetry", *_LABELS), width=6.0)
+    singles, means, texts = [], [], []
     for delta in np.unique(study["polydispersity"].values[study["polydispersity"].values > 0.0]).tolist():
         try:
-            case, rows = (_case(one, delta, 1.0, STARTS[0]) for one in (study, each))
+            case, single = (_case(one, delta, 1.0, STARTS[0]) for one in (study, rows))
         except NotMeasured:
             continue
         step = _with_interval(case, "largest_step")
-        dips, leans = (rows[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
+        dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
         steps = over_realizations(np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1))
         name = f"polydispersity {delta:g}"
         texts.append(f"{step.text()} in the mean, {steps.text()} in the median realization ({name})")
-        means.append(Condition(name, step, most=words["gradual"], words=("gradual",)))
-        single.append(Condition(name, steps, most=words["gradual"], words=("gradual",)))
+        means.append(at_most(name, step, words, "gradual"))
+        singles.append(at_most(name, steps, words, "gradual"))
     if not means:
         raise NotMeasured(f"data/{GROUP}.nc: shapes holds no disordered case with friction 1")
     return Finding(
         "largest change of dip or asymmetry between neighbouring forces, per largest response: " + "; ".join(texts),
-        [Reading("mean of the realizations", *means), Reading("median realization", *single)],
+        [Reading("mean of the realizations", *means), Reading("median realization", *singles)],
     )
 
 
+def _packings(data: Data, *variables: str) -> list[tuple[str, xr.Dataset]]:
+    """By start: delta = 0.01 without friction at rest."""
+    study = data.get(GROUP, "packings", *variables, *_LABELS)
+    found = [(start, _case(study, 0.01, 0.0, start)) for start in _starts(study, 0.01)]
+    if not found:
+        raise NotMeasured(f"data/{GROUP}.nc: packings holds no polydispersity 0.01")
+    return found
+
+
+@CLAIMS.add(
+    "D7a",
+    "VII",
+    "delta = 0.01, friction 0: contacts per disk at rest, mean over realizations",
+    "about 4.25, well above the isostatic 4",
+)
 def coordination(data: Data, words: Bounds) -> Finding:
     names = {
         "contacts of disks": "coordination_number",
         "walls counted": "coordination_number_with_walls",
         "away from the boundaries": "coordination_number_bulk",
     }
-    study = data.get(GROUP, "packings", *names.values(), "polydispersity", "friction", "lattice_constant")
-    readings, texts = [], []
-    low, high = ((1.0 + sign * words["about"]) * 0.25 for sign in (-1.0, 1.0))
-    for start in _starts(study, 0.01):
-        case = _case(study, 0.01, 0.0, start)
-        for text, name in names.items():
-            mean = over_realizations(case[name].values, np.mean)
-            texts.append(f"{mean.text()} ({text}, {title(start)})")
-            # the paper holds 4.25 against the isostatic 4: what is "about" is the excess
-            readings.append(
-                Reading(
-                    f"{text}, {title(start)}",
-                    Condition("contacts per disk", mean, 4.0 + low, 4.0 + high, ("about",)),
-                )
-            )
-    if not readings:
-        raise NotMeasured(f"data/{GROUP}.nc: packings holds no polydispersity 0.01")
-    return Finding("contacts per disk: " + ", ".join(texts), readings)
+    # the paper holds 4.25 against the isostatic 4: what is "about" is the excess
+    low, high = (4.0 + (1.0 + sign * words["about"]) * 0.25 for sign in (-1.0, 1.0))
+    means = {
+        f"{text}, {title(start)}": over_realizations(case[name].values, np.mean)
+        for start, case in _packings(data, *names.values())
+        for text, name in names.items()
+    }
+    return each("contacts per disk: ", means, lambda q: Condition("contacts per disk", q, low, high, ("about",)))
 
 
+@CLAIMS.add(
+    "D7b",
+    "VII",
+    "the same: horizontal part of the contacts that are missing from the lattice",
+    "the missing contacts are predominantly horizontal",
+)
 def missing_horizontal(data: Data, words: Bounds) -> Finding:
-    study = data.get(
-        GROUP, "packings", "horizontal_contacts", "oblique_contacts", "polydispersity", "friction", "lattice_constant"
-    )
-    lattice = _case(study, 0.0, 0.0)
-    full = [float(np.nanmean(lattice[name].values)) for name in ("horizontal_contacts", "oblique_contacts")]
-    readings, texts = [], []
-    for start in _starts(study, 0.01):
-        case = _case(study, 0.01, 0.0, start)
-        gone = [full[k] - case[name].values for k, name in enumerate(("horizontal_contacts", "oblique_contacts"))]
-        share = over_realizations(gone[0] / (gone[0] + gone[1]), np.mean)
-        texts.append(f"{share.text('%')} ({title(start)})")
-        readings.append(
-            Reading(
-                title(start),
-                Condition(
-                    "horizontal part of the missing contacts", share, words["marked"], words=("marked",), unit="%"
-                ),
-            )
-        )
-    if not readings:
-        raise NotMeasured(f"data/{GROUP}.nc: packings holds no polydispersity 0.01")
-    return Finding(
-        "horizontal part of the contacts that the lattice has and the packing has not: " + ", ".join(texts), readings
+    names = ("horizontal_contacts", "oblique_contacts")
+    lattice = _case(data.get(GROUP, "packings", *names, *_LABELS), 0.0, 0.0)
+    full = [float(np.nanmean(lattice[name].values)) for name in names]
+    shares = {}
+    for start, case in _packings(data, *names):
+        gone = [full[k] - case[name].values for k, name in enumerate(names)]
+        shares[title(start)] = over_realizations(gone[0] / (gone[0] + gone[1]), np.mean)
+    return each(
+        "horizontal part of the contacts that the lattice has and the packing has not: ",
+        shares,
+        lambda share: at_least("horizontal part of the missing contacts", share, words, "marked", "%"),
+        "%",
     )
 
 
-def _at_15(data: Data, name: str, *variables: str) -> list[tuple[str, xr.Dataset, xr.Dataset]]:
-    """By start: delta = 0.01 under 15 mg at friction 0 and at 0.2, w = 3."""
-    wanted = ("polydispersity", "friction", "lattice_constant")
-    study = at(data.get(GROUP, name, *variables, *wanted), width=3.0)
-    force = data.get(GROUP, "shapes", "applied_force", *wanted)
-    found = []
-    for start in _starts(study, 0.01):
-        pair = []
-        for mu in (0.0, 0.2):
-            try:
-                case, applied = (_case(one, 0.01, mu, start) for one in (study, force))
-            except NotMeasured:
-                break
-            step = np.flatnonzero(np.isclose(applied["applied_force"].values, 15.0))
-            if step.size:
-                pair.append(case.isel(step=int(step[0])))
-        if len(pair) == 2:
-            found.append((start, pair[0], pair[1]))
-    if not found:
-        raise NotMeasured(f"data/{GROUP}.nc: {name} holds no 15 mg at polydispersity 0.01, friction 0 and 0.2")
-    return found
-
-
-def fluctuations(data: Data, words: Bounds) -> Finding:
-    readings, texts = [], []
-    for start, *cases in _at_15(data, "shapes", "spread", "spread_interval", "level"):
-        spread = [_with_interval(case, "spread") for case in cases]
-        ratio = spread[0].per(spread[1])
-        texts.append(f"{ratio.text()} ({title(start)})")
-        readings.append(
-            Reading(title(start), Condition("spread without friction per spread with 0.2", ratio, 1.0, strict=True))
-        )
-    return Finding(
-        "spread of the responses of realizations at 15 mg, friction 0 over 0.2: " + ", ".join(texts), readings
-    )
-
-
-def evident(data: Data, words: Bounds) -> Finding:
-    readings, texts = [], []
-    for start, *cases in _at_15(data, "realizations", "shape"):
-        dips = [case["shape"].values[np.isfinite(case["shape"].values)] for case in cases]
-        if min(map(len, dips)) < 5:
-            raise NotMeasured(f"data/{GROUP}.nc: realizations holds too few responses at polydispersity 0.01")
-        apart = over_realizations((dips[0][:, None] > dips[1][None, :]).mean(axis=1), np.mean)
-        texts.append(f"{apart.text('%')} ({title(start)})")
-        readings.append(
-            Reading(
-                title(start),
-                Condition(
-                    "pairs of realizations of which the frictionless has the deeper dip",
-                    apart,
-                    1.0 - words["holds"],
-                    words=("holds",),
-                    unit="%",
-                ),
-            )
-        )
-    return Finding("pairs of realizations of which the frictionless has the deeper dip: " + ", ".join(texts), readings)
-
-
+@CLAIMS.add(
+    "D9",
+    "VI.A",
+    "w = 6: difference of a typical realization from the mean, at forces beyond the interval of the crossover and "
+    "more than half away from it",
+    "away from the crossover the typical response of a realization resembles the average",
+    21,
+)
 def resembles(data: Data, words: Bounds) -> Finding:
     """At forces that are known to be away from the crossover of their case."""
     study = at(data.get(GROUP, "realizations", "difference", "polydispersity", "lattice_constant"), width=6.0)
@@ -441,7 +456,7 @@ def resembles(data: Data, words: Bounds) -> Finding:
     crossover = at(data.get(GROUP, "crossovers", "force", "kind", "interval", "level"), width=6.0)
     usual = (study["polydispersity"].values > 0.0) & (study["lattice_constant"].values.astype(str) == STARTS[0])
     off = study["difference"].transpose("case", "realization", "step").values
-    readings, texts = [], []
+    typical = {}
     for name, away in zip(("below the crossover", "above the crossover"), _away(crossover, force, words), strict=True):
         values = [
             float(np.nanmedian(off[case, :, step]))
@@ -450,25 +465,49 @@ def resembles(data: Data, words: Bounds) -> Finding:
         ]
         if len(values) < 3:
             raise NotMeasured(f"data/{GROUP}.nc: realizations holds too few forces {name}")
-        typical = over_realizations(values)
-        texts.append(f"{typical.text('%')} ({name})")
-        readings.append(
-            Reading(
-                name,
-                Condition(
-                    "rms difference of a typical realization from the mean",
-                    typical,
-                    most=words["similar"],
-                    words=("similar",),
-                    unit="%",
-                ),
-            )
-        )
-    return Finding(
-        "rms difference of the median realization from the mean, per the mean's rms, median over cases and forces: "
-        + ", ".join(texts),
-        readings,
+        typical[name] = over_realizations(values)
+    return each(
+        "rms difference of the median realization from the mean, per the mean's rms, median over cases and forces: ",
+        typical,
+        lambda one: at_most("rms difference of a typical realization from the mean", one, words, "similar", "%"),
+        "%",
     )
+
+
+@CLAIMS.add(
+    "D10",
+    "VI, Fig. 19",
+    "delta = 0.01, 15 mg, w = 3: standard deviation over realizations without friction over that with 0.2",
+    "fluctuations are larger for the frictionless case",
+    19,
+)
+def fluctuations(data: Data, words: Bounds) -> Finding:
+    ratios = {}
+    for start, *cases in _at_15(data, "shapes", "spread", "spread_interval", "level"):
+        without, full = (_with_interval(case, "spread") for case in cases)
+        ratios[title(start)] = without.per(full)
+    return each(
+        "spread of the responses of realizations at 15 mg, friction 0 over 0.2: ",
+        ratios,
+        lambda ratio: Condition("spread without friction per spread with 0.2", ratio, 1.0, strict=True),
+    )
+
+
+@CLAIMS.add(
+    "D11",
+    "VI, Fig. 19",
+    "delta = 0.01, 15 mg, w = 3: dip at x = 0 of each frictionless realization against each with friction 0.2",
+    "the difference is quite evident even for individual realizations",
+    19,
+)
+def evident(data: Data, words: Bounds) -> Finding:
+    what, apart = "pairs of realizations of which the frictionless has the deeper dip", {}
+    for start, *cases in _at_15(data, "realizations", "shape"):
+        without, full = (case["shape"].values[np.isfinite(case["shape"].values)] for case in cases)
+        if min(without.size, full.size) < 5:
+            raise NotMeasured(f"data/{GROUP}.nc: realizations holds too few responses at polydispersity 0.01")
+        apart[title(start)] = over_realizations((without[:, None] > full[None, :]).mean(axis=1), np.mean)
+    return each(f"{what}: ", apart, lambda part: hardly_lower(what, part, words, "holds", "%"), "%")
 
 
 def linear_end(path: xr.Dataset, tolerance: float) -> Quantity:
@@ -497,9 +536,15 @@ def linear_end(path: xr.Dataset, tolerance: float) -> Quantity:
     return Quantity(value if np.isfinite(value) else float("nan"), min(low, last), high, "confidence")
 
 
+@CLAIMS.add(
+    "A5",
+    "abstract",
+    "smooth walls, w = 3: median end of the linear range at x = 0 against polydispersity from 0 to 0.25",
+    "increasing polydispersity decreases the range of elastic response",
+    20,
+)
 def shorter_with_disorder(data: Data, words: Bounds) -> Finding:
-    names = ("response_at_centre", "applied_force", "polydispersity", "friction", "lattice_constant")
-    study = data.get(GROUP, "linear_range", *names)
+    study = data.get(GROUP, "linear_range", "response_at_centre", "applied_force", *_LABELS)
     deltas = sorted(set(study["polydispersity"].values.tolist()))
     if len(deltas) < 3:
         raise NotMeasured(f"data/{GROUP}.nc: linear_range holds too few polydispersities")
@@ -519,127 +564,3 @@ def shorter_with_disorder(data: Data, words: Bounds) -> Finding:
         + "; ".join(texts),
         readings,
     )
-
-
-CLAIMS = (
-    Claim(
-        "D1",
-        "VI, Fig. 19",
-        "delta = 0.01, 15 mg, w = 3: dip of the mean response at x = 0, made symmetric, at friction 0 and 0.2",
-        "two distinct peaks without friction, one with 0.2",
-        two_peaks_or_one,
-        (19,),
-        GROUP,
-    ),
-    Claim(
-        "D3a",
-        "VI.A, Figs. 21, 22",
-        "crossover force against friction at each polydispersity (0.01, 0.1, 0.25)",
-        "the larger the friction, the larger the crossover force",
-        rises_with_friction,
-        (21, 22),
-        GROUP,
-    ),
-    Claim(
-        "D3b",
-        "VI.A, Figs. 21, 22",
-        "crossover force against polydispersity at each friction",
-        "the crossover force decreases with increasing polydispersity",
-        falls_with_disorder,
-        (21, 22),
-        GROUP,
-    ),
-    Claim(
-        "D5",
-        "VI.A",
-        "number of peaks of means of five realizations against that of the mean of all, at forces beyond the interval "
-        "of the crossover and more than half away from it",
-        "five are sufficient when the force is not too close to its crossover",
-        five_enough,
-        (21,),
-        GROUP,
-    ),
-    Claim(
-        "D6",
-        "VIII, Fig. 22",
-        "crossover force of disordered slabs over that of the lattice with the same friction",
-        "in polydisperse systems the anisotropy becomes large at smaller forces",
-        below_lattice,
-        (22,),
-        GROUP,
-    ),
-    Claim(
-        "D8",
-        "VI.A",
-        "delta = 0.01: crossover force from two starts of the packing",
-        "the crossover likely depends on the preparation too",
-        preparation,
-        (22,),
-        GROUP,
-    ),
-    Claim(
-        "D4",
-        "VI.A",
-        "friction 1, w = 6: largest change between neighbouring forces of the dip at x = 0 or the asymmetry, of the "
-        "mean response and of realizations",
-        "a rather gradual crossover even for friction 1",
-        gradual,
-        (21,),
-        GROUP,
-    ),
-    Claim(
-        "D7a",
-        "VII",
-        "delta = 0.01, friction 0: contacts per disk at rest, mean over realizations",
-        "about 4.25, well above the isostatic 4",
-        coordination,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "D7b",
-        "VII",
-        "the same: horizontal part of the contacts that are missing from the lattice",
-        "the missing contacts are predominantly horizontal",
-        missing_horizontal,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "D9",
-        "VI.A",
-        "w = 6: difference of a typical realization from the mean, at forces beyond the interval of the crossover and "
-        "more than half away from it",
-        "away from the crossover the typical response of a realization resembles the average",
-        resembles,
-        (21,),
-        GROUP,
-    ),
-    Claim(
-        "D10",
-        "VI, Fig. 19",
-        "delta = 0.01, 15 mg, w = 3: standard deviation over realizations without friction over that with 0.2",
-        "fluctuations are larger for the frictionless case",
-        fluctuations,
-        (19,),
-        GROUP,
-    ),
-    Claim(
-        "D11",
-        "VI, Fig. 19",
-        "delta = 0.01, 15 mg, w = 3: dip at x = 0 of each frictionless realization against each with friction 0.2",
-        "the difference is quite evident even for individual realizations",
-        evident,
-        (19,),
-        GROUP,
-    ),
-    Claim(
-        "A5",
-        "abstract",
-        "smooth walls, w = 3: median end of the linear range at x = 0 against polydispersity from 0 to 0.25",
-        "increasing polydispersity decreases the range of elastic response",
-        shorter_with_disorder,
-        (20,),
-        GROUP,
-    ),
-)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "pile_dip"
+CLAIMS = Claims(GROUP)
 
 
 def _dips(data: Data, case: str) -> dict[str, float]:
@@ -28,14 +29,29 @@ def _dip(data: Data, case: str, *, least: float = float("-inf"), most: float = f
     )
 
 
+@CLAIMS.add(
+    "P1",
+    "V.F, Fig. 17",
+    "pile of 11 layers without friction: vertical stress on the axis below the lower maximum beside it",
+    "a dip under the apex",
+    17,
+)
 def dip_without_friction(data: Data, words: Bounds) -> Finding:
     return _dip(data, "frictionless", least=words["visible"])
 
 
+@CLAIMS.add("P2", "V.F, Fig. 17", "the same with friction 0.94, walls 0.35, k_T/k_N = 0.5", "no dip", 17)
 def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
     return _dip(data, "frictional", most=words["visible"])
 
 
+@CLAIMS.add(
+    "P3",
+    "V.F, Fig. 17e, f",
+    "size of the region of open contacts on the axis, with friction over without",
+    "quite similar in size",
+    17,
+)
 def regions(data: Data, words: Bounds) -> Finding:
     names = {"central_open_contacts": "contacts", "central_height": "height", "central_width": "width"}
     study = data.get(GROUP, "piles", *names, "case")
@@ -54,34 +70,3 @@ def regions(data: Data, words: Bounds) -> Finding:
             for text, ratio in ratios.items()
         ],
     )
-
-
-CLAIMS = (
-    Claim(
-        "P1",
-        "V.F, Fig. 17",
-        "pile of 11 layers without friction: vertical stress on the axis below the lower maximum beside it",
-        "a dip under the apex",
-        dip_without_friction,
-        (17,),
-        GROUP,
-    ),
-    Claim(
-        "P2",
-        "V.F, Fig. 17",
-        "the same with friction 0.94, walls 0.35, k_T/k_N = 0.5",
-        "no dip",
-        no_dip_with_friction,
-        (17,),
-        GROUP,
-    ),
-    Claim(
-        "P3",
-        "V.F, Fig. 17e, f",
-        "size of the region of open contacts on the axis, with friction over without",
-        "quite similar in size",
-        regions,
-        (17,),
-        GROUP,
-    ),
-)

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at_most
 from ...claims.words import Bounds
 
 GROUP = "slab_comparison"
+CLAIMS = Claims(GROUP)
 
 
+@CLAIMS.add(
+    "A4",
+    "abstract, VIII",
+    "floor response to a small force in growing slabs against the isotropic elastic slab",
+    "in large systems the response is close to that of isotropic elasticity",
+    1,
+)
 def large_systems(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "slabs", "distance", "layers", "friction", "floor", "gravity", "disks_per_layer")
     cases = list(
@@ -27,13 +35,7 @@ def large_systems(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"friction {mu:g}, {floor} floor, gravity {gravity}, {wide:g} disks a row per layer",
-                Condition(
-                    "difference from the elastic slab in the deepest one",
-                    Quantity.exact(deep),
-                    most=words["holds"],
-                    words=("holds",),
-                    unit="%",
-                ),
+                at_most("difference from the elastic slab in the deepest one", deep, words, "holds", "%"),
                 Condition("that per the one in the thinnest", Quantity.exact(deep / thin), most=1.0),
             )
         )
@@ -43,16 +45,3 @@ def large_systems(data: Data, words: Bounds) -> Finding:
         readings,
         "Force of 0.01 mg; where gravity opens a row of contacts on the way (15 layers) the difference is 10 %",
     )
-
-
-CLAIMS = (
-    Claim(
-        "A4",
-        "abstract, VIII",
-        "floor response to a small force in growing slabs against the isotropic elastic slab",
-        "in large systems the response is close to that of isotropic elasticity",
-        large_systems,
-        (1,),
-        GROUP,
-    ),
-)

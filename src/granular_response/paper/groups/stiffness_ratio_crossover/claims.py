@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading, about
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, about, at_most
 from ...claims.words import Bounds
 
 GROUP = "stiffness_ratio_crossover"
+CLAIMS = Claims(GROUP)
 
 #: The paper's crossover, and the largest ratio of its Fig. 10.
 CROSSOVER, LARGEST = 0.3, 1.0
@@ -27,6 +28,9 @@ def _ends(data: Data) -> dict[str, Quantity]:
     }
 
 
+@CLAIMS.add(
+    "K1a", "V.B, Fig. 10", "friction 10, F = 15 mg: ratio k_T/k_N at which two peaks turn into one", "about 0.3", 10
+)
 def crossover(data: Data, words: Bounds) -> Finding:
     ends = _ends(data)
     return Finding(
@@ -35,6 +39,13 @@ def crossover(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "K1b",
+    "V.B, Fig. 10",
+    "change of the floor response from that at k_T/k_N = 0.8, for larger ratios than the crossover up to 1",
+    "nearly independent of k_T/k_N",
+    10,
+)
 def independent(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "response", "floor_response", "response_at_centre", "stiffness_ratio")
     study = study.sortby("stiffness_ratio")
@@ -51,13 +62,7 @@ def independent(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"from {start:g} on",
-                Condition(
-                    "change from the response at 0.8, per its largest value",
-                    largest,
-                    most=words["nearly"],
-                    words=("nearly",),
-                    unit="%",
-                ),
+                at_most("change from the response at 0.8, per its largest value", largest, words, "nearly", "%"),
             )
         )
     return Finding(
@@ -68,6 +73,7 @@ def independent(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add("K5", "V.B", "friction 10, F = 15 mg: contacts at the Coulomb limit", "no sliding occurs", 10)
 def no_sliding(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "response", "sliding_contacts", "stiffness_ratio")
     sliding = study["sliding_contacts"].values[study["stiffness_ratio"].values > 0.0]
@@ -77,6 +83,14 @@ def no_sliding(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "K6",
+    "V.C",
+    "root of the half plane's criterion r over the ratio at which the slab's two peaks end",
+    "the criterion fits the finite slab quite well",
+    10,
+    11,
+)
 def criterion(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "elastic", "root", "rotations")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
@@ -95,43 +109,3 @@ def criterion(data: Data, words: Bounds) -> Finding:
             for key, name in (("suppressed", "rotations suppressed, as in eq. (5)"), ("free", "disks free to turn"))
         ],
     )
-
-
-CLAIMS = (
-    Claim(
-        "K1a",
-        "V.B, Fig. 10",
-        "friction 10, F = 15 mg: ratio k_T/k_N at which two peaks turn into one",
-        "about 0.3",
-        crossover,
-        (10,),
-        GROUP,
-    ),
-    Claim(
-        "K1b",
-        "V.B, Fig. 10",
-        "change of the floor response from that at k_T/k_N = 0.8, for larger ratios than the crossover up to 1",
-        "nearly independent of k_T/k_N",
-        independent,
-        (10,),
-        GROUP,
-    ),
-    Claim(
-        "K5",
-        "V.B",
-        "friction 10, F = 15 mg: contacts at the Coulomb limit",
-        "no sliding occurs",
-        no_sliding,
-        (10,),
-        GROUP,
-    ),
-    Claim(
-        "K6",
-        "V.C",
-        "root of the half plane's criterion r over the ratio at which the slab's two peaks end",
-        "the criterion fits the finite slab quite well",
-        criterion,
-        (10, 11),
-        GROUP,
-    ),
-)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claim, Condition, Data, Finding, Measure, NotMeasured, Quantity, Reading, about, at
+from ...claims.claim import Claims, Data, Finding, Measure, NotMeasured, Quantity, Reading, about, at, at_most, lower
 from ...claims.words import Bounds
 
 GROUP = "superposition"
+CLAIMS = Claims(GROUP)
 
 
 def superposition(force: float, word: str) -> Measure:
@@ -24,12 +25,8 @@ def superposition(force: float, word: str) -> Measure:
             readings.append(
                 Reading(
                     text,
-                    Condition(
-                        "largest difference of whole and sum, median of the realizations",
-                        typical,
-                        most=words[word],
-                        words=(word,),
-                        unit="%",
+                    at_most(
+                        "largest difference of whole and sum, median of the realizations", typical, words, word, "%"
                     ),
                 )
             )
@@ -43,6 +40,17 @@ def superposition(force: float, word: str) -> Measure:
     return measure
 
 
+CLAIMS.add(
+    "U1",
+    "VI.B, Fig. 23",
+    "delta = 0.01, start with the largest disks touching, friction 0.05, 0.2 mg: response to two loads against the "
+    "sum of their single responses, force by force",
+    "superposition holds even for individual forces",
+    23,
+)(superposition(0.2, "holds"))
+
+
+@CLAIMS.add("U2", "VI.B", "end of the linear range of that slab", "up to about 0.4 mg", 24)
 def linear_range(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "linear_range", "linear_until", "nonlinear_from")
     until, beyond = study["linear_until"].values, study["nonlinear_from"].values
@@ -60,6 +68,18 @@ def linear_range(data: Data, words: Bounds) -> Finding:
     )
 
 
+CLAIMS.add(
+    "U3", "VI.B, Fig. 24", "the same as U1 at 1 mg", "superposition holds quite well beyond the linear range", 24
+)(superposition(1.0, "quite well"))
+
+
+@CLAIMS.add(
+    "U4",
+    "VI.B, VIII",
+    "1 mg: difference of whole and sum against the depth below the loads",
+    "sufficiently far from the loads the response does not feel what happens near them",
+    24,
+)
 def falls_with_depth(data: Data, words: Bounds) -> Finding:
     study = at(data.get(GROUP, "errors", "row_error", "force", "distance", "gap"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values
@@ -71,12 +91,7 @@ def falls_with_depth(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"loads {distance:g} apart",
-                Condition(
-                    "difference in the deepest row per the largest of any row",
-                    fall,
-                    most=1.0 - words["marked"],
-                    words=("marked",),
-                ),
+                lower("difference in the deepest row per the largest of any row", fall, words, "marked"),
             )
         )
     return Finding(
@@ -85,36 +100,3 @@ def falls_with_depth(data: Data, words: Bounds) -> Finding:
         readings,
         "It falls with the distance of the loads from each other far more than with the depth below them",
     )
-
-
-CLAIMS = (
-    Claim(
-        "U1",
-        "VI.B, Fig. 23",
-        "delta = 0.01, start with the largest disks touching, friction 0.05, 0.2 mg: response to two loads against the "
-        "sum of their single responses, force by force",
-        "superposition holds even for individual forces",
-        superposition(0.2, "holds"),
-        (23,),
-        GROUP,
-    ),
-    Claim("U2", "VI.B", "end of the linear range of that slab", "up to about 0.4 mg", linear_range, (24,), GROUP),
-    Claim(
-        "U3",
-        "VI.B, Fig. 24",
-        "the same as U1 at 1 mg",
-        "superposition holds quite well beyond the linear range",
-        superposition(1.0, "quite well"),
-        (24,),
-        GROUP,
-    ),
-    Claim(
-        "U4",
-        "VI.B, VIII",
-        "1 mg: difference of whole and sum against the depth below the loads",
-        "sufficiently far from the loads the response does not feel what happens near them",
-        falls_with_depth,
-        (24,),
-        GROUP,
-    ),
-)

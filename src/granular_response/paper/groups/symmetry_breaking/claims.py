@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from ...claims import preparations
-from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "symmetry_breaking"
+CLAIMS = Claims(GROUP)
 
 
+@CLAIMS.add(
+    "R5a",
+    "V.E, Fig. 16b",
+    "friction 1: force at which the response to a ramp from rest loses its symmetry, for two ramps",
+    "when it exceeds 91 mg",
+    16,
+)
 def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
     brackets = data.get(GROUP, "brackets", "low", "high", "ramp_time", "time_step")
     readings, texts = [], []
@@ -26,16 +34,3 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
             readings.append(Reading(name, Condition("loss of symmetry", event, 91.0, 95.0, unit="mg")))
             texts.append(f"{event.text('mg')} ({name})")
     return Finding(", ".join(texts), readings, "The paper says neither how long the force grows nor how gravity came")
-
-
-CLAIMS = (
-    Claim(
-        "R5a",
-        "V.E, Fig. 16b",
-        "friction 1: force at which the response to a ramp from rest loses its symmetry, for two ramps",
-        "when it exceeds 91 mg",
-        loss_of_symmetry,
-        (16,),
-        GROUP,
-    ),
-)
