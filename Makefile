@@ -2,6 +2,7 @@
 
 PYTHON ?= python3
 JOBS ?= auto
+REPRO ?=
 EXAMPLES ?= 1000
 
 VENV := $(CURDIR)/.venv
@@ -41,11 +42,11 @@ $(STAMP): requirements.lock pyproject.toml
 
 # DVC runs one stage after another, and what is left of a stage when one core has finished is waste. So two of it run at
 # once, each on every second group; what a clash of theirs left undone, and what stands on all groups, comes last.
-reproduce: setup ## Run what is not up to date: simulations, figures, claims, report
+reproduce: setup ## Run what is not up to date: simulations, figures, claims, report (REPRO=--force: all, whatever is)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	@names=$$(sed -n 's/^ *"\([a-z_]*\)": {"needs.*/\1/p' $(GROUP_LIST)); \
 	for half in 0 1; do \
-	  "$(BIN)/dvc" --wait-for-lock repro $$(echo "$$names" | awk -v h=$$half 'NR % 2 == h {print "draw@" $$1}') \
+	  "$(BIN)/dvc" --wait-for-lock repro $(REPRO) $$(echo "$$names" | awk -v h=$$half 'NR % 2 == h {print "draw@" $$1}') \
 	    < /dev/null & \
 	done; wait
 	"$(BIN)/dvc" repro

@@ -264,6 +264,12 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, change, said):
     assert str(caught.value).startswith(f"{path}: {said}") and "\n" not in str(caught.value)
 
 
+def test_the_lock_file_knows_the_stages_and_no_others():
+    # DVC keeps what it once wrote of a stage that is gone, and reads it around every other stage.
+    locked = set(re.findall(r"^  ([\w@]+):$", (ROOT / "dvc.lock").read_text(), re.M))
+    assert locked == {stage.id for stage in STAGES}
+
+
 def test_dvc_reads_the_pipeline():
     repo = pytest.importorskip("dvc.repo")
     names = {stage.addressing for stage in repo.Repo(ROOT).index.stages}
