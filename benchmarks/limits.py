@@ -149,7 +149,7 @@ def dense(own: int, outer: int, symmetric: bool) -> float:
 
 def front_sizes(fronts) -> list[tuple[int, int]]:
     """Unknowns that each front eliminates and leaves."""
-    return [(int(fronts.start[k + 1] - fronts.start[k]), len(b)) for k, b in enumerate(fronts.boundary)]
+    return list(zip(fronts.own.tolist(), fronts.outer.tolist(), strict=True))
 
 
 def bare(sizes: list[tuple[int, int]], symmetric: bool) -> Callable[[], float]:

@@ -6,8 +6,9 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 from small_scenes import scene
 
+from granular_response.machine import threads
 from granular_response.solve import Problem
-from granular_response.solve.linear import ordering
+from granular_response.solve.linear import multifrontal, ordering
 from granular_response.solve.linear.dissection import Dissection
 from granular_response.solve.linear.multifrontal import Multifrontal
 from granular_response.solve.system import StaticSystem
@@ -73,7 +74,7 @@ def test_symmetric_factors_solve_and_count_negative_eigenvalues(shift):
     assert (expected > 0) == (shift < 10.0)
     fronts = Multifrontal(dissection, 2)
     factor, negative = fronts.symmetric_factor(matrix)
-    assert negative == expected
+    assert negative == fronts.negative_eigenvalues(matrix) == expected
     assert (fronts.definite_factor(matrix) is None) == (expected > 0)
     right = np.random.default_rng(2).normal(size=matrix.shape[0])
     assert factor.solve(right) == pytest.approx(np.linalg.solve(matrix.toarray(), right), rel=1e-7, abs=1e-10)
@@ -84,6 +85,51 @@ def test_singular_matrix_is_an_error():
     dissection = Dissection(position, first, second)
     with pytest.raises(RuntimeError, match="singular"):
         Multifrontal(dissection, 2).factor(0.0 * pattern(dissection, first, second, 2))
+
+
+def split(monkeypatch):
+    monkeypatch.setattr(multifrontal, "LARGE", 100)
+    monkeypatch.setattr(multifrontal, "BLOCK", 10)
+
+
+@pytest.mark.parametrize("kind", ["unsymmetric", "definite", "indefinite"])
+def test_the_bits_are_those_of_one_thread(monkeypatch, kind):
+    split(monkeypatch)
+    position, first, second = lattice(60, 25)
+    dissection = Dissection(position, first, second)
+    matrix = pattern(dissection, first, second, 3)
+    matrix = shifted(matrix if kind == "unsymmetric" else matrix + matrix.T, 80.0 if kind == "definite" else 3.0)
+    right = np.random.default_rng(5).normal(size=matrix.shape[0])
+    solutions, negatives = [], []
+    for count in (1, 2, 3):
+        fronts = Multifrontal(dissection, 3)
+        assert len(fronts.ranges) > 10 and len(fronts.above) > 5
+        with threads.using(count):
+            if kind == "unsymmetric":
+                factor = fronts.factor(matrix)
+            else:
+                factor, negative = fronts.symmetric_factor(matrix)
+                negatives.append(negative)
+                assert negative == fronts.negative_eigenvalues(matrix)
+                assert (fronts.definite_factor(matrix) is None) == (kind == "indefinite")
+            solutions.append(factor.solve(right))
+    assert all(solution.tobytes() == solutions[0].tobytes() for solution in solutions[1:])
+    assert solutions[0] == pytest.approx(spsolve(matrix, right), rel=1e-6, abs=1e-9)
+    if kind != "unsymmetric":
+        assert len(set(negatives)) == 1 and (negatives[0] > 0) == (kind == "indefinite")
+
+
+def test_a_split_singular_matrix_is_an_error(monkeypatch):
+    split(monkeypatch)
+    position, first, second = lattice(30, 25)
+    dissection = Dissection(position, first, second)
+    with threads.using(2), pytest.raises(RuntimeError, match="singular"):
+        Multifrontal(dissection, 2).factor(0.0 * pattern(dissection, first, second, 2))
+
+
+def test_less_than_one_thread_is_an_error():
+    with pytest.raises(ValueError, match="threads = 0: must be 1 or more"), threads.using(0):
+        pass
 
 
 def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):

@@ -78,6 +78,10 @@ GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; dat
 AllowUnsettled = Annotated[
     bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not at rest.")
 ]
+Threads = Annotated[
+    int | None,
+    typer.Option(min=1, help="Threads for large packings, all cores if not given; results have the same bits."),
+]
 
 
 def _check_solution(output: Path, solution: Solution, allow_unsettled: bool) -> None:
@@ -126,6 +130,7 @@ def run(
         str | None,
         typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path, stages or minimise."),
     ] = None,
+    threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
 ) -> None:
     """Solve a scene and store the result.
@@ -144,13 +149,14 @@ def run(
         described = described.updated({"protocol.method": method})
     store.check_writable(output, [scene, *described.files])
 
+    from ..machine.threads import cores, using
     from ..solve import SOLVE_ERRORS, solve_scene
     from ..store.result import to_labelled
 
     _loaded()
 
     try:
-        with TerminalProgress() as progress:
+        with using(threads or cores()), TerminalProgress() as progress:
             solution = solve_scene(described, progress=progress)
     except SOLVE_ERRORS as error:
         if not str(error).startswith(str(scene)):
@@ -176,6 +182,7 @@ def continue_(
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
     folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
+    threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
 ) -> None:
     """Take a result through further loads, up or down.
@@ -190,6 +197,7 @@ def continue_(
     started = time.perf_counter()
     store.check_writable(output, [result])
 
+    from ..machine.threads import cores, using
     from ..scene import SceneError
     from ..solve import continue_solution
     from ..store.checked import read_result
@@ -201,7 +209,7 @@ def continue_(
     try:
         solution = solution_from(stored, folder=folder)
         store.check_writable(output, solution.scene.files)
-        with TerminalProgress() as progress:
+        with using(threads or cores()), TerminalProgress() as progress:
             solution = continue_solution(solution, to, progress=progress)
     except (ResultError, SceneError) as error:
         raise ResultError(f"{result}: {error}") from error

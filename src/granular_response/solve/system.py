@@ -351,7 +351,7 @@ class StaticSystem:
         has a negative real part (Bendixson); else the four nearest to zero are computed and those with a
         negative real part counted. ``shift`` keeps disks that roll freely from counting.
         """
-        modes = self.symmetric_factor(trial, shift)[1]
+        modes = self._storage.negative_eigenvalues(_symmetric_part(self.tangent(trial, shift)))
         if modes == 0 or (SLIDING not in trial.pair_status and SLIDING not in trial.wall_status):
             return modes
         if self.dof <= DENSE:

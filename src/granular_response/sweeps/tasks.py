@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
+from ..machine import threads
 from .cluster import over_dask
 from .digest import Indistinct, digest, sources
 from .errors import SweepError, raised
@@ -92,7 +93,7 @@ def map_tasks(
         progress(done, len(items), what)
     if not todo:
         return results
-    count = min(workers or _cores(), len(todo))
+    count = min(workers or threads.cores(), len(todo))
     # the nodes of a cluster may not share the folder
     task = _Task(function, None if scheduler else current().rest_states)
     if scheduler:
@@ -122,13 +123,6 @@ class _Task:
     def __call__(self, item: Any) -> Any:
         with using(scheduler=None, checkpoint=None, rest_states=self.rest_states):
             return self.function(item)
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _here(function: Callable, items: Sequence[Any], todo: Sequence[int]) -> Generator[tuple[int, Any], None, None]:

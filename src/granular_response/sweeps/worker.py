@@ -20,6 +20,7 @@ from typing import Any
 
 import cloudpickle
 
+from ..machine import threads
 from .errors import failed, raised
 from .memory import MemoryWarning
 
@@ -51,7 +52,7 @@ def packed(index: int, items: Sequence[Any], value: Any) -> bytes:
 
 def run(function: bytes, item: bytes) -> bytes:
     """In a worker: call a packed function with a packed item."""
-    with _listening() as heard:
+    with _listening() as heard, threads.using(1):  # whatever the process had that was forked
         outcome = _called(function, item)
     return pickle.dumps((outcome, heard))
 

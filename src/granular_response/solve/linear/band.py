@@ -50,6 +50,10 @@ class Band:
         factor = self.factor(matrix)
         return factor, factor.negative_pivots()
 
+    def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
+        """The number of negative eigenvalues of a symmetric matrix alone."""
+        return self.symmetric_factor(matrix)[1]
+
     def definite_factor(self, matrix: sp.csc_array) -> BandCholesky | None:
         """Cholesky factorisation; None when the matrix is not positive definite."""
         columns = np.zeros((self.n, self.half_width + 1))

@@ -31,6 +31,10 @@ class Storage(Protocol):
         """Factorisation of a symmetric matrix and its number of negative eigenvalues (Sylvester's law of inertia)."""
         ...
 
+    def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
+        """The number of negative eigenvalues of a symmetric matrix alone: no factorisation is kept."""
+        ...
+
     def definite_factor(self, matrix: sp.csc_array) -> Factor | None:
         """Factorisation of a symmetric matrix; None when it is not positive definite."""
         ...

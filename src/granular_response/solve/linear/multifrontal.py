@@ -3,65 +3,142 @@
 Each group of disks, or cut between two, is eliminated as one dense front by LAPACK, so nearly all work is matrix
 products. What a front leaves for its boundary is added to its parent. Results do not depend on what other libraries
 are installed, and every front counts its negative eigenvalues.
+
+The fronts of a large packing are split into subtrees, on which several threads work side by side, and the few fronts
+above them, whose matrix products are split into blocks of columns. Neither split looks at the number of threads, and
+what subtrees leave is added in the order of the tree: the bits are those of a single thread.
 """
 
 from __future__ import annotations
 
+import contextlib
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from queue import Empty, SimpleQueue
+
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import blas, lapack
+from scipy.linalg import lapack
 
+from ...machine import threads
+from ...machine.lapack import addresses
 from ...state import FloatArray
 from . import frontal
 from .dissection import Dissection
+from .frontal import Matrix, Store, Tree
+
+#: Unknowns from which on fronts are split; below, one thread is as fast.
+LARGE = 80_000
+#: A subtree has at most one part in so many of the work.
+PARTS = 24
+#: Columns of a block of a matrix product above the subtrees.
+BLOCK = 240
+
+
+@dataclass(frozen=True)
+class _Range:
+    """Fronts ``first ... last``: a subtree with its root at the end, or all."""
+
+    first: int
+    last: int
+    below: int  #: unknowns that are not beyond it
+    outside: np.ndarray  #: those beyond it that it leaves something for
 
 
 class Multifrontal:
     """Fronts of all matrices with the pattern of a packing's tangent; ``freedoms`` unknowns for each disk."""
 
     def __init__(self, dissection: Dissection, freedoms: int):
-        def spread(places):
-            return (places[:, None] * freedoms + np.arange(freedoms)).ravel()
-
-        self.start = dissection.start * freedoms
-        self.boundary = [spread(b) for b in dissection.boundary]
-        self.children = dissection.children
-        #: for each front where its boundary is in its parent
-        self.index: list[np.ndarray] = [np.zeros(0, np.int64)] * len(self.children)
-        for front, children in enumerate(self.children):
-            own = self.start[front + 1] - self.start[front]
+        sizes = np.array([len(b) for b in dissection.boundary], np.int64) * freedoms
+        start = dissection.start * freedoms
+        begin = np.concatenate([[0], np.cumsum(sizes)])
+        boundary = np.concatenate([np.zeros(0, np.int64), *dissection.boundary])
+        boundary = (boundary[:, None] * freedoms + np.arange(freedoms)).ravel()
+        index = np.zeros(len(boundary), np.int64)
+        self._parent = np.full(len(sizes), -1)
+        for front, children in enumerate(dissection.children):
+            own = start[front + 1] - start[front]
             for child in children:
-                later = self.boundary[child]
-                inside = later - self.start[front]
-                outside = own + np.searchsorted(self.boundary[front], later)
-                self.index[child] = np.where(later < self.start[front + 1], inside, outside)
-        self._place = np.zeros(self.start[-1], np.int64)
+                later = boundary[begin[child] : begin[child + 1]]
+                beyond = own + np.searchsorted(boundary[begin[front] : begin[front + 1]], later)
+                index[begin[child] : begin[child + 1]] = np.where(
+                    later < start[front + 1], later - start[front], beyond
+                )
+                self._parent[child] = front
+        count = np.array([len(below) for below in dissection.children], np.int64)
+        self.tree = Tree(
+            start, begin, boundary, index,
+            np.concatenate([[0], np.cumsum(count)]),
+            np.array([child for below in dissection.children for child in below], np.int64),
+        )  # fmt: skip
+        self.own, self.outer = np.diff(start), sizes
+        self._split()
+        self._lay_out()
+
+    @property
+    def unknowns(self) -> int:
+        return int(self.tree.start[-1])
+
+    @property
+    def large(self) -> bool:
+        """Whether the fronts are split."""
+        return self.unknowns > LARGE
+
+    def children(self, front: int) -> list[int]:
+        """Fronts that leave something for this one."""
+        return self.tree.children[self.tree.child[front] : self.tree.child[front + 1]].tolist()
+
+    def _split(self) -> None:
+        """Subtrees of no more than a part of the work, and the fronts above them."""
+        fronts = len(self.own)
+        start = self.tree.start
+        if not self.large:
+            self.ranges = [_Range(0, fronts, int(start[-1]), np.zeros(0, np.int64))]
+            self.above: list[int] = []
+            return
+        own, outer = self.own.astype(float), self.outer.astype(float)
+        work = own**3 / 3.0 + own * outer * (own + outer)
+        first = np.arange(fronts)
+        for front, parent in enumerate(self._parent):
+            if parent >= 0:
+                work[parent] += work[front]
+                first[parent] = min(first[parent], first[front])
+        most = work[self._parent < 0].sum() / PARTS
+        small = work <= most
+        roots = np.flatnonzero(small & ~((self._parent >= 0) & small[self._parent]))
+        self.above = np.flatnonzero(~small).tolist()
+        self.ranges = []
+        for root in roots.tolist():
+            outside = self.tree.boundary[self.tree.begin[root] : self.tree.begin[root + 1]]
+            self.ranges.append(_Range(int(first[root]), root + 1, int(start[root + 1]), outside))
+
+    def _lay_out(self) -> None:
+        """Where the updates of a range go: on one of two stacks, and those of the children on the other."""
+        fronts = len(self.own)
+        self._room = np.zeros(fronts, np.int64)
+        highest = [0, 0]
+        second = np.zeros(fronts, np.int64)
+        for span in self.ranges:
+            for front in range(span.last - 1, span.first - 1, -1):
+                parent = self._parent[front]
+                second[front] = 1 - second[parent] if span.first <= parent < span.last else 0
+            height = [0, 0]
+            for front in range(span.first, span.last):
+                here = int(second[front])
+                self._room[front] = height[here]
+                height[here] += int(self.outer[front]) ** 2
+                highest[here] = max(highest[here], height[here])
+                for child in self.children(front)[:1]:
+                    height[1 - here] = int(self._room[child])
+        self._room[second == 1] += highest[0]
+        self._most = sum(highest)
 
     def factor(self, matrix: sp.csc_array) -> LU:
         """LU with row exchanges inside the fronts."""
-        rows = sp.csr_array(matrix)
-        updates: dict[int, FloatArray] = {}
-        fronts = []
-        for front, boundary in enumerate(self.boundary):
-            start, stop = self.start[front], self.start[front + 1]
-            own, outer = stop - start, len(boundary)
-            f11, f21 = np.zeros((own, own), order="F"), np.zeros((outer, own), order="F")
-            f12, f22 = np.zeros((own, outer), order="F"), np.zeros((outer, outer), order="F")
-            frontal.add_columns(
-                matrix.data, matrix.indices, matrix.indptr, start, stop, boundary, self._place, f11, f21
-            )
-            frontal.add_rows(rows.data, rows.indices, rows.indptr, start, stop, self._place, f12)
-            for child in self.children[front]:
-                frontal.add_child(updates.pop(child), self.index[child], own, f11, f21, f12, f22)
-            f11, pivot, info = lapack.dgetrf(f11, overwrite_a=1)
-            if info > 0:
-                raise RuntimeError("Factor is exactly singular")
-            if outer:
-                f12 = lapack.dlaswp(f12, pivot, overwrite_a=1)
-                f12 = blas.dtrsm(1.0, f11, f12, lower=1, diag=1, overwrite_b=1)
-                f21 = blas.dtrsm(1.0, f11, f21, side=1, overwrite_b=1)
-                updates[front] = blas.dgemm(-1.0, f21, f12, beta=1.0, c=f22, overwrite_c=1)
-            fronts.append((f11, pivot, f21, f12))
+        fronts = self._factorised(matrix, whole=True)
+        if fronts.failed:
+            raise RuntimeError("Factor is exactly singular")
         return LU(self, fronts)
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Symmetric, int]:
@@ -69,104 +146,228 @@ class Multifrontal:
 
         Also returns the number of negative eigenvalues (Sylvester's law of inertia).
         """
-        fronts, negative = self._symmetric_fronts(matrix, definite=False)
-        return Symmetric(self, fronts), negative
+        fronts = self._factorised(matrix)
+        if fronts.failed:
+            raise RuntimeError("Factor is exactly singular")
+        return Symmetric(self, fronts), fronts.negative
+
+    def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
+        """Their number alone: the factorisation is not kept."""
+        fronts = self._factorised(matrix, keep=False)
+        if fronts.failed:
+            raise RuntimeError("Factor is exactly singular")
+        return fronts.negative
 
     def definite_factor(self, matrix: sp.csc_array) -> Symmetric | None:
         """Cholesky factorisation; None when the matrix is not positive definite."""
-        fronts, negative = self._symmetric_fronts(matrix, definite=True)
-        return None if negative else Symmetric(self, fronts)
+        fronts = self._factorised(matrix, definite=True)
+        return None if fronts.failed else Symmetric(self, fronts)
 
-    def _symmetric_fronts(self, matrix: sp.csc_array, *, definite: bool) -> tuple[list, int]:
-        """Factorised fronts and the number of negative eigenvalues; ``definite`` ends at the first one."""
-        updates: dict[int, FloatArray] = {}
-        fronts: list = []
-        negative = 0
-        for front, boundary in enumerate(self.boundary):
-            start, stop = self.start[front], self.start[front + 1]
-            own, outer = stop - start, len(boundary)
-            f11, f21 = np.zeros((own, own), order="F"), np.zeros((outer, own), order="F")
-            f22 = np.zeros((outer, outer), order="F")
-            frontal.add_columns(
-                matrix.data, matrix.indices, matrix.indptr, start, stop, boundary, self._place, f11, f21
-            )
-            for child in self.children[front]:
-                frontal.add_child_symmetric(updates.pop(child), self.index[child], own, f11, f21, f22)
-            lower, info = lapack.dpotrf(f11, lower=1, clean=0, overwrite_a=definite)
-            if info == 0:
-                pivot = None
-                if outer:
-                    f21 = blas.dtrsm(1.0, lower, f21, side=1, lower=1, trans_a=1, overwrite_b=1)
-                    f22 = blas.dsyrk(-1.0, f21, beta=1.0, c=f22, lower=1, overwrite_c=1)
-            elif definite:
-                return fronts, 1
-            else:
-                lower, pivot, info = lapack.dsytrf(f11, lower=1, overwrite_a=1)
-                if info > 0:
-                    raise RuntimeError("Factor is exactly singular")
-                negative += _negative_blocks(lower, pivot)
-                if outer:
-                    solved, _ = lapack.dsytrs(lower, pivot, np.asfortranarray(f21.T), lower=1)
-                    f22 -= f21 @ solved
-                    f21 = np.asfortranarray(solved.T)
-            if outer:
-                updates[front] = f22
-            fronts.append((lower, pivot, f21))
-        return fronts, negative
+    @cached_property
+    def _at(self) -> dict[bool, np.ndarray]:
+        """Where the blocks of each front are in one array, for unsymmetric matrices (True) and symmetric ones."""
+        sizes = {whole: self.own * (self.own + (1 + whole) * self.outer) for whole in (False, True)}
+        return {whole: np.concatenate([[0], np.cumsum(size)]) for whole, size in sizes.items()}
+
+    def _factorised(
+        self, matrix: sp.csc_array, *, whole: bool = False, definite: bool = False, keep: bool = True
+    ) -> _Fronts:
+        """Fronts factorised: L U if ``whole``, else Cholesky, and L D L^T, or an end if ``definite``, where needed."""
+        by_rows = sp.csr_array(matrix).data if whole else np.zeros(0)
+        at = self._at[whole]
+        fronts = _Fronts(
+            at=at[:-1] if keep else np.zeros(len(self.own), np.int64),
+            values=np.empty(int(at[-1] if keep else 0)),
+            pivots=np.zeros(self.unknowns, np.int32),
+            exchanged=np.zeros(len(self.own), np.bool_),
+            definite=definite,
+        )
+        _Elimination(self, Matrix(matrix.indptr, matrix.indices, matrix.data, whole, by_rows), fronts, keep).run()
+        return fronts
 
 
-class LU:
+@dataclass
+class _Fronts:
+    """Factorised fronts."""
+
+    at: np.ndarray
+    values: FloatArray
+    pivots: np.ndarray
+    exchanged: np.ndarray  #: (f,) fronts that are L D L^T
+    definite: bool  #: whether a front that is not positive definite is a failure
+    failed: bool = False
+    negative: int = 0
+
+
+class _Elimination:
+    """One factorisation on its way."""
+
+    def __init__(self, pattern: Multifrontal, matrix: Matrix, fronts: _Fronts, keep: bool):
+        self.pattern, self.matrix, self.fronts, self.keep = pattern, matrix, fronts, keep
+        self.whole = matrix.whole
+        self.lapack = addresses()
+        #: updates for fronts above the subtrees
+        self.left: dict[int, FloatArray] = {}
+        self.free: SimpleQueue[Store] = SimpleQueue()
+
+    def run(self) -> None:
+        pattern = self.pattern
+        with threads.mapping(pattern.large) as spread:
+            for negative in spread(self._subtree, pattern.ranges):
+                self.fronts.negative += negative
+            for front in pattern.above:
+                if self.fronts.failed:
+                    return
+                self._above(front, spread)
+
+    def _store(self) -> Store:
+        """Room for one thread."""
+        with contextlib.suppress(Empty):
+            return self.free.get_nowait()
+        pattern, fronts = self.pattern, self.fronts
+        values = fronts.values if self.keep else np.empty(int(np.diff(pattern._at[self.whole]).max()))
+        place = np.empty(pattern.unknowns, np.int64)
+        return Store(fronts.at, values, fronts.pivots, pattern._room, np.empty(pattern._most), place)
+
+    def _subtree(self, span: _Range) -> int:
+        """Eliminate a range of fronts; returns the number of negative eigenvalues."""
+        if self.fronts.failed:
+            return 0
+        pattern, store = self.pattern, self._store()
+        info = np.zeros(1, np.int32)
+        negative, front = 0, span.first
+        while True:
+            front = frontal.eliminate(self.lapack, pattern.tree, front, span.last, self.matrix, store, info)
+            if front == span.last:
+                break
+            if self.whole or self.fronts.definite:
+                self.fronts.failed = True
+                return 0
+            frontal.assemble(pattern.tree, front, self.matrix, store)
+            negative += self._exchange(front, store.values, store.updates, int(store.room[front]))
+            front += 1
+        root = span.last - 1
+        if pattern.above and pattern._parent[root] >= 0:
+            begin = int(store.room[root])
+            self.left[root] = store.updates[begin : begin + int(pattern.outer[root]) ** 2].copy()
+        self.free.put(store)
+        return negative
+
+    def _exchange(self, front: int, values: FloatArray, updates: FloatArray, f22: int) -> int:
+        """Eliminate an assembled symmetric front that is not positive definite; returns its negative eigenvalues."""
+        pattern = self.pattern
+        own, outer = int(pattern.own[front]), int(pattern.outer[front])
+        at = int(self.fronts.at[front])
+        start = pattern.tree.start[front]
+        f11 = _by_columns(values, at, own, own)
+        lower, pivot, info = lapack.dsytrf(f11, lower=1, overwrite_a=1)
+        f11[...] = lower
+        if info > 0:
+            self.fronts.failed = True
+        self.fronts.pivots[start : start + own] = pivot
+        self.fronts.exchanged[front] = True
+        if outer:
+            f21 = _by_columns(values, at + own * own, outer, own)
+            solved, _ = lapack.dsytrs(lower, pivot, np.asfortranarray(f21.T), lower=1)
+            update = _by_columns(updates, f22, outer, outer)
+            update -= f21 @ solved
+            f21[...] = solved.T
+        return _negative_blocks(lower, pivot)
+
+    def _above(self, front: int, spread: threads.Map) -> None:
+        """Eliminate a front above the subtrees, its matrix products in blocks."""
+        pattern, fronts, tree = self.pattern, self.fronts, self.pattern.tree
+        own, outer = int(pattern.own[front]), int(pattern.outer[front])
+        store = self._store()
+        self.free.put(store)
+        values, f11, start = store.values, int(fronts.at[front]), int(tree.start[front])
+        update = np.zeros(outer * outer)
+        frontal.gather(tree, front, self.matrix, store.place, values, f11)
+        for child in pattern.children(front):
+            frontal.add_child(tree, front, child, self.left.pop(child), 0, self.whole, values, f11, update, 0)
+        info = np.zeros(1, np.int32)
+        before = None if self.whole or fronts.definite else values[f11 : f11 + own * own].copy()
+        frontal.factorise_own(self.lapack, own, values, f11, fronts.pivots, start, self.whole, info)
+        if info[0] != 0:
+            if before is None:
+                fronts.failed = True
+                return
+            values[f11 : f11 + own * own] = before
+            fronts.negative += self._exchange(front, values, update, 0)
+            self.left[front] = update
+            return
+        blocks = list(pairwise([*range(0, outer, BLOCK), outer]))
+
+        def solve(block: tuple[int, int]) -> None:
+            if self.whole:
+                frontal.solve_columns(self.lapack, own, outer, values, f11, fronts.pivots, start, *block)
+            frontal.solve_rows(self.lapack, own, outer, values, f11, self.whole, *block)
+
+        def subtract(block: tuple[int, int]) -> None:
+            frontal.update_columns(self.lapack, own, outer, values, f11, update, 0, self.whole, *block)
+
+        spread(solve, blocks)
+        spread(subtract, blocks)
+        self.left[front] = update
+
+
+class _Factor:
+    """Factorised fronts that solve."""
+
+    whole: bool
+
+    def __init__(self, pattern: Multifrontal, fronts: _Fronts):
+        self._pattern, self._fronts = pattern, fronts
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """The solution for one right-hand side."""
+        pattern, fronts, tree = self._pattern, self._fronts, self._pattern.tree
+        x = np.array(right, float)
+        lapack = addresses()
+        room = int(pattern.outer.max(initial=0))
+        nowhere = np.zeros(0, np.int64)
+
+        def down(first: int, last: int, below: int, outside: np.ndarray) -> FloatArray:
+            gathered = np.zeros(len(outside))
+            frontal.forward(
+                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
+                x, below, outside, gathered, np.empty(room),
+            )  # fmt: skip
+            return gathered
+
+        def up(first: int, last: int) -> None:
+            frontal.backward(
+                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
+                x, np.empty(room), np.empty(int(pattern.own.max())), np.zeros(1, np.int32),
+            )  # fmt: skip
+
+        with threads.mapping(pattern.large) as spread:
+            gathered = spread(lambda s: down(s.first, s.last, s.below, s.outside), pattern.ranges)
+            for span, part in zip(pattern.ranges, gathered, strict=True):
+                x[span.outside] -= part
+            for front in pattern.above:
+                down(front, front + 1, len(x), nowhere)
+            for front in reversed(pattern.above):
+                up(front, front + 1)
+            spread(lambda s: up(s.first, s.last), pattern.ranges)
+        return x
+
+
+class LU(_Factor):
     """A factorised matrix."""
 
-    def __init__(self, pattern: Multifrontal, fronts):
-        self._pattern, self._fronts = pattern, fronts
-
-    def solve(self, right: FloatArray) -> FloatArray:
-        """The solution for one right-hand side."""
-        x = right.copy()
-        start, boundary = self._pattern.start, self._pattern.boundary
-        for front, (f11, pivot, f21, _) in enumerate(self._fronts):
-            own = x[start[front] : start[front + 1]]
-            own[:] = lapack.dlaswp(own[:, None], pivot)[:, 0]
-            own[:] = blas.dtrsv(f11, own, lower=1, diag=1)
-            if len(boundary[front]):
-                x[boundary[front]] -= f21 @ own
-        for front in range(len(self._fronts) - 1, -1, -1):
-            f11, _, _, f12 = self._fronts[front]
-            own = x[start[front] : start[front + 1]]
-            if len(boundary[front]):
-                own -= f12 @ x[boundary[front]]
-            own[:] = blas.dtrsv(f11, own)
-        return x
+    whole = True
 
 
-class Symmetric:
+class Symmetric(_Factor):
     """A factorised symmetric matrix."""
 
-    def __init__(self, pattern: Multifrontal, fronts):
-        self._pattern, self._fronts = pattern, fronts
+    whole = False
 
-    def solve(self, right: FloatArray) -> FloatArray:
-        """The solution for one right-hand side."""
-        x = right.copy()
-        start, boundary = self._pattern.start, self._pattern.boundary
-        for front, (f11, pivot, f21) in enumerate(self._fronts):
-            own = x[start[front] : start[front + 1]]
-            if pivot is None:
-                own[:] = blas.dtrsv(f11, own, lower=1)
-            if len(boundary[front]):
-                x[boundary[front]] -= f21 @ own
-        for front in range(len(self._fronts) - 1, -1, -1):
-            f11, pivot, f21 = self._fronts[front]
-            own = x[start[front] : start[front + 1]]
-            outer = x[boundary[front]]
-            if pivot is None:
-                own -= outer @ f21
-                own[:] = blas.dtrsv(f11, own, lower=1, trans=1)
-            else:
-                own[:] = lapack.dsytrs(f11, pivot, own, lower=1)[0]
-                own -= outer @ f21
-        return x
+
+def _by_columns(flat: FloatArray, begin: int, rows: int, columns: int) -> FloatArray:
+    """(rows, columns) view of a matrix that is stored by columns."""
+    return flat[begin : begin + rows * columns].reshape(columns, rows).T
 
 
 def _negative_blocks(f11: FloatArray, pivot) -> int:
