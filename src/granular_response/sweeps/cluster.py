@@ -18,6 +18,9 @@ from .worker import packed, run, unpacked
 #: Seconds without a result after which it is looked whether there are workers at all.
 PATIENCE = 10.0
 
+#: How often a client is started that a busy machine does not let start.
+STARTS = 3
+
 
 def over_dask(
     function: Callable, items: Sequence[Any], todo: Sequence[int], address: str
@@ -30,10 +33,15 @@ def over_dask(
             f"a Dask scheduler is asked for ({address}), but the package distributed is not installed: "
             "pip install 'granular-response[dask]'"
         ) from None
-    try:
-        client = Client(address, timeout=10, set_as_default=False)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise SweepError(f"no Dask scheduler answers at {address}: {error}") from None
+    for left in reversed(range(STARTS)):
+        try:
+            client = Client(address, timeout=10, set_as_default=False)
+            break
+        except (OSError, TimeoutError, ValueError) as error:
+            raise SweepError(f"no Dask scheduler answers at {address}: {error}") from None
+        except AssertionError:  # its thread had no turn within ten seconds
+            if not left:
+                raise SweepError("this machine is too busy to start a Dask client") from None
     with _quiet(), client:
         sent = packed(todo[0], items, function)
         finished: queue.SimpleQueue[Any] = queue.SimpleQueue()
