@@ -1,5 +1,7 @@
 """Runs blocks of the survey: python run.py BLOCK [BLOCK ...], all of them if none is named.
 
+A block is one of ``params.yaml``, or a figure group with packings that ``../params.yaml`` leaves to the survey.
+
 ``DASK_SCHEDULER_ADDRESS`` sends the tasks to a Dask cluster. What is finished is kept in ``.realizations.checkpoint``.
 """
 
@@ -18,26 +20,30 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("blocks", nargs="*", metavar="BLOCK")
     parser.add_argument("--workers", type=int, help="processes; all cores if not given")
-    parser.add_argument("--realizations", type=int, help="at most so many of each case")
+    parser.add_argument("--realizations", type=int, help="at most so many of each case of an ensemble")
     given = parser.parse_args()
     floating_point.pin()
+    from granular_response.paper.pipeline import GroupError
+    from granular_response.paper.survey import larger
     from granular_response.paper.survey.simulate import SurveyError, read_parameters, run
     from granular_response.scene import SceneError
     from granular_response.store.files import StoreError
     from granular_response.sweeps.errors import SweepError
 
     try:
-        for block in given.blocks or read_parameters(HERE / "params.yaml").blocks:
-            path = run(
-                block,
-                HERE / "params.yaml",
-                realizations=given.realizations,
-                workers=given.workers,
-                progress=lambda done, total, what="": print(f"\r{what}: {done:g} of {total:g}", end="", flush=True),
-            )
+        for block in given.blocks or [*read_parameters(HERE / "params.yaml").blocks, *larger.GROUPS]:
+            if block in larger.GROUPS:
+                path = larger.run(block, HERE.parent / "params.yaml", HERE, workers=given.workers, progress=progress)
+            else:
+                parameters, most = HERE / "params.yaml", given.realizations
+                path = run(block, parameters, realizations=most, workers=given.workers, progress=progress)
             print(f"\n{path}")
-    except (SceneError, StoreError, SurveyError, SweepError) as error:
+    except (GroupError, SceneError, StoreError, SurveyError, SweepError) as error:
         sys.exit(f"error: {error}")
+
+
+def progress(done: float, total: float, what: str = "", /) -> None:
+    print(f"\r{what}: {done:g} of {total:g}", end="", flush=True)
 
 
 if __name__ == "__main__":

@@ -203,8 +203,8 @@ def test_stages_have_the_agreed_form(kind, group, definition):
 
 def test_what_is_derived_comes_after_the_data_that_it_reads():
     for group, section in PARAMETERS.items():
-        if "survey" in section:
-            assert GROUPS[group]["needs"] == section["survey"]
+        for key in {"survey", "survey_file"} & set(section):
+            assert GROUPS[group]["needs"] == section[key]
 
 
 def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():

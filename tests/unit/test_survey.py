@@ -1,12 +1,17 @@
-"""The survey's parameters, and that its runs go on where they were."""
+"""The survey's parameters, that its runs go on where they were, and packings that it makes for figure groups."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+import reduced
 import yaml
 
+from granular_response.paper.datasets import labelled
 from granular_response.paper.ensembles import AT_REST
+from granular_response.paper.pipeline import group_member
+from granular_response.paper.survey import larger, packings
 from granular_response.paper.survey import simulate as survey
 from granular_response.scene import SceneError
 from granular_response.store import files as store
@@ -99,3 +104,86 @@ def test_its_pipeline_names_a_stage_and_the_sources_of_every_block():
     declared = {path.removeprefix("../src/granular_response/") for path in stage["do"]["deps"]}
     assert {*survey.SOURCES, "paper/survey"} <= declared
     assert stage["foreach"] == "${blocks}"
+    stage = yaml.safe_load((ROOT / "survey" / "dvc.yaml").read_text())["stages"]["packings"]
+    declared = {path.removeprefix("../src/granular_response/") for path in stage["do"]["deps"]}
+    assert {*larger.SOURCES, "paper/survey", "paper/groups/${item}/simulate.py"} <= declared
+    assert stage["foreach"] == list(larger.GROUPS)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a group might measure on a packing."""
+
+    height: float
+    depth: np.ndarray
+    profile: np.ndarray
+
+
+LAYOUT = packings.Layout(
+    Measured,
+    {"friction": "coefficient of friction", "layers": "number of rows"},
+    {"height": ((), "height"), "depth": (("line",), "depth"), "profile": (("line", "t"), "profile")},
+)
+
+
+def measured(lines):
+    return Measured(10.0 + lines, np.arange(float(lines)), np.linspace(0.0, 1.0, 3 * lines).reshape(lines, 3))
+
+
+def test_packings_are_read_as_they_were_stored(tmp_path):
+    """With different numbers of lines, in single precision; what filled them up is gone."""
+    given = {(0.2, 20): measured(4), (0.2, 40): measured(6)}
+    path = tmp_path / "group.nc"
+    store.write(path, labelled({packings.DATASET: packings.dataset(LAYOUT, given, [1.0, 2.0])}))
+    found = packings.read(path, LAYOUT)
+    assert list(found) == list(given)
+    for key, one in given.items():
+        assert found[key].height == one.height
+        np.testing.assert_allclose(found[key].depth, one.depth, rtol=1e-7)
+        np.testing.assert_allclose(found[key].profile, one.profile, rtol=1e-7)
+    (only,) = packings.chosen(path, LAYOUT, [(0.2, 40)])
+    assert only.depth.size == 6
+    assert packings.chosen(tmp_path / "none.nc", LAYOUT, []) == []
+    with pytest.raises(store.StoreError, match=r"has no packing of friction 0\.5, layers 20; make survey"):
+        packings.chosen(path, LAYOUT, [(0.2, 20), (0.5, 20)])
+    other = packings.Layout(Measured, LAYOUT.keys, {**LAYOUT.values, "single": ((), "another")})
+    with pytest.raises(store.StoreError, match=r"is no file of packings of the survey, lacks single"):
+        packings.read(path, other)
+
+
+#: The same case without and with a part left to the survey.
+WIDTHS = (
+    {"polydispersity": 0.0, "friction": 0.0, "layers": [4, 5, 6]},
+    {"polydispersity": 0.0, "friction": 0.0, "layers": [4, 5], "surveyed": [6]},
+)
+MODULI = (
+    {"polydispersity": 0.1, "friction": 0.2, "layers": [5], "realizations": [3]},
+    {"polydispersity": 0.1, "friction": 0.2, "layers": [5], "realizations": [2], "surveyed": [1]},
+)
+
+
+def simulate(group, section):
+    parameters = group_member(group, "parameters", "Parameters")(**section)
+    return group_member(group, "simulate", "simulate")(parameters, workers=1)
+
+
+@pytest.mark.parametrize("group", larger.GROUPS)
+def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_path):
+    """The same datasets, within single precision, whoever simulates the last packings."""
+    section = reduced.parameters(group)
+    own = {"peak_width": WIDTHS, "moduli": MODULI}[group]
+    direct = simulate(group, section | {"cases": [own[0]]})
+    file = tmp_path / "params.yaml"
+    given = section | {"cases": [own[1]], "survey_file": str(tmp_path / "data" / f"{group}.nc")}
+    file.write_text(yaml.safe_dump({"common": {"method": "auto"}, group: given}))
+    path = larger.run(group, file, tmp_path, workers=1)
+    assert str(path) == given["survey_file"]
+    stored = simulate(group, given)
+    for name, data in direct.items():
+        for key, values in data.data_vars.items():
+            if key == "surveyed":
+                assert not values.any() and stored[name][key].any()
+            else:
+                np.testing.assert_allclose(stored[name][key], values, rtol=1e-4, atol=1e-5, err_msg=key)
+    marks = store.read_attributes(path)
+    assert marks["block"] == group and marks["seed"] == "0" and survey.sources(*larger.SOURCES) in marks["sources"]

@@ -1,6 +1,7 @@
 """The stored survey: a few of its realizations simulated again, and that it holds what its parameters and notes say."""
 
 from dataclasses import replace
+from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import yaml
 
 from granular_response.observe.floor import smoothed_response
 from granular_response.paper.ensembles import AT_REST, NOT_REACHED
+from granular_response.paper.pipeline import simulation
+from granular_response.paper.survey import larger, packings
 from granular_response.paper.survey import simulate as survey
 from granular_response.store import files as store
 
@@ -17,6 +20,7 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "survey"
 PARAMETERS = survey.read_parameters(FOLDER / "params.yaml")
 BLOCKS = list(PARAMETERS.blocks)
+OF_GROUPS = {group: simulation.parameters(group, ROOT / "params.yaml")[1] for group in larger.GROUPS}
 
 #: Largest difference of a response, smoothed with w = 3, that other sources or another machine may make, per largest
 #: response: a rearrangement a little earlier or later.
@@ -70,6 +74,38 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
     marks = store.read_attributes(FOLDER / "data" / f"{block}.nc")
     assert marks["block"] == block
     assert yaml.safe_load(marks["parameters"])["loading"] == PARAMETERS.loading.model_dump()
+
+
+@pytest.mark.parametrize(
+    ("group", "key"),
+    [
+        ("peak_width", (0.0, 1.0, "frictionless", 0.0, 60, 0)),
+        ("moduli", (0.1, 1.0, 16, 6)),
+        ("moduli", (0.25, 1.0, 16, 9)),
+    ],
+)
+def test_a_packing_of_a_figure_group_is_found_again(group, key):
+    simulate = import_module(f"granular_response.paper.groups.{group}.simulate")
+    (kept,) = packings.chosen(FOLDER / "data" / f"{group}.nc", simulate.STORED, [key])
+    again = simulate.compute(simulate.survey(OF_GROUPS[group])[key])
+    for name in simulate.STORED.values:
+        values = getattr(again, name)
+        scale = np.nanmax(np.abs(values))
+        np.testing.assert_allclose(getattr(kept, name), values, atol=SAME * scale, err_msg=name)
+
+
+@pytest.mark.parametrize("group", larger.GROUPS)
+def test_the_packings_of_a_figure_group_are_those_that_its_parameters_leave_to_the_survey(group):
+    simulate = import_module(f"granular_response.paper.groups.{group}.simulate")
+    path = FOLDER / "data" / f"{group}.nc"
+    assert (ROOT / OF_GROUPS[group].survey_file) == path
+    assert set(packings.read(path, simulate.STORED)) == set(simulate.survey(OF_GROUPS[group]))
+    marks = store.read_attributes(path)
+    assert marks["block"] == group
+    assert (
+        yaml.safe_load(marks["parameters"])["scene"] == simulation.parameters(group, ROOT / "params.yaml")[0]["scene"]
+    )
+    assert path.stat().st_size < 1e6
 
 
 def test_it_is_small(stored):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import platform
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import metadata
 from pathlib import Path
@@ -27,7 +28,7 @@ from granular_response.paper.groups.polydisperse_averages.ensemble.realizations 
     realize,
 )
 from granular_response.paper.survey.parameters import Case, Parameters
-from granular_response.scene import SceneError, text
+from granular_response.scene import Scene, SceneError, text
 from granular_response.store import files as store
 from granular_response.store.result import variable
 from granular_response.sweeps.digest import sources
@@ -166,11 +167,18 @@ def block_datasets(cases: list[Case], found: list[Timed]) -> dict[str, xr.Datase
 
 def provenance(parameters: Parameters, block: str) -> dict[str, str]:
     """Attributes of the file: what it was made from, and by what."""
-    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
     return {
         "block": block,
         "parameters": text.write(parameters.model_dump(mode="json", exclude={"blocks", "scene"})),
-        "sources": f"{sources(*SOURCES)} ({', '.join(SOURCES)})",
+        **origin(SOURCES, parameters.base),
+    }
+
+
+def origin(parts: Sequence[str], scene: Scene) -> dict[str, str]:
+    """Attributes of the file: the sources of ``parts`` of this package, versions, the seed of the packings."""
+    versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
+    return {
+        "sources": f"{sources(*parts)} ({', '.join(parts)})",
         "versions": json.dumps({"python": platform.python_version(), **versions}),
-        "seed": str(parameters.base.packing.model_dump()["seed"]),
+        "seed": str(scene.packing.model_dump()["seed"]),
     }

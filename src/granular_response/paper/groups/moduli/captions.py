@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 
 import xarray as xr
@@ -16,7 +17,13 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     packing = f"slabs with periodic sides, {parameters.disks_per_layer} disks in a row for each layer"
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=packing)
     group = parameters.lattice
-    most = [max(case.realizations) for case in parameters.cases]
+    most = [max(map(sum, zip(case.realizations, case.further, strict=True))) for case in parameters.cases]
+    surveyed: Counter[int] = Counter()
+    for case in parameters.cases:
+        surveyed.update(dict(zip(case.layers, case.further, strict=True)))
+    stored = [f"{count} of {layers} layers" for layers, count in sorted(surveyed.items()) if count]
+    survey = f" Packings of the survey, which the pipeline reads: {', '.join(stored)}." if stored else ""
+    edges = " Black edges: at least half of the packings are the survey's." if stored else ""
     ensemble = f"{min(most)} to {max(most)}" if min(most) != max(most) else f"{most[0]}"
     tolerances = values([100.0 * tolerance for tolerance in parameters.tolerances])
     lattice = {"wall_friction": 0.0, "packing": None, "stiffness_ratio": None}
@@ -27,7 +34,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "more contacts). (a) Bulk and (b) shear modulus of the isotropic solid nearest to them, (c) horizontal "
             "over vertical modulus. Open symbols: every disk moves with the strain, and none turns; filled: disks move "
             "and turn as equilibrium wants. Bars are standard deviations over realizations, up to "
-            f"{ensemble} of each size.",
+            f"{ensemble} of each size.{survey}",
             "Three panels of symbols against the number of contacts; filled symbols lie below open ones, most of all "
             "for the shear modulus, and the horizontal modulus below the vertical one but for large polydispersity.",
             said,
@@ -37,7 +44,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             f"(smoothed, w = {parameters.width:g}; band: standard deviation over packings), and that of elastic slabs "
             "with the moduli measured by straining these packings: no parameter is fitted. Exact in the limit of small "
             "forces; contacts at the limit of Coulomb stick. (a) to (f) packings as named. The floor has the friction "
-            "of the disks.",
+            f"of the disks.{survey}",
             "Six panels of single peaks; with friction the measured curve and those of the slabs lie on each other, "
             "without friction they do not.",
             said,
@@ -46,7 +53,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "Largest difference of the response to the slab of the packing's own moduli, against the number of layers, "
             "with 95 % intervals of the mean over packings: (a) of one load, smoothed over "
             f"{parameters.wide:.3g} of the height; (b) of the mean over the loads of one packing. Grey lines: "
-            f"{tolerances} %.",
+            f"{tolerances} %.{edges}",
             "Double logarithmic panels: falling lines for packings with friction, flat ones near and above 1 without.",
             said,
         ),

@@ -111,7 +111,12 @@ def _sizes(data: xr.Dataset) -> Figure:
             mean, spread = _mean_and_spread(values.isel(case=case, smoothing=width))
             count = np.maximum(values.isel(case=case, smoothing=width).notnull().sum("realization").values, 1)
             look = style.marked_line(case) | {"markersize": 4, "capsize": 2.5}
-            axes.errorbar(data["layers"][case], mean, 1.96 * spread / np.sqrt(count), label=_name(data, case), **look)
+            layers = data["layers"][case]
+            axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=_name(data, case), **look)
+            stored = data["surveyed"].values[case] >= 0.5 * count
+            edge = {"linestyle": "none", "markerfacecolor": "none", "zorder": 3}
+            edge |= {"markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
+            axes.plot(layers[stored], mean[stored], **style.marked_line(case) | {"markersize": 4} | edge)
         for tolerance in data["tolerance"].values:
             axes.axhline(tolerance, color=style.FAINT, linewidth=0.8, zorder=0)
         sizes = np.unique(data["layers"].values[np.isfinite(data["layers"].values)])

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, Positives, SceneGroup, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, Path, Positives, SceneGroup, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio, allowed
 from granular_response.scene.errors import Problem
@@ -21,13 +21,22 @@ class Case(Description):
     polydispersity: Fraction = Field(description="delta.")
     friction: Ratio = Field(description="Between disks and of the floor.")
     layers: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(description="Sizes.")
-    realizations: Annotated[tuple[Count, ...], AfterValidator(some)] = Field(description="As many for each size.")
+    realizations: Annotated[tuple[Index, ...], AfterValidator(some)] = Field(description="As many for each size.")
+    surveyed: tuple[Index, ...] = Field((), description="Further ones for each size, that the survey simulates.")
+
+    @property
+    def further(self) -> tuple[int, ...]:
+        """Realizations of the survey for each size."""
+        return self.surveyed or (0,) * len(self.layers)
 
     @model_validator(mode="after")
     def _check_realizations(self) -> Case:
-        if len(self.realizations) != len(self.layers):
-            given = list(self.realizations)
-            raise Problem("must have a number for each of the layers", key=("realizations",), value=given)
+        for key, counts in (("realizations", self.realizations), ("surveyed", self.further)):
+            if len(counts) != len(self.layers):
+                raise Problem("must have a number for each of the layers", key=(key,), value=list(counts))
+        if not all(map(sum, zip(self.realizations, self.further, strict=True))):
+            rule = "must be 1 or more for each of the layers, with those of the survey"
+            raise Problem(rule, key=("realizations",), value=list(self.realizations))
         return self
 
 
@@ -74,7 +83,14 @@ class Parameters(SceneGroup):
     width: Positive = Field(description="w of the Gaussian over the response, in radii.")
     wide: Part = Field(description="w of a second one, as a part of the height.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Disordered packings.")
+    survey_file: Path | None = Field(None, description="Where the packings of the survey are; null: there are none.")
     tolerances: Positives = Field(description="Differences to the elastic slab for which a size is looked for.")
     draws: Count = Field(description="Of the bootstrap over realizations that gives these sizes an interval.")
     seed: Index = Field(description="Of these draws.")
     lattice: Lattice = Field(description="Packings with moduli in closed form.")
+
+    @model_validator(mode="after")
+    def _check_survey(self) -> Parameters:
+        if self.survey_file is None and any(any(case.surveyed) for case in self.cases):
+            raise Problem("must be named where cases have surveyed realizations", key=("survey_file",), value=None)
+        return self

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from granular_response.observe.floor import floor_disks, smoothed_response
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.moduli.parameters import Parameters
+from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Packing, Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solve import Problem, influence, strained
@@ -85,13 +86,37 @@ class Task:
 class Outcome:
     height: float  #: of the slab: distance of the rows times their number
     coordination: float  #: contacts per disk of those that bear, floor included
-    at_limit: int  #: contacts taken as sticking though at the Coulomb limit
+    at_limit: float  #: number of: contacts taken as sticking though at the Coulomb limit
     matrices: FloatArray  #: (following, 3, 3) stress per strain over k_N
     springs_alone: FloatArray  #: (3, 3) the free one without the turn of contacts under the forces they bear
     response: FloatArray  #: (width, place) mean over the loads, times height
     predicted: FloatArray  #: (solid, width, place) of the slab of each of SOLIDS, times height; nan without one
     single: FloatArray  #: (width,) largest difference of one load to the prediction per its peak, mean over the loads
     difference: FloatArray  #: (solid, width) the same of the mean over the loads
+
+
+_PLACES = ("smoothing", "place")
+#: How the survey stores them.
+STORED = Layout(
+    Outcome,
+    {
+        "polydispersity": "polydispersity",
+        "friction": "friction between disks and of the floor",
+        "layers": "number of rows",
+        "realization": "realization of the disorder",
+    },
+    {
+        "height": ((), f"height of the slab {LENGTH}"),
+        "coordination": ((), "contacts per disk that bears something"),
+        "at_limit": ((), "contacts at the Coulomb limit, taken to stick"),
+        "matrices": (("following", "stress", "strain"), "stress per strain over k_N"),
+        "springs_alone": (("stress", "strain"), "the last of these without the forces that contacts bear at rest"),
+        "response": (_PLACES, "mean floor pressure times height per force"),
+        "predicted": (("solid", *_PLACES), "the same of elastic slabs"),
+        "single": (("smoothing",), "largest difference of one load to the slab per its largest pressure, mean"),
+        "difference": (("solid", "smoothing"), "largest difference of the mean over loads per the same"),
+    },
+)
 
 
 def compute(task: Task) -> Outcome:
@@ -249,21 +274,39 @@ def simulate(
     parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets ``packings`` and ``lattice``."""
-    places = [
-        (c, s, r)
-        for c, case in enumerate(parameters.cases)
-        for s, count in enumerate(case.realizations)
-        for r in range(count)
-    ]
+    places, stored = slabs(parameters, surveyed=False), slabs(parameters, surveyed=True)
     # the largest first: two workers then end together
-    order = sorted(range(len(places)), key=lambda k: -parameters.cases[places[k][0]].layers[places[k][1]])
-    tasks = [_task(parameters, *places[k]) for k in order]
+    order = sorted(places, key=lambda place: -parameters.cases[place[0]].layers[place[1]])
     ideal = _lattice_tasks(parameters)
+    tasks = [_task(parameters, *place) for place in order]
     found = map_tasks(compute, tasks, workers=workers, progress=progress, what="packings")
     answers = map_tasks(lattice_answer, ideal, workers=workers, progress=progress, what="lattices")
-    outcomes = {places[k]: outcome for k, outcome in zip(order, found, strict=True)}
+    outcomes = dict(zip(order, found, strict=True))
+    keys = [_key(parameters, *place) for place in stored]
+    outcomes |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
     datasets = {"packings": _packings(parameters, outcomes), "lattice": _lattice(parameters, answers)}
     return labelled(datasets, parameters.base)
+
+
+def slabs(parameters: Parameters, *, surveyed: bool) -> list[tuple[int, int, int]]:
+    """Places of the packings of the survey, or of all others: of the case, of its size, and the realization."""
+    return [
+        (c, s, r)
+        for c, case in enumerate(parameters.cases)
+        for s, (own, further) in enumerate(zip(case.realizations, case.further, strict=True))
+        for r in (range(own, own + further) if surveyed else range(own))
+    ]
+
+
+def _key(parameters: Parameters, c: int, s: int, r: int) -> Key:
+    """What tells a packing from others, as :data:`STORED` names it."""
+    case = parameters.cases[c]
+    return case.polydispersity, case.friction, case.layers[s], r
+
+
+def survey(parameters: Parameters) -> dict[Key, Task]:
+    """The packings that are left to the survey."""
+    return {_key(parameters, *place): _task(parameters, *place) for place in slabs(parameters, surveyed=True)}
 
 
 def _task(parameters: Parameters, c: int, s: int, r: int) -> Task:
@@ -316,7 +359,7 @@ def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outco
     cases = parameters.cases
     first = next(iter(outcomes.values()))
     sizes = max(len(case.layers) for case in cases)
-    shape = (len(cases), sizes, max(max(case.realizations) for case in cases))
+    shape = (len(cases), sizes, 1 + max(r for _, _, r in outcomes))
 
     def of_packings(name: str) -> FloatArray:
         values = np.full(shape + np.shape(getattr(first, name)), np.nan)
@@ -324,9 +367,10 @@ def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outco
             values[place] = getattr(outcome, name)
         return values
 
-    layers = np.full((len(cases), sizes), np.nan)
+    layers, surveyed = np.full((len(cases), sizes), np.nan), np.zeros((len(cases), sizes))
     for c, case in enumerate(cases):
         layers[c, : len(case.layers)] = case.layers
+        surveyed[c, : len(case.layers)] = case.further
     along = ("case", "size", "realization")
     single, difference = of_packings("single"), of_packings("difference")
     of = {"one": single, "mean": difference[:, :, :, SOLIDS.index("free")]}
@@ -345,6 +389,7 @@ def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outco
     return xr.Dataset(
         {
             "layers": variable(("case", "size"), layers, "number of rows"),
+            "surveyed": variable(("case", "size"), surveyed, "realizations that are the survey's"),
             "height": variable(along, of_packings("height"), f"height of the slab {LENGTH}"),
             "coordination": variable(along, of_packings("coordination"), "contacts per disk that bears something"),
             "at_limit": variable(along, of_packings("at_limit"), "contacts at the Coulomb limit, taken to stick"),

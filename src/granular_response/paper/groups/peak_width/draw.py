@@ -19,6 +19,8 @@ HALFWAY = 0.5 * (ELASTIC + DIFFUSIVE)
 #: Two definitions of the width: label, and filling of the symbols.
 DEFINITIONS = {"half_maximum": ("at half maximum", "full"), "half_force": ("with half of the force", "none")}
 GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
+#: Over symbols of packings of the survey.
+SURVEYED: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
 #: Labelled on logarithmic axes, in every decade.
 TICKS = (1.0, 2.0, 5.0)
 DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
@@ -80,10 +82,13 @@ def _widths(axes: Axes, data: xr.Dataset, case: int, place: int) -> None:
     one = data.isel(case=case)
     depth = one["depth"].values
     look = style.marked_line(place) | {"linestyle": "none", "markersize": 3.8}
+    stored = np.broadcast_to(one["surveyed"].values > 0.0, depth.shape)  # inside all points are of one slab
     for definition, (_, fill) in DEFINITIONS.items():
         found = one.sel(definition=definition)
         edge = {"fillstyle": fill, "markeredgewidth": 0.0 if fill == "full" else 0.7}
         axes.plot(depth, found["length"], label=name(data, case) if fill == "full" else None, **look | edge)
+        if fill == "full":
+            axes.plot(depth[stored], found["length"][stored], **look | SURVEYED)
         if place == 0:  # the others have it too, in shorter slabs
             axes.plot(depth, found["elastic_length"], color=style.MUTED, linewidth=0.8, linestyle="-", zorder=1)
     axes.plot(depth, one["length"].sel(definition="peak_position"), **look | {"marker": "x", "markeredgewidth": 0.8})

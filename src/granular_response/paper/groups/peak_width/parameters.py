@@ -6,10 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Counts, Part, SceneGroup, growing, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Counts, Part, Path, SceneGroup, growing, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
 from granular_response.scene.errors import Problem
+from granular_response.scene.protocol import Integrator
 
 #: Least number of realizations that are drawn from for an interval.
 LEAST_REALIZATIONS = 3
@@ -27,18 +28,42 @@ class Case(Description):
         "number of layers, as the weight of what bears it. Null: the limit of small forces on disks of the top row.",
     )
     layers: Counts = Field(description="Numbers of rows, growing; the stress inside is that of the last one.")
-    realizations: Count = Field(1, description="One is all there are of a lattice.")
+    surveyed: tuple[Count, ...] = Field((), description="Further ones, growing on, that the survey simulates.")
+    realizations: Count = Field(1, description="Of each height; one is all there are of a lattice.")
+
+    surveyed_realizations: Count | None = Field(None, description="Of those of the survey; null: as many.")
+
+    def count(self, height: int) -> int:
+        """Realizations of one of :attr:`heights`."""
+        return self.realizations if height < len(self.layers) else self.surveyed_realizations or self.realizations
+
+    @property
+    def heights(self) -> tuple[int, ...]:
+        """All numbers of rows."""
+        return (*self.layers, *self.surveyed)
 
     @model_validator(mode="after")
     def _check(self) -> Case:
-        try:
-            growing(self.layers)
-        except Problem:
-            raise Problem("must be growing numbers", key=("layers",), value=list(self.layers)) from None
-        if self.realizations < LEAST_REALIZATIONS and self.polydispersity > 0.0:
-            rule = f"must be at least {LEAST_REALIZATIONS} with polydispersity, for an interval"
-            raise Problem(rule, key=("realizations",), value=self.realizations)
+        for key, numbers in (("layers", self.layers), ("surveyed", self.heights)):
+            try:
+                growing(numbers)
+            except Problem:
+                raise Problem("must be growing numbers", key=(key,), value=list(getattr(self, key))) from None
+        for key, number in (
+            ("realizations", self.realizations),
+            ("surveyed_realizations", self.surveyed_realizations or self.realizations),
+        ):
+            if number < LEAST_REALIZATIONS and self.polydispersity > 0.0:
+                rule = f"must be at least {LEAST_REALIZATIONS} with polydispersity, for an interval"
+                raise Problem(rule, key=(key,), value=number)
         return self
+
+
+class Fall(Description):
+    """How disordered packings of the survey fall."""
+
+    integrator: Integrator = Field(description="protocol.integrator.")
+    inertia: Literal["disks", "rings"] = Field(description="protocol.inertia.")
 
 
 class Parameters(SceneGroup):
@@ -64,6 +89,8 @@ class Parameters(SceneGroup):
     )
     disks_per_layer: Count = Field(description="Disks of a row over number of rows, and one more.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and loads.")
+    survey_file: Path | None = Field(None, description="Where the packings of the survey are; null: there are none.")
+    survey_fall: Fall | None = Field(None, description="Null: as the others.")
     loads: Count = Field(description="Small loads on a disordered packing, one after another; one on a lattice.")
     margin: Positive = Field(description="Of these loads from the side walls, in heights.")
     width: Positive = Field(description="w of the Gaussian along x, in radii.")
@@ -80,7 +107,9 @@ class Parameters(SceneGroup):
     seed: Index = Field(description="Of the draws.")
 
     @model_validator(mode="after")
-    def _check_reach(self) -> Parameters:
+    def _check(self) -> Parameters:
+        if self.survey_file is None and any(case.surveyed for case in self.cases):
+            raise Problem("must be named where cases have surveyed layers", key=("survey_file",), value=None)
         if self.spacing >= 0.1 * self.reach:
             raise Problem("must be below a tenth of reach", key=("spacing",), value=self.spacing)
         return self
