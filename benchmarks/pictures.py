@@ -298,7 +298,7 @@ def scale(metrics: Metrics) -> Figure:
             label = labels[method] + power if key == "cpu_seconds" else power.strip()
             marker = {"minimise": "s", "path": "o", "dynamics": "^"}[method]
             panel.plot(disks, [row[key] for row in runs], marker + "-", color=colours[method], label=label)
-    for panel, text in zip(axes[0], ("processor time, one core [s]", "peak memory [GiB]"), strict=True):
+    for panel, text in zip(axes[0], ("processor time [s]", "peak memory [GiB]"), strict=True):
         _logarithmic(panel, xlabel="disks", ylabel=text)
         panel.legend(fontsize=7)
     return figure

@@ -1,14 +1,16 @@
 """Time and memory of whole `granular-response run` processes against the number of disks.
 
-`python benchmarks/scale.py OUTPUT.json [MOST_DISKS]` solves ordered slabs four times as wide as deep, from nothing to a
-stored result: without friction by minimisation, with friction 0.2 by statics alone (a rest state prepared without
-friction, then the load path), and for comparison by explicit dynamics, whose cost grows as the square of the number of
-disks. Stiffness grows with layers times disks per row, so that every slab keeps its order under gravity. Slabs of more
-than MOST_DISKS keep the rows that OUTPUT.json has for them. Kernels are compiled beforehand; one core.
+`python benchmarks/scale.py OUTPUT.json [--most DISKS] [--threads N] [--only METHOD LAYERS]` solves ordered slabs four
+times as wide as deep, from nothing to a stored result: without friction by minimisation, with friction 0.2 by statics
+alone (a rest state prepared without friction, then the load path), and for comparison by explicit dynamics, whose cost
+grows as the square of the number of disks. Stiffness grows with layers times disks per row, so that every slab keeps
+its order under gravity. Slabs of more than ``--most`` disks, and all but that of ``--only``, keep the rows that
+OUTPUT.json has for them. Kernels are compiled beforehand; large slabs take all cores unless ``--threads`` says fewer.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import subprocess
@@ -20,6 +22,7 @@ from pathlib import Path
 import numpy as np
 from timing import write
 
+from granular_response.machine.threads import cores
 from granular_response.scene import Scene
 from granular_response.store import files as store
 
@@ -28,7 +31,7 @@ SLABS = [(15, 61), (30, 121), (60, 241), (120, 481), (160, 641), (240, 961), (50
 #: friction, force in disk weights, and layers of the largest slab that is tried
 METHODS: dict[str, dict[str, float]] = {
     "minimise": {"friction": 0.0, "force": 5.0, "layers": 500},
-    "path": {"friction": 0.2, "force": 15.0, "layers": 160},
+    "path": {"friction": 0.2, "force": 15.0, "layers": 500},
     "dynamics": {"friction": 0.2, "force": 15.0, "layers": 30},
 }
 ASPECT_STIFFNESS = 3000.0 / (15 * 61)
@@ -47,13 +50,14 @@ def scene(layers: int, per_row: int, method: str, friction: float, force: float)
     )
 
 
-def measure(layers: int, per_row: int, method: str, friction: float, force: float) -> dict:
+def measure(layers: int, per_row: int, method: str, friction: float, force: float, threads: int) -> dict:
     """One process: its wall-clock and CPU seconds, its peak memory, and the certificate of what it stored."""
     described = scene(layers, per_row, method, friction, force)
     with tempfile.TemporaryDirectory() as folder:
         file, result = Path(folder, "scene.yaml"), Path(folder, "result.nc")
         file.write_text(described.to_yaml(), encoding="utf-8")
         command = [sys.executable, "-m", "granular_response", "run", str(file), "-o", str(result)]
+        command += ["--threads", str(threads)]
         start = time.perf_counter()
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
@@ -65,6 +69,7 @@ def measure(layers: int, per_row: int, method: str, friction: float, force: floa
         size = result.stat().st_size
     return {
         "method": method,
+        "threads": threads,
         "layers": layers,
         "disks": int(data.sizes["disk"]),
         "friction": friction,
@@ -98,24 +103,32 @@ def exponents(rows: list[dict]) -> list[dict]:
     return found
 
 
-def main(path: str, most: int = 10**9) -> None:
+def main(path: str, most: int, threads: int, only: tuple[str, int] | None) -> None:
     earlier = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
+    earlier = [{"threads": 1, **row} for row in earlier]
     for method, settings in METHODS.items():  # compiles
-        measure(8, 25, method, settings["friction"], 1.0)
+        measure(8, 25, method, settings["friction"], 1.0, 1)
     rows: list[dict] = []
     for layers, per_row in SLABS:
         for method, settings in METHODS.items():
             if layers > settings["layers"]:
                 continue
-            if layers * per_row > most:
+            if layers * per_row > most or (only and only != (method, layers)):
                 rows += [row for row in earlier if (row["method"], row["layers"]) == (method, layers)]
                 continue
-            rows.append(measure(layers, per_row, method, settings["friction"], settings["force"]))
+            rows.append(measure(layers, per_row, method, settings["friction"], settings["force"], threads))
             print(rows[-1], flush=True)
             # after every run: the last ones take long
-            write(path, {"cores": 1, "exponents": exponents(rows), "runs": rows})
-    write(path, {"cores": 1, "exponents": exponents(rows), "runs": rows})
+            if not only:
+                write(path, {"exponents": exponents(rows), "runs": rows})
+    write(path, {"exponents": exponents(rows), "runs": rows})
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], *map(int, sys.argv[2:3]))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("output")
+    parser.add_argument("--most", type=int, default=10**9)
+    parser.add_argument("--threads", type=int, default=cores())
+    parser.add_argument("--only", nargs=2, metavar=("METHOD", "LAYERS"))
+    given = parser.parse_args()
+    main(given.output, given.most, given.threads, given.only and (given.only[0], int(given.only[1])))

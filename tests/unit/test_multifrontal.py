@@ -7,8 +7,10 @@ from scipy.sparse.linalg import spsolve
 from small_scenes import scene
 
 from granular_response.machine import threads
-from granular_response.solve import Problem
-from granular_response.solve.linear import multifrontal, ordering
+from granular_response.solve import Problem, follow, rest_state
+from granular_response.solve import system as equations
+from granular_response.solve.linear import Nearby, multifrontal, ordering
+from granular_response.solve.linear.band import Band
 from granular_response.solve.linear.dissection import Dissection
 from granular_response.solve.linear.multifrontal import Multifrontal
 from granular_response.solve.system import StaticSystem
@@ -147,3 +149,40 @@ def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
         factor = system.factorise(system.trial(known, q), 1000.0)
         solutions.append(system.deinterleave(factor.solve(system.interleave(right))))
     assert solutions[1] == pytest.approx(solutions[0], rel=1e-9, abs=1e-12)
+
+
+def test_a_factor_serves_matrices_nearby_as_long_as_it_pays():
+    position, first, second = lattice(23, 31)
+    dissection = Dissection(position, first, second)
+    matrix = shifted(pattern(dissection, first, second, 3), 12.0)
+    fronts = Multifrontal(dissection, 3)
+    right = np.random.default_rng(2).normal(size=matrix.shape[0])
+    changed = matrix.copy()
+    changed.data[500:504] += 3.0
+    near = Nearby(fronts.factor(matrix), 7.0)
+    found = near.solve(changed, right, 1e-9)
+    assert np.linalg.norm(changed @ found - right) <= 1.1e-9 * np.linalg.norm(right)
+    assert np.linalg.norm(fronts.factor(matrix).solve(right) - found) > 1e-6 * np.linalg.norm(found)
+    assert near.solve(changed, np.zeros_like(right), 1e-9) == pytest.approx(np.zeros_like(right), abs=0.0)
+    assert near.solve(shifted(matrix, -30.0), right, 1e-9) is None  # too much has changed
+    dear = Nearby(fronts.factor(matrix), 0.0)
+    assert dear.solve(changed, right, 1e-9) is not None
+    assert dear.solve(changed, right, 1e-9) is None  # a new one is cheaper
+
+
+def test_a_path_with_kept_factors_is_the_path(monkeypatch):
+    loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
+    problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    factorise, made = StaticSystem.factorise, []
+    monkeypatch.setattr(StaticSystem, "factorise", lambda *given: made.append(1) or factorise(*given))
+    alone = follow(problem, rest, [1.0])[0]
+    before = len(made)
+    monkeypatch.setattr(equations, "LARGE", 0)
+    monkeypatch.setattr(Band, "price", 30.0)
+    kept = follow(problem, rest, [1.0])[0]
+    assert 0 < len(made) - before < 0.5 * before
+    # where Newton's method takes other steps, so do increments
+    assert kept.walls.normal_force == pytest.approx(alone.walls.normal_force, rel=1e-5)
+    assert kept.reached.certificate.force_residual < 1e-10

@@ -93,12 +93,13 @@ def newton(
         try:
             factor = None if slow else system.kept_factor(trial)
             reused = factor is not None
-            if factor is None:
+            if factor is not None:
+                step = system.deinterleave(factor.solve(system.interleave(r)))
+            else:
                 if iterations == maximum_iterations:
                     break
                 iterations += 1
-                factor = system.factorise(trial)
-            step = system.deinterleave(factor.solve(system.interleave(r)))
+                step = system.step(trial, r)
         except RuntimeError:  # exactly singular
             break
         if not np.isfinite(step).all():

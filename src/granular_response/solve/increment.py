@@ -115,7 +115,7 @@ def _minimise_with_limits(
             break
         work.factorisations += 1
         try:
-            step = system.deinterleave(system.factorise(trial, shift).solve(system.interleave(r)))
+            step = system.step(trial, r, shift)
         except RuntimeError:  # exactly singular
             break
         length = float(np.abs(step).max())

@@ -184,8 +184,10 @@ class _Path:
 
     def states(self, factors: Sequence[float]) -> list[State]:
         self._balance()
-        results = []
+        results: list[State] = []
         for target in factors:
+            if results:
+                self._restart(results[-1])
             left = abs(target - self.factor)
             while self.factor != target:
                 self._advance(target)
@@ -193,7 +195,6 @@ class _Path:
                     left = abs(target - self.factor)
                     self.progress(self.factor)
             results.append(self._state())
-            self._restart(results[-1])
         return results
 
     def _balance(self) -> None:

@@ -16,11 +16,15 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 from ..kernels import statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
-from .linear import Factor, elimination
+from .linear import Factor, Nearby, elimination
 from .problem import Problem
 
 #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
 REGULARISATION = 1e-10
+
+#: Disks from which on a step is sought with the last factorisation, whatever has changed since, before a new one is
+#: made; and the part of the force out of balance that such a step leaves (2-norms).
+LARGE, LEFT_OVER = 40_000, 1e-6
 
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
@@ -97,6 +101,8 @@ class StaticSystem:
         self.held = problem.held.unknowns(problem.n)
         self._pattern()
         self._kept: tuple[np.ndarray, Factor] | None = None
+        #: the last factorisation of a large packing
+        self._near: Nearby | None = None
 
     @property
     def dof(self) -> int:
@@ -173,7 +179,10 @@ class StaticSystem:
     def _pattern(self) -> None:
         """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
         n, d = self.problem.n, self.problem.freedoms
-        chosen = elimination(self.reference, self.first, self.second, d)
+        # one order of elimination for all states of a large lattice
+        as_built = n > LARGE and self.problem.packing.ordered
+        position = self.problem.packing.position if as_built else self.reference
+        chosen = elimination(position, self.first, self.second, d)
         self._order = chosen.order
         place_of = np.empty(n, np.int64)
         place_of[self._order] = np.arange(n)
@@ -262,11 +271,27 @@ class StaticSystem:
         """LU of the tangent, a tiny regularisation included."""
         k = self.problem.stiffness
         matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
-        self._kept = None  # two need not be in memory
+        self._kept = self._near = None  # two need not be in memory
         factor = self._storage.factor(matrix)
+        if self.problem.n > LARGE:
+            self._near = Nearby(factor, self._storage.price)
         if np.ndim(shift) == 0 and shift == 0.0:
             self._kept = trial.sense, factor
         return factor
+
+    def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
+        """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
+
+        In a large packing the last factorisation may be corrected for what has changed since; RuntimeError where
+        the tangent is exactly singular.
+        """
+        right = self.interleave(force)
+        if self._near is not None:
+            matrix = self.tangent(trial, shift + REGULARISATION * self.problem.stiffness)
+            found = self._near.solve(matrix, right, LEFT_OVER)
+            if found is not None:
+                return self.deinterleave(found)
+        return self.deinterleave(self.factorise(trial, shift).solve(right))
 
     def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
         """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""

@@ -4,6 +4,7 @@
 """
 
 from .factor import Factor, Storage
+from .nearby import Nearby
 from .ordering import Elimination, elimination
 
-__all__ = ["Elimination", "Factor", "Storage", "elimination"]
+__all__ = ["Elimination", "Factor", "Nearby", "Storage", "elimination"]

@@ -32,6 +32,8 @@ from .frontal import Matrix, Store, Tree
 LARGE = 80_000
 #: A subtree has at most one part in so many of the work.
 PARTS = 24
+#: Multiplications of a factorisation that take as long as a solution takes for each number of the factors.
+MULTIPLICATIONS = 6
 #: Columns of a block of a matrix product above the subtrees.
 BLOCK = 240
 
@@ -79,6 +81,12 @@ class Multifrontal:
     @property
     def unknowns(self) -> int:
         return int(self.tree.start[-1])
+
+    @property
+    def price(self) -> float:
+        """About how many solutions cost as much as an LU: by its multiplications for each number that it holds."""
+        own, outer = self.own.astype(float), self.outer.astype(float)
+        return float((own**3 / 3.0 + own * outer * (own + outer)).sum() / (MULTIPLICATIONS * self._at[True][-1]))
 
     @property
     def large(self) -> bool:

@@ -16,6 +16,11 @@ from .multifrontal import Multifrontal
 
 #: Half-bandwidth (in unknowns) up to which the banded factorisations are the faster ones.
 WIDEST_BAND = 120
+#: Disks from which on a dissection is remembered: it takes as long as a factorisation.
+LARGE = 40_000
+
+#: What the last dissection of a large packing was asked for, and that dissection.
+_last: list = []
 
 
 @dataclass(frozen=True)
@@ -36,12 +41,18 @@ class Elimination:
 def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, freedoms: int) -> Elimination:
     """The order for disks at ``position`` (n, 2) that are tied in pairs ``first``, ``second`` (m,).
 
-    A narrow band where there is one, nested dissection elsewhere. Each disk has ``freedoms`` unknowns.
+    A narrow band where there is one, nested dissection elsewhere. Each disk has ``freedoms`` unknowns. The last
+    dissection of a large packing is remembered.
     """
+    asked = (position, first, second)
+    if _last and all(map(np.array_equal, _last[0], asked)):
+        return Elimination(_last[1].order, freedoms, _last[1])
     order = node_order(position, first, second)
     if (_width(order, first, second) + 1) * freedoms - 1 <= WIDEST_BAND:
         return Elimination(order, freedoms, None)
     dissection = Dissection(position, first, second)
+    if len(position) > LARGE:
+        _last[:] = [asked, dissection]
     return Elimination(dissection.order, freedoms, dissection)
 
 

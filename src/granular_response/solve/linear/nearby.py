@@ -1,0 +1,78 @@
+"""Solutions with the factorisation of another matrix: GMRES, preconditioned by it.
+
+Where few contacts have changed since a tangent was factorised, the product of the new one with the inverse of the old
+differs from one in few directions, so few products are needed, each with one solution by the old factorisation. In a
+large packing that is far cheaper than to factorise anew.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...state import FloatArray
+from .factor import Factor
+
+#: Most products of a solution, and the number from which on it is seen whether so many will do.
+MOST, SEEN = 24, 6
+
+
+class Nearby:
+    """A factorisation that serves other matrices as long as that pays."""
+
+    def __init__(self, factor: Factor, price: float):
+        """``price`` : solutions that cost as much as the factorisation."""
+        self._factor = factor
+        #: what solutions have cost so far, the first one with the factorisation, and the last one
+        self._spent, self._solutions, self._last = price, 1, 0
+
+    def solve(self, matrix: sp.csc_array, right: FloatArray, tolerance: float) -> FloatArray | None:
+        """(n,) x with ``|matrix x - right| <= tolerance |right|`` (2-norms).
+
+        None where ``MOST`` products do not lead there, as soon as that is to be expected, and once a solution costs
+        more than the average with a new factorisation so far.
+        """
+        if self._last > self._spent / self._solutions:
+            return None
+        found, self._last = _gmres(matrix, self._factor, right, tolerance)
+        self._spent += self._last
+        self._solutions += 1
+        return found
+
+
+def _gmres(matrix: sp.csc_array, factor: Factor, right: FloatArray, tolerance: float) -> tuple[FloatArray | None, int]:
+    """The solution, or None, and the number of solutions by the factor."""
+    size = float(np.linalg.norm(right))
+    if size == 0.0:
+        return np.zeros_like(right), 0
+    basis = [right / size]
+    triangle = np.zeros((MOST, MOST))
+    turns: list[tuple[float, float]] = []
+    left = np.zeros(MOST + 1)
+    left[0] = size
+    for k in range(MOST):
+        new = matrix @ factor.solve(basis[k])
+        column = np.empty(k + 1)
+        for i, direction in enumerate(basis):
+            column[i] = direction @ new
+            new -= column[i] * direction
+        for i, (c, s) in enumerate(turns):
+            column[i], column[i + 1] = c * column[i] + s * column[i + 1], c * column[i + 1] - s * column[i]
+        below = float(np.linalg.norm(new))
+        length = float(np.hypot(column[k], below))
+        if not np.isfinite(length) or length == 0.0:
+            return None, k + 1
+        turns.append((column[k] / length, below / length))
+        triangle[:k, k], triangle[k, k] = column[:k], length
+        left[k], left[k + 1] = turns[k][0] * left[k], -turns[k][1] * left[k]
+        reduced = abs(left[k + 1]) / size
+        if reduced <= tolerance:
+            weights = np.linalg.solve(triangle[: k + 1, : k + 1], left[: k + 1])
+            total = np.zeros_like(right)
+            for weight, direction in zip(weights, basis, strict=True):
+                total += weight * direction
+            return factor.solve(total), k + 2
+        if k + 1 >= SEEN and reduced ** (MOST / (k + 1)) > tolerance:
+            break
+        basis.append(new / below)
+    return None, k + 1
