@@ -8,6 +8,7 @@ digits.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -223,6 +224,25 @@ class StaticSystem:
             self._held_diagonal = self._diagonal[held]
         self._data = np.zeros(self._indptr[-1])
         self._storage = chosen.storage(self._indptr, self._indices)
+        # as scipy has them, which would convert them for every matrix
+        kind = sp.csc_array((self._data, self._indices, self._indptr), shape=(self.dof, self.dof)).indices.dtype
+        self._indices, self._indptr = self._indices.astype(kind), self._indptr.astype(kind)
+
+    @cached_property
+    def _mirror(self) -> np.ndarray:
+        """(e,) for each entry of a tangent, in its storage, the one across the diagonal."""
+        entries = np.arange(len(self._indices), dtype=self._indices.dtype)
+        matrix = sp.csc_array((entries, self._indices, self._indptr), shape=(self.dof, self.dof))
+        return sp.csc_array(matrix.T).data
+
+    def _transposed(self, matrix: sp.csc_array) -> sp.csc_array:
+        """K^T of a tangent."""
+        return sp.csc_array((matrix.data[self._mirror], matrix.indices, matrix.indptr), shape=matrix.shape)
+
+    def _symmetric_part(self, matrix: sp.csc_array) -> sp.csc_array:
+        """(K + K^T) / 2 of a tangent."""
+        data = 0.5 * (matrix.data + matrix.data[self._mirror])
+        return sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
@@ -295,8 +315,8 @@ class StaticSystem:
 
     def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
         """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
-        factor = self._storage.factor(_transposed(self.tangent(trial, REGULARISATION * self.problem.stiffness)))
-        return factor, _transposed(self.tangent(trial))
+        factor = self._storage.factor(self._transposed(self.tangent(trial, REGULARISATION * self.problem.stiffness)))
+        return factor, self._transposed(self.tangent(trial))
 
     def kept_factor(self, trial: Trial) -> Factor | None:
         """The last factorisation of a tangent, when every contact has the same status (and direction of sliding)."""
@@ -330,7 +350,7 @@ class StaticSystem:
     def symmetric_factor(self, trial: Trial, shift: float) -> tuple[Factor, int]:
         """Factorisation of the symmetric part of the tangent and its number of negative eigenvalues."""
         matrix = self.tangent(trial, shift)
-        return self._storage.symmetric_factor(_symmetric_part(matrix))
+        return self._storage.symmetric_factor(self._symmetric_part(matrix))
 
     def without_prestress(self, trial: Trial) -> Trial:
         """The trial with the stiffness of its springs alone: what the turn of contacts adds is left out.
@@ -355,7 +375,7 @@ class StaticSystem:
 
     def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
         """Factorisation of the symmetric part of the tangent; None when it is not positive definite."""
-        return self._storage.definite_factor(_symmetric_part(self.tangent(trial, shift)))
+        return self._storage.definite_factor(self._symmetric_part(self.tangent(trial, shift)))
 
     def meets_unlisted(self, q: FloatArray) -> bool:
         """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""
@@ -376,7 +396,7 @@ class StaticSystem:
         has a negative real part (Bendixson); else the four nearest to zero are computed and those with a
         negative real part counted. ``shift`` keeps disks that roll freely from counting.
         """
-        modes = self._storage.negative_eigenvalues(_symmetric_part(self.tangent(trial, shift)))
+        modes = self._storage.negative_eigenvalues(self._symmetric_part(self.tangent(trial, shift)))
         if modes == 0 or (SLIDING not in trial.pair_status and SLIDING not in trial.wall_status):
             return modes
         if self.dof <= DENSE:
@@ -393,7 +413,7 @@ class StaticSystem:
     def unstable_direction(self, trial: Trial) -> FloatArray:
         """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1."""
         if self.dof <= DENSE:
-            _, every = np.linalg.eigh(_symmetric_part(self.tangent(trial)).toarray())
+            _, every = np.linalg.eigh(self._symmetric_part(self.tangent(trial)).toarray())
             return self._of_largest_one(every[:, 0])
         k = self.problem.stiffness
         # the nearer the origin of the search to the eigenvalue, the fewer solves; from below it finds the lowest
@@ -404,7 +424,7 @@ class StaticSystem:
         else:
             factor, _ = self.symmetric_factor(trial, origin)
         _, vectors = eigsh(
-            _symmetric_part(self.tangent(trial)), k=1, sigma=-origin, which="LM",
+            self._symmetric_part(self.tangent(trial)), k=1, sigma=-origin, which="LM",
             v0=np.random.default_rng(0).standard_normal(self.dof),
             OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
         )  # fmt: skip
@@ -413,16 +433,3 @@ class StaticSystem:
     def _of_largest_one(self, vector: FloatArray) -> FloatArray:
         vector = self.deinterleave(vector)
         return vector / vector[np.argmax(np.abs(vector))]
-
-
-def _symmetric_part(matrix: sp.csc_array) -> sp.csc_array:
-    """(K + K^T) / 2 on the same (symmetric) pattern."""
-    data = 0.5 * (matrix.data + _transposed(matrix).data)
-    return sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
-
-
-def _transposed(matrix: sp.csc_array) -> sp.csc_array:
-    """K^T on the same (symmetric) pattern."""
-    transposed = sp.csc_array(matrix.T)
-    transposed.sort_indices()
-    return transposed
