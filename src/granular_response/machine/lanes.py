@@ -269,9 +269,33 @@ def quotient_where(typing, condition, dividend, divisor, otherwise):
     return types.float64(types.boolean, types.float64, types.float64, types.float64), generate_scalar
 
 
+@intrinsic
+def less_product(typing, value, factor, other):
+    """``value - factor * other`` rounded once; ``factor`` is a float."""
+    if value == LANES:
+
+        def generate(context, builder, sig, args):
+            fused = cgutils.get_or_insert_function(
+                builder.module, ir.FunctionType(_DOUBLES, [_DOUBLES] * 3), f"llvm.fma.v{WIDTH}f64"
+            )
+            return builder.call(fused, [_spread(builder, builder.fneg(args[1])), args[2], args[0]])
+
+        return LANES(LANES, types.float64, LANES), generate
+
+    def generate_scalar(context, builder, sig, args):
+        double = ir.DoubleType()
+        fused = cgutils.get_or_insert_function(builder.module, ir.FunctionType(double, [double] * 3), "llvm.fma.f64")
+        return builder.call(fused, [builder.fneg(args[1]), args[2], args[0]])
+
+    return types.float64(types.float64, types.float64, types.float64), generate_scalar
+
+
 if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
     spread = partial(np.full, WIDTH)
     root, magnitude, anywhere = np.sqrt, np.abs, np.any
+
+    def less_product(value, factor, other):
+        return value - factor * other
 
     def take(array, k, like):
         return array[k : k + WIDTH].copy() if isinstance(like, np.ndarray) else array[k]

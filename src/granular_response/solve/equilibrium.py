@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..state import OPEN, Certificate, FloatArray, State
+from .line_search import shortened
+from .linear import Factor
 from .problem import Problem
 from .system import Configuration, StaticSystem, Trial
 
@@ -22,6 +24,8 @@ ENOUGH = 1e-3 * TOLERANCE
 LEAST_FRICTION = 1e-4
 #: Most factorisations of a Newton solution.
 NEWTON_ITERATIONS = 30
+#: Part to which the force along a step falls where contacts go to and fro.
+FLAT = 0.1
 #: A Newton step moves no disk farther than this (mean radii).
 LONGEST_STEP = 0.05
 
@@ -75,7 +79,9 @@ def newton(
 
     Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
     for a moment). A factorisation serves as long as no contact changes its status and the residual falls
-    tenfold with it. The end is a residual below ``enough``, or below ``tolerance`` where it falls no further.
+    tenfold with it. Where contacts go to and fro between two states (they touch with so little force that they slide
+    one way, then the other), a system that brings its factorisation up to date stops between the two. The end is a
+    residual below ``enough``, or below ``tolerance`` where it falls no further.
     Returns the last trial and a report; ``report.converged`` says whether it is a solution,
     ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """
@@ -87,12 +93,22 @@ def newton(
     best = size
     stalled = iterations = 0
     slow = False
+    sense = trial.sense
+    before = sense  # the statuses of two trials ago
     while True:
         if size < enough or (size < tolerance and stalled):
             return trial, NewtonReport(True, iterations, size)
+        factor: Factor | None
         try:
-            factor = None if slow else system.kept_factor(trial)
-            reused = factor is not None
+            if system.updated:
+                if iterations == maximum_iterations:
+                    break
+                factor, made = system.updated_factor(trial, anew=slow)
+                iterations += made
+                reused = not made
+            else:
+                factor = None if slow else system.kept_factor(trial)
+                reused = factor is not None
             if factor is not None:
                 step = system.deinterleave(factor.solve(system.interleave(r)))
             else:
@@ -113,8 +129,16 @@ def newton(
             if size_new < 10.0 * size or size_new < tolerance:
                 break
             scale *= 0.5
+        if system.updated:
+            there_and_back = np.array_equal(new.sense, before) and not np.array_equal(new.sense, sense)
+            if there_and_back and scale == 1.0 and (slope := float(r @ step)) > 0.0:
+                step, new = shortened(system, known, external, q, step, slope, full=new, until=FLAT)
+                r_new = residual(system, new, external)
+                size_new = float(np.abs(r_new).max())
+            before, sense = sense, new.sense
         slow = reused and size_new > 0.1 * size
         if slow and size_new > size:
+            sense = before = trial.sense  # this step is not taken
             continue
         q, trial, r, size = q + scale * step, new, r_new, size_new
         stalled = stalled + 1 if size > 0.5 * best else 0

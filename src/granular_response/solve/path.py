@@ -172,7 +172,7 @@ class _Path:
 
     def _begin(self, state: State) -> None:
         """Go on from a state, with nothing known of how displacements grow with the load."""
-        self.system = StaticSystem(self.problem, state)
+        self.system = StaticSystem(self.problem, state, updated=self.tolerance is not None)
         self.known: Configuration = self.system.start(state)
         self.trial: Trial = self.system.trial(self.known, self.known.q)
         self.rate: FloatArray | None = None

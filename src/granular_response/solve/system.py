@@ -18,6 +18,8 @@ from ..kernels import statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .linear import Factor, Nearby, elimination
+from .linear.band import Band
+from .linear.two_sided import FREEDOMS, TwoSided
 from .problem import Problem
 
 #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
@@ -26,6 +28,9 @@ REGULARISATION = 1e-10
 #: Disks from which on a step is sought with the last factorisation, whatever has changed since, before a new one is
 #: made; and the part of the force out of balance that such a step leaves (2-norms).
 LARGE, LEFT_OVER = 40_000, 1e-6
+
+#: Relative accuracy of eigenvalues of which the sign is asked, where increments are as rough.
+ROUGH = 1e-3
 
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
@@ -75,9 +80,13 @@ class Trial:
 
 
 class StaticSystem:
-    """Static equations of ``problem`` around the positions and candidate contacts of ``state``."""
+    """Static equations of ``problem`` around the positions and candidate contacts of ``state``.
 
-    def __init__(self, problem: Problem, state: State):
+    ``updated`` : whether Newton's method may use a factorisation that is brought up to date only where contacts change.
+    Its solutions are the same within their residuals.
+    """
+
+    def __init__(self, problem: Problem, state: State, *, updated: bool = False):
         self.problem = problem
         self.reference = state.position.copy()
         self.angle0 = state.angle.copy()
@@ -104,6 +113,7 @@ class StaticSystem:
         self._kept: tuple[np.ndarray, Factor] | None = None
         #: the last factorisation of a large packing
         self._near: Nearby | None = None
+        self._two_sided = self._both_ends() if updated else None
 
     @property
     def dof(self) -> int:
@@ -185,6 +195,8 @@ class StaticSystem:
         position = self.problem.packing.position if as_built else self.reference
         chosen = elimination(position, self.first, self.second, d)
         self._order = chosen.order
+        #: for each unknown in the order of the tangent where it is in ``[x | z | angle]``
+        self._interleaved = (chosen.order[:, None] + n * np.arange(d)).ravel()
         place_of = np.empty(n, np.int64)
         place_of[self._order] = np.arange(n)
         i, j = place_of[self.first], place_of[self.second]
@@ -273,7 +285,7 @@ class StaticSystem:
 
     def interleave(self, vector: FloatArray) -> FloatArray:
         """``[x | z | angle]`` to disk by disk, in the order of the tangent."""
-        return vector.reshape(self.problem.freedoms, -1).T[self._order].ravel()
+        return vector[self._interleaved]
 
     def deinterleave(self, vector: FloatArray) -> FloatArray:
         """Disk by disk, in the order of the tangent, to ``[x | z | angle]``.
@@ -281,11 +293,12 @@ class StaticSystem:
         Nothing holds a packing with periodic sides on a smooth floor along x, unless a load does: as a whole it stays
         where it is.
         """
-        result = np.empty((self.problem.n, self.problem.freedoms))
-        result[self._order] = vector.reshape(-1, self.problem.freedoms)
+        result = np.empty(self.dof)
+        result[self._interleaved] = vector
         if self.problem.packing.periodic and not self.problem.wall_friction and 0 not in self.problem.held.axis:
-            result[:, 0] -= result[:, 0].mean()
-        return result.T.ravel()
+            along = result[: self.problem.n]
+            along -= along.mean()
+        return result
 
     def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Factor:
         """LU of the tangent, a tiny regularisation included."""
@@ -317,6 +330,36 @@ class StaticSystem:
         """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
         factor = self._storage.factor(self._transposed(self.tangent(trial, REGULARISATION * self.problem.stiffness)))
         return factor, self._transposed(self.tangent(trial))
+
+    def _both_ends(self) -> TwoSided | None:
+        """A factorisation that is brought up to date where contacts change; None where it is not the cheaper one."""
+        if not isinstance(self._storage, Band) or self.held.size or self.problem.freedoms != FREEDOMS:
+            return None
+        place_of = np.empty(self.problem.n, np.int64)
+        place_of[self._order] = np.arange(self.problem.n)
+        loaded = self.problem.load_disk
+        centre = int(place_of[loaded].mean()) if len(loaded) else self.problem.n // 2
+        radius = self.problem.packing.radius[self._order]
+        k = self.problem.stiffness
+        return TwoSided(
+            np.stack([place_of[self.first], place_of[self.second]], axis=1), place_of[self.wall_disk], radius,
+            half_width=self._storage.half_width, centre=centre, diagonal=REGULARISATION * k, stiffness=k,
+        )  # fmt: skip
+
+    @property
+    def updated(self) -> bool:
+        """Whether a factorisation is brought up to date where contacts change."""
+        return self._two_sided is not None
+
+    def updated_factor(self, trial: Trial, *, anew: bool) -> tuple[Factor, bool]:
+        """Factorisation of a tangent near that of a trial, and whether any of it had to be made.
+
+        ``anew`` : whether the last one did not serve. Only where :attr:`updated`.
+        """
+        assert self._two_sided is not None
+        if anew:
+            self._two_sided.forget()
+        return self._two_sided, self._two_sided.update(trial.pair_tangent, trial.wall_tangent)
 
     def kept_factor(self, trial: Trial) -> Factor | None:
         """The last factorisation of a tangent, when every contact has the same status (and direction of sliding)."""
@@ -406,7 +449,7 @@ class StaticSystem:
         values = eigs(
             self.tangent(trial, shift), k=4, sigma=origin, return_eigenvectors=False,
             OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
-            v0=np.random.default_rng(0).standard_normal(self.dof),
+            v0=np.random.default_rng(0).standard_normal(self.dof), tol=0.0 if self._two_sided is None else ROUGH,
         )  # fmt: skip
         return int((values.real < 0).sum())
 

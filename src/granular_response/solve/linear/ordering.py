@@ -57,14 +57,16 @@ def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, fre
 
 
 def node_order(position: FloatArray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n,) order of the disks that keeps neighbours close: along x, or Cuthill-McKee where that is narrower."""
+    """(n,) order of the disks that keeps neighbours close: along x, in columns, or by Cuthill-McKee if narrower."""
     n = len(position)
     along = np.lexsort((position[:, 1], position[:, 0]))
     if len(first) == 0:
         return along
     ones = np.ones(2 * len(first))
     graph = sp.csr_array((ones, (np.r_[first, second], np.r_[second, first])), shape=(n, n))
-    orders = [along, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))]
+    # disks of a column stand a little askew under their weight, which must not decide their order
+    columns = np.lexsort((position[:, 1], np.round(position[:, 0], 1)))
+    orders = [along, columns, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))]
     return min(orders, key=lambda order: _width(order, first, second))
 
 

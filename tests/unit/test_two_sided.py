@@ -1,0 +1,97 @@
+"""The factorisation from both ends against one of the whole tangent."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from granular_response.scene import Scene
+from granular_response.solve import Problem, rest_state
+from granular_response.solve.equilibrium import external_force, newton
+from granular_response.solve.system import StaticSystem
+
+
+@pytest.fixture(scope="module")
+def resting():
+    """A slab at rest under its weight, long enough for several checkpoints on either side of its load."""
+    scene = Scene.from_dict(
+        {
+            "packing": {"kind": "slab", "layers": 5, "disks_per_row": 41},
+            "contact": {"friction": 0.2},
+            "loads": [{"disk": "top-centre", "force": [0.0, -2.0]}],
+        }
+    )
+    problem = Problem.from_scene(scene)
+    rest = rest_state(problem)
+    return problem.with_loads(rest.position), rest
+
+
+def whole(system, trial, right):
+    return system.factorise(trial).solve(right)
+
+
+def changed(trial, pairs=(), walls=()):
+    """The trial with tangents of some contacts halved."""
+    pair, wall = trial.pair_tangent.copy(), trial.wall_tangent.copy()
+    pair[list(pairs)] *= 0.5
+    wall[list(walls)] *= 0.5
+    return replace(trial, pair_tangent=pair, wall_tangent=wall)
+
+
+def test_solves_with_what_has_changed_since_brought_up_to_date(resting):
+    problem, rest = resting
+    system = StaticSystem(problem, rest, updated=True)
+    known = system.start(rest)
+    trial = system.trial(known, known.q)
+    rng = np.random.default_rng(1)
+    m, w = len(system.first), len(system.wall_disk)
+    for turn in range(25):
+        right = rng.normal(size=system.dof)
+        factor, made = system.updated_factor(trial, anew=False)
+        assert made
+        assert factor.solve(right) == pytest.approx(whole(system, trial, right), rel=1e-9, abs=1e-12)
+        assert not system.updated_factor(trial, anew=False)[1]
+        walls = rng.integers(w, size=1) if turn % 5 == 0 else ()
+        trial = changed(trial, rng.integers(m, size=1 + turn % 2), walls)
+
+
+def test_little_changes_are_left_until_all_is_asked_for_anew(resting):
+    problem, rest = resting
+    system = StaticSystem(problem, rest, updated=True)
+    known = system.start(rest)
+    trial = system.trial(known, known.q)
+    right = np.ones(system.dof)
+    before = system.updated_factor(trial, anew=False)[0].solve(right)
+    little = replace(trial, pair_tangent=trial.pair_tangent * (1.0 + 1e-3))
+    factor, made = system.updated_factor(little, anew=False)
+    assert not made
+    assert np.array_equal(factor.solve(right), before)
+    factor, made = system.updated_factor(little, anew=True)
+    assert made
+    assert factor.solve(right) == pytest.approx(whole(system, little, right), rel=1e-9, abs=1e-12)
+
+
+def test_what_is_not_finite_is_forgotten(resting):
+    problem, rest = resting
+    system = StaticSystem(problem, rest, updated=True)
+    known = system.start(rest)
+    trial = system.trial(known, known.q)
+    right = np.ones(system.dof)
+    before = system.updated_factor(trial, anew=False)[0].solve(right)
+    broken = trial.pair_tangent.copy()
+    broken[len(broken) // 2] = np.nan
+    assert not np.isfinite(system.updated_factor(replace(trial, pair_tangent=broken), anew=False)[0].solve(right)).all()
+    assert np.array_equal(system.updated_factor(trial, anew=False)[0].solve(right), before)
+
+
+def test_newton_finds_the_same_equilibrium(resting):
+    problem, rest = resting
+    found = []
+    for updated in (False, True):
+        system = StaticSystem(problem, rest, updated=updated)
+        assert system.updated == updated
+        trial, report = newton(system, system.start(rest), external_force(problem, 0.2))
+        assert report.converged
+        found.append(trial)
+    assert found[1].wall_normal == pytest.approx(found[0].wall_normal, abs=1e-9)
+    assert np.array_equal(found[0].sense, found[1].sense)
