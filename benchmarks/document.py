@@ -173,6 +173,22 @@ def skipped(title: str, metrics: Metrics) -> str:
     return title + (f" (skipped: {'; '.join(metrics['skipped'])})" if metrics["skipped"] else "") + ":"
 
 
+def nine_points(points: list[dict]) -> list[dict[str, Any]]:
+    """Times of a path and of dynamics to each error, where they were measured."""
+    if not points:
+        return []
+    columns = {"friction": "friction", "force": "force", "fall_seconds": "fall [s]"}
+    for key in points[0]:
+        method, _, error = key.partition("_")
+        if method in ("path", "dynamics"):
+            columns[key] = f"{method} to {error} [s]"
+    title = (
+        "Least processor time from rest, without the fall, to an error, by a path with a tolerance and by dynamics "
+        "(leapfrog, static finish, ramps of 1 to 100):"
+    )
+    return [table(points, columns, title)]
+
+
 def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
     """What of a benchmark is worth reading as numbers."""
     if benchmark == "precision":
@@ -185,7 +201,8 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
                     "times_faster_than_lammps": "LAMMPS / statics",
                 },
                 "Least time to reach an error:",
-            )
+            ),
+            *nine_points(metrics.get("nine_points", [])),
         ]  # fmt: skip
     if benchmark == "convergence":
         # what is known of the path stands with each run, the same for all ramps of a case
