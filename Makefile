@@ -55,7 +55,8 @@ reproduce: setup ## Run what is not up to date: simulations, figures, claims, re
 # Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand.
 quote: setup ## Renew the lines that README and documents quote from stored results and code (tests compare them)
 	"$(BIN)/granular-response" claims --list --readme README.md > /dev/null
-	"$(BIN)/granular-response" report --notes docs/reproduction-notes.md --figures docs/figures.md
+	"$(BIN)/granular-response" report --notes docs/reproduction-notes.md --figures docs/figures.md \
+	  --beyond docs/beyond.md
 	"$(BIN)/granular-response" keys --page docs/scene-reference.md
 
 figure: setup ## Draw one figure group: make figure GROUP=pile_dip

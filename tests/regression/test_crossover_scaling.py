@@ -14,6 +14,7 @@ from granular_response.paper.groups.crossover_scaling.captions import captions
 from granular_response.paper.groups.crossover_scaling.claims import CLAIMS
 from granular_response.paper.groups.crossover_scaling.parameters import Parameters
 from granular_response.paper.groups.frictionless_crossover import simulate as frictionless
+from granular_response.paper.report import beyond
 from granular_response.paper.slab_response import LoadPath
 from granular_response.scene import SceneError
 from granular_response.store import files as store
@@ -167,6 +168,15 @@ def test_figures_have_their_panels_and_captions(datasets, parameters):
     figures = draw.draw(datasets)
     assert set(figures) == set(captions(datasets, parameters))
     assert [len(figure.axes) for figure in figures.values()] == [4, 2, 3]
+
+
+def test_the_document_gets_a_line_for_each_series_of_layers(datasets):
+    head, _, first, *others = beyond.crossovers(datasets)
+    assert head.endswith("| two peaks at 100 layers, extrapolated |") and len(others) == 2
+    exponent = datasets["powers"]["exponent"].sel(series="constant confinement", event="crossover").values
+    assert first.startswith("| 0, constant | 5 to 9 | {:.2f} ({:.2f} to {:.2f}) |".format(*exponent))
+    surveyed = datasets["slabs"].assign_coords(surveyed=("slab", (datasets["slabs"]["layers"].values == 9).astype(int)))
+    assert "| 5 to 9, from 9 on the survey's |" in beyond.crossovers({**datasets, "slabs": surveyed})[2]
 
 
 def test_claims_are_judged(datasets):

@@ -9,6 +9,7 @@ from granular_response.paper.claims.verdict import judge
 from granular_response.paper.groups.hysteresis import captions, draw, simulate
 from granular_response.paper.groups.hysteresis.claims import CLAIMS
 from granular_response.paper.groups.hysteresis.parameters import Parameters
+from granular_response.paper.report import beyond
 from granular_response.scene import SceneError
 from granular_response.solve import Problem, loaded_states, minimise
 from granular_response.solve import solution as solvers
@@ -118,6 +119,18 @@ def test_figures_have_their_panels_and_captions(datasets):
         "hysteresis_ranges": 3,
     }
     assert set(captions.captions(datasets, Parameters.model_validate(PARAMETERS))) == set(figures)
+
+
+def test_the_document_gets_a_line_for_each_packing_and_how_the_books_close(datasets):
+    _, _, smooth, rough, disordered, _, count, lattices, disorder = beyond.loops(datasets)
+    low, high = (float(datasets["events"][end].isel(case=ROUGH, realization=0).sel(event="first_opening"))
+                 for end in ("low", "high"))  # fmt: skip
+    assert smooth.startswith("| lattice, µ = 0 |") and smooth.endswith("| above 2 | 2 | nothing | nothing | nothing |")
+    assert rough.startswith(f"| lattice, µ = 0.2 | {low:.3g} to {high:.3g} |")
+    loops = datasets["loops"].isel(case=DISORDERED, turn=1)
+    left = 100.0 * loops["floor_left"].values
+    assert f"| 1 | {np.median(left):.2g} ({left.min():.2g} to {left.max():.2g}) % |" in disordered
+    assert "median of 3 realizations" in count and "lattices" in lattices and "disorder" in disorder
 
 
 def test_the_claims_are_measured(datasets):

@@ -12,7 +12,7 @@ import yaml
 from claims_data import STARTS, dataset, everything, pile_study
 
 from granular_response.paper.claims import preparations, table, words
-from granular_response.paper.claims.bootstrap import over_realizations
+from granular_response.paper.claims.bootstrap import over_brackets, over_realizations
 from granular_response.paper.claims.claim import (
     Claim,
     Condition,
@@ -57,6 +57,15 @@ def changed(groups, group, name, change):
 
 def scaled(group, name, variable, factor):
     return lambda groups: changed(groups, group, name, lambda data: data.assign({variable: data[variable] * factor}))
+
+
+def both(*changes):
+    def change(groups):
+        for one in changes:
+            groups = one(groups)
+        return groups
+
+    return change
 
 
 def put(group, name, variable, values):
@@ -157,6 +166,10 @@ def by_solid(rows):
 
 #: The second case alone differs from its slab.
 ONE_TOO_FAR = np.array([1.0, 10.0, 1.0])[:, None, None, None, None]
+
+ENDS = ("low", "high")
+#: The reversible range of the second case alone ends early.
+IRREVERSIBLE = [[[1.0, 1.0]], [[1.0, 0.2]]]
 
 
 def alternating(one, other):
@@ -275,7 +288,8 @@ PLANTED = [
     ("B4", scaled("moduli", "packings", "difference", ONE_TOO_FAR), "depends on the reading"),
     ("B4", scaled("moduli", "packings", "difference", by_solid([1.0, 1.0, 1.0, 10.0])), "reproduced"),
     ("B5", scaled("moduli", "packings", "difference", by_solid([1.0, 1.0, 1.0, 10.0])), "contradicted"),
-    ("B2", scaled("hysteresis", "events", "low", [[[1.0, 1.0]], [[1.0, 0.2]]]), "depends on the reading"),
+    ("B2", both(*(scaled("hysteresis", "events", end, IRREVERSIBLE) for end in ENDS)), "depends on the reading"),
+    ("B2", scaled("hysteresis", "events", "low", IRREVERSIBLE), "undecided"),
     ("B2", put("hysteresis", "events", "high", NAN), "not measured"),
     ("B3", put("hysteresis", "loops", "slid_again", 0.1), "contradicted"),
     ("B3", scaled("hysteresis", "loops", "floor_repeated", [[[1.0]], [[1e3]]]), "depends on the reading"),
@@ -432,6 +446,24 @@ def test_the_bootstrap_knows_the_error_of_a_mean():
     assert over_realizations([*values, NAN], np.mean) == found
     with pytest.raises(NotMeasured, match="2 realizations"):
         over_realizations([1.0, NAN, 2.0])
+
+
+def test_a_median_of_brackets_holds_what_is_not_known_of_each():
+    middle = np.random.default_rng(1).uniform(1.0, 2.0, 40)
+    sharp = over_brackets([Quantity.exact(value) for value in middle])
+    same = over_realizations(middle)
+    assert sharp.value == same.value and (sharp.low, sharp.high) == pytest.approx((same.low, same.high), abs=0.02)
+    wide = over_brackets([Quantity.bracket(value - 0.1, value + 0.1) for value in middle])
+    assert (wide.value, wide.low, wide.high) == pytest.approx((sharp.value, sharp.low - 0.1, sharp.high + 0.1))
+    assert wide.kind == "confidence"
+    # the larger half has no upper end, so neither has the interval; a few do not matter
+    order = np.sort(middle)
+    open_ends = [Quantity.bracket(value, NAN if value > order[20] else value) for value in order]
+    assert not over_brackets(open_ends).happens and over_brackets(open_ends).low == pytest.approx(sharp.low)
+    few = [Quantity.bracket(value, NAN if value > order[-3] else value) for value in order]
+    assert over_brackets(few).happens
+    with pytest.raises(NotMeasured, match="2 realizations"):
+        over_brackets(few[:2])
 
 
 def test_every_word_is_used_and_no_other(good):

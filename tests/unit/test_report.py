@@ -19,7 +19,7 @@ from granular_response.paper import groups, report
 from granular_response.paper.claims import table as claims
 from granular_response.paper.claims.claim import Data
 from granular_response.paper.groups.sensitivity import simulate as sensitivity
-from granular_response.paper.report import against, benchmarks, explorer, pictures, readings
+from granular_response.paper.report import against, benchmarks, beyond, explorer, pictures, readings
 from granular_response.paper.report.typeset import typeset
 from granular_response.store import files as store
 from granular_response.store import generated
@@ -281,6 +281,16 @@ def test_the_document_holds_the_parameters_of_the_stored_datasets():
         pytest.skip(f"not simulated yet: {', '.join(sorted(missing))}")
     text = (ROOT / "docs" / "figures.md").read_text()
     assert generated.replace(text, against.BLOCK, against.markdown(ROOT / "data")) == text, "make quote"
+
+
+@pytest.mark.parametrize("group", beyond.BLOCKS)
+def test_the_document_beyond_the_paper_holds_the_stored_tables(group):
+    stored = ROOT / "data" / f"{group}.nc"
+    if not stored.exists():
+        pytest.skip(f"not simulated yet: {group}")
+    text = (ROOT / "docs" / "beyond.md").read_text()
+    lines = "\n".join(beyond.BLOCKS[group](store.read(stored)))
+    assert generated.replace(text, group, lines) == text, "make quote"
 
 
 def test_every_figure_with_parameters_stands_beside_its_caption():

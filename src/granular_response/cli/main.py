@@ -445,17 +445,23 @@ def report(
         Path | None,
         typer.Option(help="Renew the table of the captions' parameters in this file.", show_default=False),
     ] = None,
+    beyond: Annotated[
+        Path | None,
+        typer.Option(help="Renew the tables of groups beyond the paper in this file.", show_default=False),
+    ] = None,
 ) -> None:
     """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
     from ..paper import report as reporting
 
     _loaded()
 
-    typer.echo(str(reporting.write(output, root, keep=[file for file in (notes, figures) if file])))
+    typer.echo(str(reporting.write(output, root, keep=[file for file in (notes, figures, beyond) if file])))
     if notes is not None:
         reporting.renew_notes(notes, root)
     if figures is not None:
         reporting.renew_figures(figures, root)
+    if beyond is not None:
+        reporting.renew_beyond(beyond, root)
 
 
 @app.command(

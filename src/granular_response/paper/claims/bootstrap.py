@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,3 +28,22 @@ def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Qu
     picked = np.random.default_rng(0).integers(0, found.size, (DRAWS, found.size))
     low, high = np.quantile(statistic(found[picked], axis=1), [0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE])
     return Quantity(float(statistic(found, axis=0)), float(low), float(high), "confidence")
+
+
+def over_brackets(each: Sequence[Quantity]) -> Quantity:
+    """Median of realizations of which each is known within an interval of its own, some without an upper end.
+
+    The interval is that of the draws, from the medians of lower ends to those of upper ends: it holds what realizations
+    differ by and what is not known of each.
+
+    Raises NotMeasured with fewer than three.
+    """
+    if len(each) < 3:
+        raise NotMeasured(f"{len(each)} realizations: an interval needs three or more")
+    low, high = (np.array([getattr(one, end) for one in each]) for end in ("low", "high"))
+    middle = float(np.median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each]))
+    picked = np.random.default_rng(0).integers(0, len(each), (DRAWS, len(each)))
+    least, most = (np.median(ends[picked], axis=1) for ends in (low, high))
+    lowest = np.quantile(least, 0.5 * OUTSIDE, method="inverted_cdf")
+    highest = np.quantile(most, 1.0 - 0.5 * OUTSIDE, method="inverted_cdf")
+    return Quantity(middle if np.isfinite(middle) else float("nan"), float(lowest), float(highest), "confidence")

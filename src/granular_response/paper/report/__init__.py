@@ -20,7 +20,7 @@ from granular_response import __version__
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
-from . import against, benchmarks, explorer, pictures, readings
+from . import against, benchmarks, beyond, explorer, pictures, readings
 from .typeset import typeset
 
 #: Where the page is kept.
@@ -30,7 +30,7 @@ OUTPUT = Path("figures") / "report.html"
 EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
 SENSITIVITY = "sensitivity"
 
-__all__ = ["OUTPUT", "ReportError", "page", "renew_figures", "renew_notes", "write"]
+__all__ = ["OUTPUT", "ReportError", "page", "renew_beyond", "renew_figures", "renew_notes", "write"]
 
 
 class ReportError(Exception):
@@ -94,6 +94,20 @@ def renew_figures(document: str | os.PathLike[str], root: str | os.PathLike[str]
     except ValueError as error:
         raise ReportError(str(error)) from None
     generated.renew(document, against.BLOCK, lines)
+
+
+def renew_beyond(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the tables of groups beyond the paper in ``document`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    granular_response.generated.GeneratedError
+        If the file cannot be read or has no place for a table.
+    granular_response.store.StoreError
+        If a dataset is missing or cannot be read.
+    """
+    for group, lines in beyond.BLOCKS.items():
+        generated.renew(document, group, "\n".join(lines(store.read(Path(root) / "data" / f"{group}.nc"))))
 
 
 def page(root: Path, folder: Path | None = None) -> str:

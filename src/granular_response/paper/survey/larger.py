@@ -23,7 +23,7 @@ from granular_response.store import files as store
 from granular_response.sweeps.tasks import Progress, map_tasks
 
 #: Groups with packings of this kind.
-GROUPS = ("peak_width", "moduli")
+GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
 #: The sources that a packing depends on, beside the ``simulate.py`` of its group.
 SOURCES = ("contact", "kernels", "machine", "observe", "scene", "solve", "state", "theory")
 

@@ -18,6 +18,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     frictions = sorted(set(slabs["friction"].values.tolist()))
     said = of_scene(parameters.base, friction=frictions, normal_stiffness=None, packing=None)
     stiffness = values(parameters.series[0].stiffness_per_layer)
+    deep = {layers for one in parameters.series for layers in one.surveyed}
+    survey = " Black edges: slabs of the survey, simulated apart from the pipeline." if deep else ""
     return {
         "crossover_scaling": Caption(
             "Not in the paper: what the number of layers N does. (a) Force from which the floor response has two "
@@ -26,7 +28,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "are brackets; lines and numbers powers of N, with the range over the fits with and without the smallest "
             "slab and over the brackets. P is the force of horizontal contacts at rest: constant, in proportion to N "
             "as the weight, or what the paper's walls make it. Periodic sides but where walls are named; "
-            f"{layers} layers; k_N = {stiffness} N, so that gravity makes the same overlaps in all.",
+            f"{layers} layers; k_N = {stiffness} N, so that gravity makes the same overlaps in all.{survey}",
             "Double logarithmic panels. Two peaks come along straight lines, about twice as steep with friction as "
             "without; the region's lines are as steep where P grows with N; the first opening rises least.",
             said,

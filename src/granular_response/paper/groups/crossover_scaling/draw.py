@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,14 @@ from granular_response.plot import style
 
 #: Height of a row of the lattice (radii).
 ROW = float(np.sqrt(3.0))
+
+#: Over symbols of slabs of the survey.
+SURVEYED: dict[str, Any] = {
+    "markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.9, "zorder": 3,
+}  # fmt: skip
+
+#: Least ratio of numbers of layers that are labelled.
+NEXT_LABEL = 1.25
 
 #: Events of the first figure.
 NAMES = {
@@ -81,11 +89,13 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             power, least, largest = powers["exponent"].isel(series=series).sel(event=event).values
             label = f"{said(power)} ({said(least)} to {said(largest)})"
             axes.errorbar(layers, middle, half, capsize=2, label=label, **_symbol(look))
+            stored = one["surveyed"].values > 0
+            axes.plot(layers[stored], middle[stored], **_symbol(look) | SURVEYED)
             ends = np.array([layers.min(), layers.max()])
             through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
             axes.plot(ends, through, color=_symbol(look)["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
         axes.set(xscale="log", yscale="log", xlabel="layers $N$", ylabel=style.FORCE)
-        _plain(axes, sorted(set(slabs["layers"].values.tolist())))
+        _plain(axes, apart(slabs["layers"].values.tolist()))
         low, high = axes.get_ylim()
         axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
         axes.legend(loc="upper left", title="power of $N$", fontsize=7, ncols=2, columnspacing=1.0)
@@ -100,6 +110,15 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
 
 def _symbol(look: int) -> dict[str, Any]:
     return style.marked_line(look) | {"linestyle": "none", "markersize": 4.5}
+
+
+def apart(layers: Iterable[int]) -> list[int]:
+    """Of ``layers`` those whose labels do not meet on a logarithmic axis, from the least on."""
+    chosen: list[int] = []
+    for number in sorted(set(layers)):
+        if not chosen or number > NEXT_LABEL * chosen[-1]:
+            chosen.append(number)
+    return chosen
 
 
 def _plain(axes: Axes, ticks: list[int]) -> None:

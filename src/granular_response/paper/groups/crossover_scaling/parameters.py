@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Growing, SceneGroup, growing, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Growing, Path, SceneGroup, growing, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive, Ratio, Sides, allowed
 from granular_response.scene.errors import Problem
@@ -32,6 +32,9 @@ class Series(Description):
     friction: Ratio = Field(description="Between disks; floor and walls are smooth.")
     sides: Sides = "periodic"
     layers: Layers = Field(description="Odd, so that a disk of the floor is below the loaded one.")
+    surveyed: tuple[Annotated[int, Field(strict=True, ge=5)], ...] = Field(
+        (), description="Further numbers of layers, growing on, that the survey simulates."
+    )
     disks_per_layer: Growing = Field(
         (3.0,), description="Disks in a row over layers; rows have the next odd number, for a disk in the middle."
     )
@@ -46,9 +49,14 @@ class Series(Description):
 
     @model_validator(mode="after")
     def _check(self) -> Series:
-        if any(layers % 2 == 0 for layers in self.layers):
-            raise Problem("must be odd", key=("layers",), value=list(self.layers))
-        several = [name for name in VARIED if len(getattr(self, name)) > 1]
+        for key, numbers in (("layers", self.layers), ("surveyed", self.heights)):
+            if any(layers % 2 == 0 for layers in numbers):
+                raise Problem("must be odd", key=(key,), value=list(getattr(self, key)))
+        try:
+            growing(self.heights)
+        except Problem:
+            raise Problem("must be growing numbers", key=("surveyed",), value=list(self.surveyed)) from None
+        several = [name for name in VARIED if self._several(name)]
         if len(several) != 1:
             raise Problem(f"must have several entries in one of {', '.join(VARIED)}", key=("name",), value=self.name)
         return self
@@ -56,7 +64,15 @@ class Series(Description):
     @property
     def varied(self) -> str:
         """The quantity that has several entries."""
-        return next(name for name in VARIED if len(getattr(self, name)) > 1)
+        return next(name for name in VARIED if self._several(name))
+
+    @property
+    def heights(self) -> tuple[int, ...]:
+        """All numbers of layers."""
+        return (*self.layers, *self.surveyed)
+
+    def _several(self, name: str) -> bool:
+        return len(self.heights if name == "layers" else getattr(self, name)) > 1
 
 
 def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
@@ -87,16 +103,23 @@ class Parameters(SceneGroup):
     series: Annotated[tuple[Series, ...], AfterValidator(some), AfterValidator(_different_names)] = Field(
         description="Slabs that are compared."
     )
+    survey_file: Path | None = Field(None, description="Stored slabs of the survey.")
     visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
     first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
     factor: Annotated[float, Field(strict=True, gt=1, le=2), allowed("must be a number above 1, at most 2")] = Field(
-        description="Each force over the one before, up to the crossover."
+        description="Each force over the one before, without friction; with friction they are one increment apart."
     )
     most_forces: Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")] = Field(
         description="Forces after which a slab is given up."
     )
-    increment: Annotated[float, Field(strict=True, gt=0, le=1), allowed("must be a number above 0, at most 1")] = Field(
+    increment: Annotated[float, Field(strict=True, gt=0, lt=1), allowed("must be a number above 0, below 1")] = Field(
         description="Longest increment of a path with friction, as a part of the force at its end."
     )
     tolerance: Positive = Field(description="Width of brackets, per force.")
     extrapolated: Positive = Field(description="Layers to which crossovers are extrapolated.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Parameters:
+        if self.survey_file is None and any(one.surveyed for one in self.series):
+            raise Problem("is missing, must name the slabs of the survey", key=("survey_file",), value=None)
+        return self

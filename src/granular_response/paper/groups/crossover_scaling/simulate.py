@@ -11,13 +11,15 @@ between the paper's walls, or grows with the weight as well.
 Forces grow by one factor until the response has two peaks and the region of open contacts has reached the floor; events
 are then narrowed by bisection. Without friction every state is a minimum of the energy. With friction it is the end of
 a path, in increments in proportion to the force: what happens at a size happens over a stretch of forces in proportion
-to its own.
+to its own; each increment ends at a force that is looked at.
+
+The deepest slabs are simulated by the survey (:mod:`granular_response.paper.survey.larger`), as the others are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import astuple, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -27,10 +29,11 @@ from numpy.typing import NDArray
 from granular_response.observe import network
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.crossover_scaling.parameters import VARIED, Parameters, Series
-from granular_response.paper.slab_response import Event, LoadPath, Measures, locate
+from granular_response.paper.slab_response import LoadPath, Measures, locate
+from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Scene
 from granular_response.solve.path import follow
-from granular_response.state import Crossing, State
+from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import Progress, map_tasks
 
@@ -60,6 +63,11 @@ class Slab:
     normal_stiffness: float
     confinement: float  #: asked for; of no meaning between walls
     periodic: bool
+
+    @property
+    def key(self) -> Key:
+        """As :data:`STORED` names it."""
+        return astuple(self)
 
     def scene(self, base: Scene) -> Scene:
         """``base`` with this slab; between walls disks just touch, as in the paper."""
@@ -114,13 +122,46 @@ class Outcome:
 
     confinement: float  #: mean force of horizontal contacts in the central third, at rest
     linear_opening: float  #: force at which the first contact would open, by their answers to a small force
-    events: dict[str, Event]
+    brackets: FloatArray  #: (event, 2) of EVENTS; nan above for what was not seen
+    crossings: float  #: stretches of the path that dynamics crossed
     force: FloatArray
     dip: FloatArray
     depth: FloatArray
     width: FloatArray
     opened: FloatArray
-    crossings: tuple[Crossing, ...]
+
+
+#: What is measured at each force, with long names.
+MEASURED = {
+    "force": f"applied force {FORCE}",
+    "dip": "how far the response at x = 0 is below the lower maximum beside it, per largest response",
+    "depth": f"depth of the region of opened contacts below the loaded disk {LENGTH}",
+    "width": f"largest width of the region of opened contacts {LENGTH}",
+    "opened": "contacts of the region",
+}
+CONFINEMENT = f"mean force of horizontal contacts in the central third at rest {FORCE}"
+LINEAR_OPENING = f"force {FORCE} at which the first contact would open if contacts went on as under a small one"
+CROSSINGS = "stretches of the path that dynamics crossed"
+
+#: How the survey stores slabs.
+STORED = Layout(
+    Outcome,
+    {
+        "layers": "number of rows of the slab",
+        "disks_per_row": "disks in the bottom row",
+        "friction": "coefficient of friction between disks",
+        "normal_stiffness": "normal stiffness of contacts in mean weights per mean radius",
+        "asked_confinement": f"force of horizontal contacts that is asked for {FORCE}",
+        "periodic": "1 for periodic sides, 0 for walls",
+    },
+    {
+        "confinement": ((), CONFINEMENT),
+        "linear_opening": ((), LINEAR_OPENING),
+        "brackets": (("event", "bracket"), f"forces {FORCE} between which: {'; '.join(EVENTS.values())}"),
+        "crossings": ((), CROSSINGS),
+        **{name: (("line",), text) for name, text in MEASURED.items()},
+    },
+)
 
 
 def compute(task: Task) -> Outcome:
@@ -141,27 +182,28 @@ def compute(task: Task) -> Outcome:
     }
     forces: list[float] = []
     left = set(happened)
+    factor = 1.0 / (1.0 - task.increment) if task.slab.friction else task.factor
     while left and len(forces) < task.most_forces:
-        forces.append(confinement * task.first_force * task.factor ** len(forces))
+        forces.append(confinement * task.first_force * factor ** len(forces))
         state = path.at(forces[-1])
         left = {name for name in left if not happened[name](state)}
     states = path.through(forces)
-    crossings = tuple(path.crossings)
-    found = {
-        name: locate(name, path, forces, happened[name], task.tolerance * _first(forces, states, happened[name]), text)
+    crossings = float(len(path.crossings))
+    found = [
+        locate(name, path, forces, happened[name], task.tolerance * _first(forces, states, happened[name]), text)
         for name, text in EVENTS.items()
-    }
+    ]
     regions = [measures.region(state) for state in states]
     return Outcome(
         confinement,
         linear_opening(measures, path.at(SMALL * confinement)),
-        found,
+        np.array([(event.low, event.high) for event in found]),
+        crossings,
         np.array(forces),
         np.array([measures.dip(state) for state in states]),
         np.array([region.depth for region in regions]),
         np.array([region.width for region in regions]),
         np.array([region.count for region in regions], float),
-        crossings,
     )
 
 
@@ -253,12 +295,15 @@ def simulate(
         If a slab cannot be solved.
     """
     found = slabs(parameters)
+    stored = _surveyed(parameters)
     # the longest first, so that no worker is left with one at the end
-    order = sorted(dict.fromkeys(slab for _, slab in found), key=_work, reverse=True)
+    order = sorted({slab for _, slab in found if slab not in stored}, key=_work, reverse=True)
     tasks = [_task(slab, parameters) for slab in order]
     done = dict(zip(order, map_tasks(compute, tasks, workers=workers, progress=progress, what="slabs"), strict=True))
+    keys = [slab.key for slab in stored]
+    done |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
     outcomes = [done[slab] for _, slab in found]
-    table = slab_table(found, outcomes)
+    table = slab_table(found, outcomes, stored)
     table.attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
     return labelled(
         {"slabs": table, "paths": path_table(outcomes), "powers": power_table(table, parameters)}, parameters.base
@@ -280,11 +325,22 @@ def slabs(parameters: Parameters) -> list[tuple[str, Slab]]:
             ),
         )
         for series in parameters.series
-        for layers in series.layers
+        for layers in series.heights
         for across in series.disks_per_layer
         for stiffness in series.stiffness_per_layer
         for confinement in series.confinement
     ]
+
+
+def _surveyed(parameters: Parameters) -> dict[Slab, None]:
+    """The slabs that are left to the survey."""
+    deep = {series.name: series.surveyed for series in parameters.series}
+    return dict.fromkeys(slab for name, slab in slabs(parameters) if slab.layers in deep[name])
+
+
+def survey(parameters: Parameters) -> dict[Key, Task]:
+    """The tasks of these slabs."""
+    return {slab.key: _task(slab, parameters) for slab in _surveyed(parameters)}
 
 
 def _odd(number: float) -> int:
@@ -310,7 +366,9 @@ def _task(slab: Slab, parameters: Parameters) -> Task:
     )
 
 
-def slab_table(found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome]) -> xr.Dataset:
+def slab_table(
+    found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome], stored: Collection[Slab] = ()
+) -> xr.Dataset:
     """What each slab is, and its events."""
 
     def column(values: list, text: str) -> xr.Variable:
@@ -319,43 +377,30 @@ def slab_table(found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome]) -
     data = {
         f"{name}_bracket": variable(
             ("slab", "bracket"),
-            np.array([(o.events[name].low, o.events[name].high) for o in outcomes]),
+            np.array([o.brackets[k] for o in outcomes]),
             f"forces {FORCE} between which: {text}; nan if not up to the first",
         )
-        for name, text in EVENTS.items()
+        for k, (name, text) in enumerate(EVENTS.items())
     }
-    data["linear_opening"] = column(
-        [o.linear_opening for o in outcomes],
-        f"force {FORCE} at which the first contact would open if contacts went on as under a small one",
-    )
-    data["confinement"] = column(
-        [o.confinement for o in outcomes], f"mean force of horizontal contacts in the central third at rest {FORCE}"
-    )
-    data["crossings"] = column([len(o.crossings) for o in outcomes], "stretches of the path that dynamics crossed")
+    data["linear_opening"] = column([o.linear_opening for o in outcomes], LINEAR_OPENING)
+    data["confinement"] = column([o.confinement for o in outcomes], CONFINEMENT)
+    data["crossings"] = column([o.crossings for o in outcomes], CROSSINGS)
     each = [slab for _, slab in found]
-    return xr.Dataset(data).assign_coords(
-        series=column([name for name, _ in found], "series"),
-        layers=column([s.layers for s in each], "number of rows of the slab"),
-        disks_per_row=column([s.disks_per_row for s in each], "disks in the bottom row"),
-        friction=column([s.friction for s in each], "coefficient of friction between disks"),
-        normal_stiffness=column(
-            [s.normal_stiffness for s in each], "normal stiffness of contacts in mean weights per mean radius"
-        ),
-        periodic=column([int(s.periodic) for s in each], "1 for periodic sides, 0 for walls"),
-        bracket=variable(("bracket",), np.array(["low", "high"]), "ends of a bracket"),
-    )
+    coordinates = {
+        name: column([getattr(slab, name) for slab in each], STORED.keys[name])
+        for name in ("layers", "disks_per_row", "friction", "normal_stiffness")
+    } | {
+        "series": column([name for name, _ in found], "series"),
+        "periodic": column([int(slab.periodic) for slab in each], STORED.keys["periodic"]),
+        "surveyed": column([int(slab in stored) for slab in each], "1 for slabs of the survey"),
+        "bracket": variable(("bracket",), np.array(["low", "high"]), "ends of a bracket"),
+    }
+    return xr.Dataset(data).assign_coords(coordinates)
 
 
 def path_table(outcomes: Sequence[Outcome]) -> xr.Dataset:
     """What is measured at the forces of each slab; nan beyond its last one."""
     steps = max(len(o.force) for o in outcomes)
-    texts = {
-        "force": f"applied force {FORCE}",
-        "dip": "how far the response at x = 0 is below the lower maximum beside it, per largest response",
-        "depth": f"depth of the region of opened contacts below the loaded disk {LENGTH}",
-        "width": f"largest width of the region of opened contacts {LENGTH}",
-        "opened": "contacts of the region",
-    }
 
     def padded(values: FloatArray) -> FloatArray:
         return np.concatenate([values, np.full(steps - len(values), np.nan)])
@@ -363,7 +408,7 @@ def path_table(outcomes: Sequence[Outcome]) -> xr.Dataset:
     return xr.Dataset(
         {
             name: variable(("slab", "step"), np.stack([padded(getattr(o, name)) for o in outcomes]), text)
-            for name, text in texts.items()
+            for name, text in MEASURED.items()
         }
     )
 

@@ -17,7 +17,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     curves = datasets["curves"]
     cases, one = looped(curves["polydispersity"].values, curves["friction"].values)
     lattices = [parameters.cases[case] for case in cases]
-    most = max(case.realizations for case in parameters.cases)
+    most = max(case.realizations + case.surveyed for case in parameters.cases)
+    further = max(case.surveyed for case in parameters.cases)
+    survey = f", {further} of which the survey has simulated" if further else ""
     part = f"{100.0 * parameters.left:g} %"
     said = of_scene(parameters.base, friction=None, polydispersity=None)
     return {
@@ -37,7 +39,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "loading. Means over realizations of packings with friction; what is less than the axis shows is drawn on "
             "its end. (c) Forces up to which no contact near the load opens, the response at x = 0 is linear within "
             f"1 %, and a loop leaves less than {part} on the floor: medians and extremes over up to {most} "
-            "realizations. Open symbols with arrows: beyond the largest force in some of them.",
+            f"realizations{survey}. Open symbols with arrows: beyond the largest force in some of them.",
             "Two double logarithmic panels with rising curves, and a panel with a row for each packing in which three "
             "symbols mark forces: without friction the reversible range mostly has no end.",
             said | {"friction": sorted({case.friction for case in parameters.cases})},

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from ...claims.bootstrap import over_realizations
+from ...claims.bootstrap import over_brackets, over_realizations
 from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
 from ...claims.words import Bounds
 
@@ -21,12 +21,11 @@ def _name(case: xr.Dataset) -> str:
 
 
 def over_packings(each: Sequence[Quantity]) -> Quantity:
-    """One packing as it is; of several the median with its interval, or where they are few or some are bounds, what
-    they span."""
+    """One packing as it is; of several the median with its interval, of two what they span."""
     if len(each) == 1:
         return each[0]
-    if len(each) >= FEWEST and all(one.happens for one in each):
-        return over_realizations([one.value for one in each])
+    if len(each) >= FEWEST:
+        return over_brackets(each)
     middle = float(np.median([one.value for one in each]))
     return Quantity(middle, min(one.low for one in each), max(one.high for one in each), "range")
 
@@ -44,9 +43,9 @@ def ranges(data: Data, words: Bounds) -> Finding:
         each = [
             Quantity.bracket(*reversible).per(Quantity.bracket(*linear))
             for reversible, linear in zip(brackets["reversible_range"], brackets["linear_range"], strict=True)
-            if np.isfinite(linear).all()
+            if np.isfinite(linear[0])  # a realization that is there
         ]
-        if not each:
+        if not np.isfinite(brackets["linear_range"]).all(axis=1).any():
             continue
         found = over_packings(each)
         ends[bool(one["friction"] > 0.0)].append(found)

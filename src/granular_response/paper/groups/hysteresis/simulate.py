@@ -26,6 +26,7 @@ from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.hysteresis.parameters import Parameters
 from granular_response.paper.slab_response import LINEARITY, Event, LoadPath, Measures, first_change, locate
+from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states
 from granular_response.solve.work import slid, stored, work
@@ -37,7 +38,11 @@ FloatArray = NDArray[np.float64]
 
 #: The three ways of a loop, in turn.
 BRANCHES = ("loading", "unloading", "loading again")
-EVENTS = ("first_opening", "linear_range", "reversible_range")
+EVENTS = {
+    "first_opening": "a contact of disks in the central third of the slab is open that touches at rest",
+    "linear_range": f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at the smallest force",
+    "reversible_range": "unloading leaves a floor force changed by more than the part left of the largest change",
+}
 ENERGY = "in mean disk weight times mean radius"
 
 #: What is measured at each force at which the load turns, with long names.
@@ -77,12 +82,34 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Outcome:
-    measured: dict[str, FloatArray]  #: MEASURED, each (turn,)
-    events: tuple[Event, ...]  #: EVENTS
+class Shown:
+    """What is drawn of the first packing of a case."""
+
     curve: FloatArray  #: (branch, point, 2) load and displacement of the loop to the largest force
     floor: FloatArray  #: (3, disk) floor forces added: by the load, left after it, by the second load
     x: FloatArray  #: (disk,)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    measured: FloatArray  #: (turn, quantity) of MEASURED
+    brackets: FloatArray  #: (event, 2) of EVENTS
+    shown: Shown | None = None  #: not of the survey's
+
+
+#: How the survey stores packings.
+STORED = Layout(
+    Outcome,
+    {
+        "polydispersity": "polydispersity",
+        "friction": "friction between disks",
+        "realization": "realization of the disorder",
+    },
+    {
+        "measured": (("line", "quantity"), "; ".join(MEASURED.values())),
+        "brackets": (("event", "bracket"), f"forces {FORCE} before and at: {', '.join(EVENTS)}; nan: not up to low"),
+    },
+)
 
 
 @dataclass(frozen=True)
@@ -162,6 +189,8 @@ class Packing:
         self.measures = Measures(self.path)
         self.problem = self.path.problem
         self.disk = int(self.problem.load_disk[0])
+        #: by force, what a loop to it leaves
+        self.known_left: dict[float, float] = {}
 
     def added(self, state: State) -> FloatArray:
         """(disk,) floor forces that are not there at rest."""
@@ -192,30 +221,31 @@ class Packing:
         """Largest change of a floor force that is left, per largest change under the load."""
         return float(np.abs(self.added(unloaded)).max() / np.abs(self.added(loaded)).max())
 
+    def left_by(self, state: State) -> float:
+        """The same for the way from ``state`` to no load; known ones are not gone again."""
+        force = state.load_factor
+        if force not in self.known_left:
+            self.known_left[force] = self.left(state, self.after(state, [0.0])[0])
+        return self.known_left[force]
+
     def events(self) -> tuple[Event, ...]:
         """See the module."""
         task, forces = self.task, self.task.forces
+        passed = sorted(self.path.known)
         linear = self.centre(self.path.known[forces[0]])
-        asked: dict[str, tuple[Callable[[State], bool], str]] = {
-            "first_opening": (
-                lambda state: bool(self.opened(state).any()),
-                "a contact of disks in the central third of the slab is open that touches at rest",
-            ),
-            "linear_range": (
-                lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY,
-                f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {forces[0]:g}",
-            ),
-            "reversible_range": (
-                lambda state: self.left(state, self.after(state, [0.0])[0]) > task.left,
-                f"unloading leaves a floor force changed by more than {task.left:.0%} of the largest change",
-            ),
+        looked_at = {"first_opening": passed, "linear_range": passed[passed.index(forces[0]) :]}
+        asked: dict[str, Callable[[State], bool]] = {
+            "first_opening": lambda state: bool(self.opened(state).any()),
+            "linear_range": lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY,
+            "reversible_range": lambda state: self.left_by(state) > task.left,
         }
         found = []
         for name in EVENTS:
-            happened, definition = asked[name]
-            _, high = first_change(forces, [happened(self.path.known[force]) for force in forces])
+            happened = asked[name]
+            at = looked_at.get(name, forces)  # a loop is known of where the load turns alone
+            _, high = first_change(at, [happened(self.path.known[force]) for force in at])
             width = task.tolerance * high if np.isfinite(high) else np.inf
-            found.append(locate(name, self.path, forces, happened, width, definition))
+            found.append(locate(name, self.path, at, happened, width, EVENTS[name]))
         return tuple(found)
 
 
@@ -236,11 +266,12 @@ def compute(task: Task) -> Outcome:
         once, down, more = (keep_books(problem, branch) for branch in (up, back, again))
         loop, second_loop = once + down, down + more
         loaded, unloaded, second = states[turn], states[bottom], states[-1]
+        packing.known_left[force] = packing.left(loaded, unloaded)
         opened = states[0].pairs.touching & ~loaded.pairs.touching
         largest = np.abs(packing.added(loaded)).max()
         rows.append(
             {
-                "floor_left": packing.left(loaded, unloaded),
+                "floor_left": packing.known_left[force],
                 "floor_repeated": np.abs(packing.added(second) - packing.added(loaded)).max() / largest,
                 "displacement": packing.sunk(loaded),
                 "displacement_left": packing.sunk(unloaded),
@@ -264,12 +295,11 @@ def compute(task: Task) -> Outcome:
     curve = np.full((len(BRANCHES), len(loads), 2), np.nan)
     for b, branch in enumerate((up, back, again)):
         curve[b, : len(branch)] = [(state.load_factor, packing.sunk(state)) for state in branch]
+    added = np.stack([packing.added(state) for state in (loaded, unloaded, second)])
     return Outcome(
-        {name: np.array([float(row[name]) for row in rows]) for name in MEASURED},
-        packing.events(),
-        curve,
-        np.stack([packing.added(state) for state in (loaded, unloaded, second)]),
-        packing.measures.x,
+        np.array([[float(row[name]) for name in MEASURED] for row in rows]),
+        np.array([(event.low, event.high) for event in packing.events()]),
+        Shown(curve, added, packing.measures.x),
     )
 
 
@@ -279,23 +309,16 @@ def simulate(
     """Datasets ``loops`` (case, realization, turn), ``events`` (case, realization, event), ``curves`` and ``floor``."""
     cases = parameters.cases
     places = [(c, r) for c, case in enumerate(cases) for r in range(case.realizations)]
-    tasks = [
-        Task(
-            parameters.of(cases[c], r),
-            cases[c].forces,
-            cases[c].increments,
-            parameters.left,
-            parameters.width if cases[c].polydispersity else 0.0,
-            parameters.tolerance,
-        )
-        for c, r in places
-    ]
-    # the longest ones first
-    order = sorted(range(len(tasks)), key=lambda k: -tasks[k].forces[-1] * (tasks[k].scene.contact.friction > 0.0))
-    done = map_tasks(compute, [tasks[k] for k in order], workers=workers, progress=progress, what="packings")
-    outcomes = dict(zip([places[k] for k in order], done, strict=True))
+    tasks = {place: _task(parameters, *place) for place in places}
+    # the longest ones first, so that no worker is left with one at the end
+    order = sorted(places, key=lambda place: -_work(tasks[place]))
+    done = map_tasks(compute, [tasks[place] for place in order], workers=workers, progress=progress, what="packings")
+    outcomes = dict(zip(order, done, strict=True))
+    stored = _surveyed(parameters)
+    keys = [key(parameters, *place) for place in stored]
+    outcomes |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
 
-    realizations = max(case.realizations for case in cases)
+    realizations = max(case.realizations + case.surveyed for case in cases)
     turns = max(len(case.forces) for case in cases)
     force = np.full((len(cases), turns), np.nan)
     measured = {name: np.full((len(cases), realizations, turns), np.nan) for name in MEASURED}
@@ -303,10 +326,9 @@ def simulate(
     for c, case in enumerate(cases):
         force[c, : len(case.forces)] = case.forces
     for place, outcome in outcomes.items():
-        for name, values in outcome.measured.items():
+        for name, values in zip(MEASURED, outcome.measured.T, strict=True):
             measured[name][(*place, slice(len(values)))] = values
-        low[place] = [event.low for event in outcome.events]
-        high[place] = [event.high for event in outcome.events]
+        low[place], high[place] = outcome.brackets.T
     coordinates = {
         "polydispersity": variable("case", [case.polydispersity for case in cases], "polydispersity"),
         "friction": variable("case", [case.friction for case in cases], "friction between disks"),
@@ -325,28 +347,60 @@ def simulate(
             "high": variable(
                 (*along[:2], "event"), high, f"force at which it has happened {FORCE}; nan: not up to low"
             ),
-            "definition": variable(
-                "event", [event.definition for event in outcomes[places[0]].events], "what counts as the event"
-            ),
+            "definition": variable("event", list(EVENTS.values()), "what counts as the event"),
         },
         coords=coordinates | {"event": variable("event", list(EVENTS), "what happens")},
     )
     events.attrs["left"] = parameters.left
-    shown = [outcomes[c, 0] for c in range(len(cases))]
-    return labelled({"loops": loops, "events": events, **_shown(shown, coordinates)}, parameters.base)
+    first = [outcomes[c, 0].shown for c in range(len(cases))]
+    shown = _shown([one for one in first if one is not None], coordinates)
+    return labelled({"loops": loops, "events": events, **shown}, parameters.base)
 
 
-def _shown(shown: Sequence[Outcome], coordinates: dict[str, xr.Variable]) -> dict[str, xr.Dataset]:
+def _surveyed(parameters: Parameters) -> list[tuple[int, int]]:
+    """Places of the packings that are left to the survey: of the case, and the realization."""
+    return [(c, case.realizations + more) for c, case in enumerate(parameters.cases) for more in range(case.surveyed)]
+
+
+def key(parameters: Parameters, c: int, r: int) -> Key:
+    """What tells a packing from others, as :data:`STORED` names it."""
+    case = parameters.cases[c]
+    return case.polydispersity, case.friction, r
+
+
+def survey(parameters: Parameters) -> dict[Key, Task]:
+    """The packings that are left to the survey."""
+    return {key(parameters, *place): _task(parameters, *place) for place in _surveyed(parameters)}
+
+
+def _task(parameters: Parameters, c: int, r: int) -> Task:
+    case = parameters.cases[c]
+    return Task(
+        parameters.of(case, r),
+        case.forces,
+        case.increments,
+        parameters.left,
+        parameters.width if case.polydispersity else 0.0,
+        parameters.tolerance,
+    )
+
+
+def _work(task: Task) -> float:
+    """Roughly how long a packing takes: friction, then how far it is loaded."""
+    return task.forces[-1] * (1.0 + 10.0 * (task.scene.contact.friction > 0.0))
+
+
+def _shown(shown: Sequence[Shown], coordinates: dict[str, xr.Variable]) -> dict[str, xr.Dataset]:
     """The loop to the largest force of the first packing of each case."""
-    points = max(outcome.curve.shape[1] for outcome in shown)
-    disks = max(len(outcome.x) for outcome in shown)
+    points = max(one.curve.shape[1] for one in shown)
+    disks = max(len(one.x) for one in shown)
     curves = np.full((len(shown), len(BRANCHES), points, 2), np.nan)
     floor = np.full((len(shown), len(BRANCHES), disks), np.nan)
     x = np.full((len(shown), disks), np.nan)
-    for c, outcome in enumerate(shown):
-        curves[c, :, : outcome.curve.shape[1]] = outcome.curve
-        floor[c, :, : len(outcome.x)] = outcome.floor
-        x[c, : len(outcome.x)] = outcome.x
+    for c, one in enumerate(shown):
+        curves[c, :, : one.curve.shape[1]] = one.curve
+        floor[c, :, : len(one.x)] = one.floor
+        x[c, : len(one.x)] = one.x
     branch = {"branch": variable("branch", list(BRANCHES), "way")}
     dims = ("case", "branch", "point")
     return {
