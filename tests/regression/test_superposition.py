@@ -9,6 +9,7 @@ from granular_response.paper.groups.superposition import simulate as study
 from granular_response.plot import style
 from granular_response.scene import Scene
 from granular_response.store import files as store
+from granular_response.sweeps.rest import rest_of
 
 PARAMETERS = reduced.parameters("superposition")
 CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
@@ -85,7 +86,7 @@ def test_stages_agree_with_the_protocol_of_the_paper(datasets) -> None:
     """Dynamics from rest to the force, in place of stages: a different history, nearly the same responses."""
     changes = {"protocol.method": "dynamics", "protocol.ramp_time": 20.0, "loads": []}
     scene = Scene().updated({**PARAMETERS["scene"], **changes})
-    pair = study.load_pair(study.Task(scene, study.settle(scene), 4, (0.2,)))
+    pair = study.load_pair(study.Task(scene, rest_of(scene), 4, (0.2,)))
     assert pair.by_dynamics.all()
     staged = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=0.2).values
     np.testing.assert_allclose(pair.response[0], staged, atol=0.01 * staged.max())

@@ -39,7 +39,10 @@ STARTS = {
             for module in ("parameters", "draw", "captions", "claims", "numbers")
         ),
     ],
-    "claims": ["granular_response.paper.claims.table"],
+    "claims": [
+        "granular_response.paper.claims.table",
+        *(f"granular_response.paper.groups.{name}.claims" for name in GROUPS),
+    ],
     "report": ["granular_response.paper.report"],
 }
 

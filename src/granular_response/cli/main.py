@@ -8,6 +8,7 @@ import io
 import os
 import sys
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -67,13 +68,22 @@ def _loaded() -> None:
 
 
 def _examples(*lines: str) -> str:
-    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+    return "\b\nExamples:\n" + "\n".join(f"  granular-response {line}" for line in lines)
+
+
+def _command(*examples: str, name: str | None = None) -> Callable[[Callable], Callable]:
+    """A command with examples of its arguments, as they follow the name of the program."""
+    return app.command(name, epilog=_examples(*examples))
 
 
 #: Part of a load, left out of balance, from which on a response is said to be rounded off.
 ROUNDED = 1e-3
 
 Group = Annotated[str, typer.Argument(help="Figure group.", show_default=False)]
+#: Folders and files that several commands take.
+StoredResult = Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)]
+ResultFile = Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)]
+LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
 AllowUnsettled = Annotated[
     bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not at rest.")
@@ -84,15 +94,22 @@ Threads = Annotated[
 ]
 
 
-def _check_solution(output: Path, solution: Solution, allow_unsettled: bool) -> None:
-    """What is stored stays, but states that are still moving are no success unless they were asked for."""
+def _keep(output: Path, solution: Solution, started: float, allow_unsettled: bool, said: str) -> None:
+    """Store a solution. States that are still moving are kept too, but no success unless they were asked for."""
+    import time
+
+    from ..store import files as store
+    from ..store.result import to_labelled
+
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
+    typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
     if solution.unsettled:
         typer.echo(f"granular-response: {output}: {solution.unsettled}", err=True)
         if not allow_unsettled:
             raise typer.Exit(1)
     elif solution.rounding > ROUNDED:
-        said = f"forces out of balance are {solution.rounding:.1g} of the smallest load: the response is rounded off"
-        typer.echo(f"granular-response: {output}: {said}; take larger loads", err=True)
+        off = f"forces out of balance are {solution.rounding:.1g} of the smallest load: the response is rounded off"
+        typer.echo(f"granular-response: {output}: {off}; take larger loads", err=True)
 
 
 def _print_version(asked: bool) -> None:
@@ -103,9 +120,9 @@ def _print_version(asked: bool) -> None:
 
 @app.callback(
     epilog=_examples(
-        "granular-response run examples/slab.yaml -o slab.nc",
-        "granular-response show slab.nc",
-        "granular-response simulate pile_dip && granular-response draw pile_dip",
+        "run examples/slab.yaml -o slab.nc",
+        "show slab.nc",
+        "simulate pile_dip && granular-response draw pile_dip",
     )
 )
 def start(
@@ -117,15 +134,10 @@ def start(
     """Quasi-static response of two-dimensional granular solids to a localized force."""
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response run examples/slab.yaml -o slab.nc",
-        "granular-response run scene.yaml -o scene-by-dynamics.nc --method dynamics",
-    )
-)
+@_command("run examples/slab.yaml -o slab.nc", "run scene.yaml -o scene-by-dynamics.nc --method dynamics")
 def run(
     scene: Annotated[Path, typer.Argument(help="Scene file (YAML).", show_default=False)],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
+    output: ResultFile,
     method: Annotated[
         str | None,
         typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path, stages or minimise."),
@@ -151,7 +163,6 @@ def run(
 
     from ..machine.threads import cores, using
     from ..solve import SOLVE_ERRORS, solve_scene
-    from ..store.result import to_labelled
 
     _loaded()
 
@@ -162,25 +173,21 @@ def run(
         if not str(error).startswith(str(scene)):
             error.args = (f"{scene}: {error}", *error.args[1:])
         raise
-    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
-    typer.echo(f"{output}: {solution.problem.n} disks, {time.perf_counter() - started:.1f} s")
-    _check_solution(output, solution, allow_unsettled)
+    _keep(output, solution, started, allow_unsettled, f"{solution.problem.n} disks")
 
 
-@app.command(
-    "continue",
-    epilog=_examples(
-        "granular-response continue slab.nc --to 2 -o slab-to-twice-the-load.nc",
-        "granular-response continue slab.nc --to 0.5 --to 0 -o slab-unloaded.nc",
-    ),
+@_command(
+    "continue slab.nc --to 2 -o slab-to-twice-the-load.nc",
+    "continue slab.nc --to 0.5 --to 0 -o slab-unloaded.nc",
+    name="continue",
 )
 def continue_(
-    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    result: StoredResult,
     to: Annotated[
         list[float],
         typer.Option(help="Multiple of the scene's loads to go to; repeated, up or down.", show_default=False),
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)],
+    output: ResultFile,
     folder: Annotated[Path, typer.Option(help="Folder of the scene file, for a packing from a table.")] = Path("."),
     threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
@@ -201,7 +208,7 @@ def continue_(
     from ..scene import SceneError
     from ..solve import continue_solution
     from ..store.checked import read_result
-    from ..store.result import ResultError, solution_from, to_labelled
+    from ..store.result import ResultError, solution_from
 
     _loaded()
 
@@ -213,19 +220,15 @@ def continue_(
             solution = continue_solution(solution, to, progress=progress)
     except (ResultError, SceneError) as error:
         raise ResultError(f"{result}: {error}") from error
-    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     factors = ", ".join(f"{factor:g}" for factor in solution.load_factors)
-    typer.echo(f"{output}: load factors {factors}, {time.perf_counter() - started:.1f} s")
-    _check_solution(output, solution, allow_unsettled)
+    _keep(output, solution, started, allow_unsettled, f"load factors {factors}")
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response simulate frictionless_crossover",
-        "granular-response simulate polydisperse_averages --workers 8",
-        "granular-response simulate phase_diagram --scheduler tcp://10.0.0.5:8786",
-        "granular-response simulate pile_dip --params other.yaml -o other.nc",
-    )
+@_command(
+    "simulate frictionless_crossover",
+    "simulate polydisperse_averages --workers 8",
+    "simulate phase_diagram --scheduler tcp://10.0.0.5:8786",
+    "simulate pile_dip --params other.yaml -o other.nc",
 )
 def simulate(
     group: Group,
@@ -261,12 +264,7 @@ def simulate(
     typer.echo(str(path))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response draw pile_dip",
-        "granular-response draw pile_dip --data other.nc -o other-figures",
-    )
-)
+@_command("draw pile_dip", "draw pile_dip --data other.nc -o other-figures")
 def draw(
     group: Group,
     data: GroupData = None,
@@ -283,12 +281,7 @@ def draw(
         typer.echo(str(path))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response measure pile_dip",
-        "granular-response measure pile_dip --data other.nc -o other.json",
-    )
-)
+@_command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
 def measure(
     group: Group,
     data: GroupData = None,
@@ -307,12 +300,7 @@ def measure(
     typer.echo(str(measuring.measure(group, data, output)))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response show slab.nc",
-        "granular-response show data/pile_dip.nc",
-    )
-)
+@_command("show slab.nc", "show data/pile_dip.nc")
 def show(
     file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).", show_default=False)],
 ) -> None:
@@ -330,15 +318,13 @@ def show(
         console.print(part, soft_wrap=isinstance(part, Text))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response plot slab.nc -o slab.pdf",
-        "granular-response plot slab.nc -o chains.png --what forces --scale percentile",
-        "granular-response plot slab.nc -o rest.png --what packing,forces --state 0",
-    )
+@_command(
+    "plot slab.nc -o slab.pdf",
+    "plot slab.nc -o chains.png --what forces --scale percentile",
+    "plot slab.nc -o rest.png --what packing,forces --state 0",
 )
 def plot(
-    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    result: StoredResult,
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture to make: .pdf, .png or .svg.")],
     what: Annotated[
         str, typer.Option(help="Pictures on the page, among response, forces, contacts, stress, packing.")
@@ -356,13 +342,7 @@ def plot(
     typer.echo(str(pictures.save(stored, output, what.split(","), state=state, scale=scale, inputs=[result])))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response keys",
-        "granular-response keys protocol",
-        "granular-response keys --page docs/scene-reference.md",
-    )
-)
+@_command("keys", "keys protocol", "keys --page docs/scene-reference.md")
 def keys(
     part: Annotated[str, typer.Argument(help="Beginning of the keys, such as contact.", show_default=False)] = "",
     page: Annotated[
@@ -378,14 +358,9 @@ def keys(
         scene_reference.renew(page)
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response export slab.nc -o slab.gsd",
-        "granular-response export slab.nc -o rest.vtu --state 0",
-    )
-)
+@_command("export slab.nc -o slab.gsd", "export slab.nc -o rest.vtu --state 0")
 def export(
-    result: Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)],
+    result: StoredResult,
     output: Annotated[Path, typer.Option("--output", "-o", help="File to make; its ending is the format.")],
     state: Annotated[int, typer.Option(help="State in a file of one state: 0 at rest, -1 the last one.")] = -1,
 ) -> None:
@@ -395,13 +370,7 @@ def export(
     typer.echo(str(exporting.export(result, output, state=state)))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response claims",
-        "granular-response claims --list",
-        "granular-response claims --readme README.md",
-    )
-)
+@_command("claims", "claims --list", "claims --readme README.md")
 def claims(
     data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
     output: Annotated[Path, typer.Option("--output", "-o", help="Table of claims (JSON).")] = Path(
@@ -428,13 +397,7 @@ def claims(
     typer.echo(judging.firmness(found))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response report",
-        "granular-response report -o page.html",
-        "granular-response report --notes docs/reproduction-notes.md --figures docs/figures.md",
-    )
-)
+@_command("report", "report -o page.html", "report --notes docs/reproduction-notes.md --figures docs/figures.md")
 def report(
     output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path("figures/report.html"),
     root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
@@ -464,12 +427,7 @@ def report(
         reporting.renew_beyond(beyond, root)
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response notebooks",
-        "granular-response notebooks pile_dip -o elsewhere",
-    )
-)
+@_command("notebooks", "notebooks pile_dip -o elsewhere")
 def notebooks(
     groups: Annotated[list[str] | None, typer.Argument(help="Figure groups; all of them if none is given.")] = None,
     params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
@@ -488,17 +446,12 @@ def notebooks(
         typer.echo(str(path))
 
 
-@app.command(
-    epilog=_examples(
-        "granular-response archive",
-        "granular-response archive -o slabs.zip",
-    )
-)
+@_command("archive", "archive -o slabs.zip")
 def archive(
     output: Annotated[Path, typer.Option("--output", "-o", help="Archive to make (RO-Crate, zip).")] = Path(
         f"granular-response-{__version__}.zip"
     ),
-    root: Annotated[Path, typer.Option(help="Folder with dvc.lock.")] = Path("."),
+    root: LockFolder = Path("."),
 ) -> None:
     """Archive the reproduction: datasets, figures, claims, sources and how each was made.
 
@@ -512,10 +465,10 @@ def archive(
     typer.echo(f"{output}: {len(names)} files, {output.stat().st_size / 1e6:.1f} MB")
 
 
-@app.command(epilog=_examples("granular-response restore granular-response-0.1.0.zip"))
+@_command("restore granular-response-0.1.0.zip")
 def restore(
     archive: Annotated[Path, typer.Argument(help="An archive of this project.", show_default=False)],
-    root: Annotated[Path, typer.Option(help="Folder with dvc.lock.")] = Path("."),
+    root: LockFolder = Path("."),
 ) -> None:
     """Take the datasets out of an archive, in place of computing them.
 
@@ -531,7 +484,7 @@ def restore(
     typer.echo(f"{archive}: {len(restored)} datasets restored, those there already are the same")
 
 
-@app.command(epilog=_examples("granular-response cite", "granular-response cite --bibtex >> references.bib"))
+@_command("cite", "cite --bibtex >> references.bib")
 def cite(
     bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
 ) -> None:
@@ -539,7 +492,7 @@ def cite(
     typer.echo(BIBTEX if bibtex else f"The paper:\n  {PAPER}\n\nThis package:\n  {PACKAGE}")
 
 
-@app.command("version", epilog=_examples("granular-response version"))
+@_command("version", name="version")
 def print_version() -> None:
     """Print the version."""
     typer.echo(f"granular-response {__version__}")
@@ -547,26 +500,24 @@ def print_version() -> None:
 
 def _expected_errors() -> tuple[type[BaseException], ...]:
     """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
-    names = {
-        "paper.archive": ["ArchiveError"],
-        "paper.claims.table": ["ClaimsError"],
-        "paper.pipeline": ["GroupError"],
-        "paper.report": ["ReportError"],
-        "plot.pictures": ["PictureError"],
-        "scene": ["SceneError"],
-        "solve": ["SOLVE_ERRORS"],
-        "store.export": ["ExportError"],
-        "store.files": ["StoreError"],
-        "store.generated": ["GeneratedError"],
-        "store.result": ["ResultError"],
-        "sweeps.errors": ["SweepError"],
-    }
+    names = (
+        "paper.archive.ArchiveError",
+        "paper.claims.table.ClaimsError",
+        "paper.pipeline.GroupError",
+        "paper.report.ReportError",
+        "plot.pictures.PictureError",
+        "scene.SceneError",
+        "solve.SOLVE_ERRORS",
+        "store.export.ExportError",
+        "store.files.StoreError",
+        "store.generated.GeneratedError",
+        "store.result.ResultError",
+        "sweeps.errors.SweepError",
+    )
     found: list[type[BaseException]] = []
-    for module, attributes in names.items():
-        loaded = sys.modules.get(f"granular_response.{module}")
-        for attribute in attributes:
-            errors = getattr(loaded, attribute, ())
-            found += errors if isinstance(errors, tuple) else (errors,)
+    for module, _, attribute in (name.rpartition(".") for name in names):
+        errors = getattr(sys.modules.get(f"granular_response.{module}"), attribute, ())
+        found += errors if isinstance(errors, tuple) else (errors,)
     return tuple(found)
 
 
@@ -589,6 +540,20 @@ def _hush() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
+def _said(error: Exception) -> str | None:
+    """The line for an error that a user can cause; None for a mistake in a program."""
+    if isinstance(error, OSError) and error.filename is None and error.errno in _NOT_WRITTEN:
+        _hush()
+        return f"standard output cannot be written: {error.strerror}"
+    if isinstance(error, MemoryError):
+        return f"not enough memory: {error or 'the scene is too large'}"
+    if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
+        return f"{error.filename}: {error.strerror}"
+    expected, cause = _expected_errors(), error.__cause__
+    programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
+    return str(error) if isinstance(error, expected) and not programming else None
+
+
 def main() -> None:
     """Entry point. Expected errors are one line on standard error and exit code 2.
 
@@ -608,22 +573,10 @@ def main() -> None:
         _hush()
         sys.exit(1)
     except Exception as error:
-        expected = _expected_errors()
-        if isinstance(error, OSError) and error.filename is None and error.errno in _NOT_WRITTEN:
-            _hush()
-            typer.echo(f"granular-response: standard output cannot be written: {error.strerror}", err=True)
-            sys.exit(2)
-        if isinstance(error, MemoryError):
-            typer.echo(f"granular-response: not enough memory: {error or 'the scene is too large'}", err=True)
-            sys.exit(2)
-        cause = error.__cause__
-        programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
-        if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
-            typer.echo(f"granular-response: {error.filename}: {error.strerror}", err=True)
-            sys.exit(2)
-        if not isinstance(error, expected) or programming:
+        said = _said(error)
+        if said is None:
             raise
-        typer.echo(f"granular-response: {error}", err=True)
+        typer.echo(f"granular-response: {said}", err=True)
         sys.exit(2)
     finally:
         gc.freeze()

@@ -332,7 +332,7 @@ def events_dataset(found: Sequence[Event]) -> xr.Dataset:
     def column(name: str, long_name: str) -> xr.Variable:
         values = [getattr(event, name) for event in found]
         text = name in ("name", "definition")
-        return variable(("event",), values if text else np.array(values, dtype=float), long_name)
+        return variable("event", values if text else np.array(values, dtype=float), long_name)
 
     return xr.Dataset(
         {
@@ -354,11 +354,15 @@ def states_picture(states: Sequence[State], problem: Problem, dimension: str = "
     dataset = states_dataset(states, dimension)[list(PICTURE)]
     dataset["axis"].attrs.update(long_name="axis labels", units="1")
     force = np.array([abs(state.load_factor) for state in states])
-    dataset["force"] = variable((dimension,), force, f"applied force {FORCE}")
-    dataset["radius"] = variable(("disk",), packing.radius, f"disk radius {LENGTH}")
+    dataset["force"] = variable(dimension, force, f"applied force {FORCE}")
+    dataset["radius"] = variable("disk", packing.radius, f"disk radius {LENGTH}")
     dataset["width"] = variable((), packing.width, f"distance of the side walls {LENGTH}")
     dataset["loaded_disk"] = variable((), int(problem.load_disk[0]), "index of the loaded disk")
     return dataset
+
+
+#: Dimensions of the columns of :class:`Measured` that are no single numbers.
+_FURTHER = {"floor_response": ("floor_disk",), "mobilised_contacts": ("margin",)}
 
 
 @dataclass(frozen=True)
@@ -387,6 +391,20 @@ class Measured:
             certificates=certificates_dataset(states),
         )
 
+    @property
+    def columns(self) -> dict[str, tuple[NDArray, str]]:
+        """Everything measured, (k, ...), with long names."""
+        certified = self.certificates.data_vars.items()
+        return {
+            **{name: (self.scalars[name], text) for name, text in SCALARS.items()},
+            **{str(name): (found.values, found.attrs["long_name"]) for name, found in certified},
+            "floor_response": (self.response, "vertical floor force that the load adds, per applied force"),
+            "mobilised_contacts": (
+                self.mobilised,
+                "contacts of disks whose tangential force is within a fraction of the Coulomb limit",
+            ),
+        }
+
     def only(self, k: int) -> Measured:
         """The measurements on one of the states."""
         one = slice(k, k + 1)
@@ -407,41 +425,21 @@ def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, Measured]
     ``parts`` are pairs of an index into the grid (for all of its dimensions, as numpy takes it) and the
     measurements there, on slabs with the same floor disks.
     """
-    first = parts[0][1]
-
-    def spread(values: Callable[[Measured], NDArray]) -> FloatArray:
-        grid = np.full((*shape, *values(first).shape[1:]), np.nan)
-        for index, measured in parts:
-            grid[index] = values(measured)
-        return grid
-
-    def scalar(name: str) -> Callable[[Measured], NDArray]:
-        return lambda measured: np.asarray(measured.scalars[name])
-
-    def certificate(name: str) -> Callable[[Measured], NDArray]:
-        return lambda measured: measured.certificates[name].values
-
-    data = {name: variable(dims, spread(scalar(name)), text) for name, text in SCALARS.items()}
-    for name, described in first.certificates.data_vars.items():
-        values = spread(certificate(str(name)))
-        data[str(name)] = variable(dims, values, described.attrs["long_name"])
-    data["floor_response"] = variable(
-        (*dims, "floor_disk"),
-        spread(lambda m: m.response),
-        "vertical floor force that the load adds, per applied force",
-    )
-    data["mobilised_contacts"] = variable(
-        (*dims, "margin"),
-        spread(lambda m: m.mobilised),
-        "contacts of disks whose tangential force is within a fraction of the Coulomb limit",
-    )
+    first, columns = parts[0][1], [(index, measured.columns) for index, measured in parts]
+    data = {}
+    for name, (values, text) in first.columns.items():
+        grid = np.full((*shape, *values.shape[1:]), np.nan)
+        for index, one in columns:
+            grid[index] = one[name][0]
+        data[name] = variable((*dims, *_FURTHER.get(name, ())), grid, text)
     return xr.Dataset(data).assign_coords(
-        {
-            "floor_disk": variable(("floor_disk",), first.disks, "index of the floor disk"),
-            "x": variable(("floor_disk",), first.x, f"rest position from the loaded disk {LENGTH}"),
-            "interior": variable(
-                ("floor_disk",), first.interior.astype(np.int8), "1 for disks away from the side walls"
-            ),
-            "margin": variable(("margin",), np.array(MARGINS), "fraction below the Coulomb limit"),
-        }
+        floor_disk=variable("floor_disk", first.disks, "index of the floor disk"),
+        x=variable("floor_disk", first.x, f"rest position from the loaded disk {LENGTH}"),
+        interior=variable("floor_disk", first.interior.astype(np.int8), "1 for disks away from the side walls"),
+        margin=variable("margin", MARGINS, "fraction below the Coulomb limit"),
     )
+
+
+def measured_along(dimension: str, measured: Sequence[Measured]) -> xr.Dataset:
+    """The measurements on one state each, along ``dimension``."""
+    return measured_dataset((dimension,), [([k], one) for k, one in enumerate(measured)], (len(measured),))

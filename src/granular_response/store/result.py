@@ -107,18 +107,16 @@ def _states(states: Sequence[State], dimension: str) -> dict[str, Values]:
         contacts: list[Contacts] = [getattr(s, kind) for s in states]
         second = "partner" if kind == "pairs" else "wall"
         first_name = f"{prefix}_disk"
-        data[first_name] = described((dim,), contacts[0].first, "disk that the contact force acts on")
+        data[first_name] = described(dim, contacts[0].first, "disk that the contact force acts on")
         if kind == "pairs":
-            data[f"{prefix}_{second}"] = described((dim,), contacts[0].second, "other disk")
+            data[f"{prefix}_{second}"] = described(dim, contacts[0].second, "other disk")
         else:
-            data["wall_index"] = described((dim,), contacts[0].second, "wall", **_WALL_FLAGS)
+            data["wall_index"] = described(dim, contacts[0].second, "wall", **_WALL_FLAGS)
         for name, long_name in _CONTACT_VARIABLES.items():
             values = np.stack([getattr(c, name) for c in contacts])
             flags = _FLAGS if name == "status" else {}
             data[f"{prefix}_{name}"] = described((dimension, dim), values, long_name, **flags)
-    data["load_factor"] = described(
-        (dimension,), np.array([s.load_factor for s in states]), "multiplier of the scene's loads"
-    )
+    data["load_factor"] = described(dimension, [s.load_factor for s in states], "multiplier of the scene's loads")
     return {**data, "axis": described("axis", ["x", "z"], "axis labels")}
 
 
@@ -143,7 +141,7 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
         return NOT_DETERMINED if value is None else value
 
     return {
-        f"certificate_{name}": described((dimension,), np.array([number(getattr(c, name)) for c in certificates]), text)
+        f"certificate_{name}": described(dimension, [number(getattr(c, name)) for c in certificates], text)
         for name, text in names.items()
     }
 
@@ -160,7 +158,7 @@ def _crossings(loaded: Sequence[State]) -> dict[str, Values]:
         "reason": "why dynamics crossed",
     }
     return {
-        f"crossing_{name}": described(("crossing",), np.array([getattr(c, name) for c in found]), text)
+        f"crossing_{name}": described("crossing", [getattr(c, name) for c in found], text)
         for name, text in texts.items()
     }
 
@@ -193,12 +191,12 @@ def _reached(states: Sequence[State]) -> dict[str, Values]:
     for name, text in _REACHED.items():
         known = [getattr(state.reached, name) for state in states]
         if name == "method":
-            data["reached_method"] = described(("state",), np.array([one or "" for one in known], str), text)
+            data["reached_method"] = described("state", np.array([one or "" for one in known], str), text)
         elif any(one is not None for one in known):
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
             missing = NOT_DETERMINED if whole else np.nan
             values = np.array([missing if one is None else one for one in known], np.int64 if whole else float)
-            data[f"reached_{name}"] = described(("state",), values, text + (" (-1: not known)" if whole else ""))
+            data[f"reached_{name}"] = described("state", values, text + (" (-1: not known)" if whole else ""))
     return data
 
 
@@ -264,22 +262,22 @@ def added_forces_dataset(
                 np.stack([state.position for state in loaded]),
                 f"disk centre x, z under load {LENGTH}",
             ),
-            "radius": variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
-            "contact_disk": variable(("contact",), pairs.first, "disk that the contact force acts on"),
-            "contact_partner": variable(("contact",), pairs.second, "other disk"),
+            "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
+            "contact_disk": variable("contact", pairs.first, "disk that the contact force acts on"),
+            "contact_partner": variable("contact", pairs.second, "other disk"),
             "contact_added_force": variable(
                 (dimension, "contact", "axis"), np.stack([pair_force_difference(a, b) for a, b in both]), text
             ),
             "contact_status_rest": status("at rest", rest),
             "contact_status": status("under load", loaded),
-            "wall_disk": variable(("wall_contact",), walls.first, "disk that the wall's force acts on"),
-            "wall_index": variable(("wall_contact",), walls.second, "wall", **_WALL_FLAGS),
+            "wall_disk": variable("wall_contact", walls.first, "disk that the wall's force acts on"),
+            "wall_index": variable("wall_contact", walls.second, "wall", **_WALL_FLAGS),
             "wall_added_force": variable(
                 (dimension, "wall_contact", "axis"), np.stack([wall_force_difference(a, b) for a, b in both]), text
             ),
             "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
         },
-        coords={"axis": variable(("axis",), ["x", "z"], "axis labels")},
+        coords={"axis": variable("axis", ["x", "z"], "axis labels")},
     ).merge(certificates_dataset(loaded, dimension))
 
 
@@ -316,17 +314,17 @@ def to_labelled(solution: Solution) -> Labelled:
         **of_states,
         **described_forces(states),
         **load_coordinates(solution.load_factors),
-        "floor_force_rest": described(("floor_disk",), at_rest, f"vertical floor force at rest {FORCE}"),
+        "floor_force_rest": described("floor_disk", at_rest, f"vertical floor force at rest {FORCE}"),
         "floor_force": described(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
         "floor_response": described(
             dims,
             response if several else response[0],
             "vertical floor force that the load adds, per total magnitude of the applied forces",
         ),
-        "radius": described(("disk",), packing.radius, f"disk radius {LENGTH}"),
-        "mass": described(("disk",), packing.mass, "disk mass in mean disk masses"),
-        "row": described(("disk",), packing.row, "row on the lattice from the bottom, -1 without lattice"),
-        "loaded_disk": described(("load_point",), problem.load_disk, "disks that carry the loads"),
+        "radius": described("disk", packing.radius, f"disk radius {LENGTH}"),
+        "mass": described("disk", packing.mass, "disk mass in mean disk masses"),
+        "row": described("disk", packing.row, "row on the lattice from the bottom, -1 without lattice"),
+        "loaded_disk": described("load_point", problem.load_disk, "disks that carry the loads"),
         "applied_load": described(
             ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
         ),
@@ -339,8 +337,8 @@ def to_labelled(solution: Solution) -> Labelled:
         **_certificates(states, "state"),
         **_reached(states),
         **_crossings(loaded),
-        "floor_disk": described(("floor_disk",), disks, "index of the floor disk"),
-        "x": described(("floor_disk",), x, f"rest position from the loaded disk {LENGTH}"),
+        "floor_disk": described("floor_disk", disks, "index of the floor disk"),
+        "x": described("floor_disk", x, f"rest position from the loaded disk {LENGTH}"),
         "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
     }
     moved = any(state.reached.time_step is not None for state in states)

@@ -8,6 +8,7 @@ whether it finds a state or computes it.
 
 from __future__ import annotations
 
+from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve import solution as solvers
 from granular_response.solve.choice import rest_method, stop_energy
@@ -35,6 +36,11 @@ def rest_state(problem: Problem) -> State:
         state = solvers.rest_state(problem)
         memory.save(key, state)
     return state
+
+
+def rest_of(scene: Scene) -> State:
+    """The same of a scene."""
+    return rest_state(Problem.from_scene(scene))
 
 
 def name(problem: Problem) -> str:

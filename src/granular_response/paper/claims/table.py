@@ -10,31 +10,15 @@ import json
 import os
 import re
 from collections.abc import Sequence
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
-from ..groups.contact_law import claims as contact_law
-from ..groups.crossover_scaling import claims as crossover_scaling
-from ..groups.friction_fields import claims as friction_fields
-from ..groups.friction_linear_range import claims as friction_linear_range
-from ..groups.frictionless_crossover import claims as frictionless_crossover
-from ..groups.hysteresis import claims as hysteresis
-from ..groups.influence import claims as influence
-from ..groups.moduli import claims as moduli
-from ..groups.numerics import claims as numerics
-from ..groups.peak_width import claims as peak_width
-from ..groups.phase_diagram import claims as phase_diagram
-from ..groups.pile_dip import claims as pile_dip
-from ..groups.polydisperse_averages import claims as polydisperse_averages
-from ..groups.slab_comparison import claims as slab_comparison
-from ..groups.stiffness_ratio_crossover import claims as stiffness_ratio_crossover
-from ..groups.superposition import claims as superposition
-from ..groups.symmetry_breaking import claims as symmetry_breaking
-from ..groups.theory import claims as theory
-from ..groups.torque import claims as torque
+from ..groups import NAMES
 from . import preparations
 from .claim import Claim, Condition, Data, Quantity, rounded
 from .verdict import MEANINGS, Entry, Verdict, judge
@@ -49,33 +33,14 @@ def _place(claim: Claim) -> tuple[int, int, str]:
     return _ORDER.index(letter), int(number), part
 
 
+def _claims_of(group: str) -> Sequence[Claim]:
+    """The claims of a group; none if it has no ``claims.py``."""
+    name = f"granular_response.paper.groups.{group}.claims"
+    return import_module(name).CLAIMS if find_spec(name) else ()
+
+
 #: All claims in the order of the table.
-CLAIMS: tuple[Claim, ...] = tuple(
-    sorted(
-        (
-            *contact_law.CLAIMS,
-            *crossover_scaling.CLAIMS,
-            *friction_fields.CLAIMS,
-            *friction_linear_range.CLAIMS,
-            *frictionless_crossover.CLAIMS,
-            *hysteresis.CLAIMS,
-            *influence.CLAIMS,
-            *moduli.CLAIMS,
-            *numerics.CLAIMS,
-            *peak_width.CLAIMS,
-            *phase_diagram.CLAIMS,
-            *pile_dip.CLAIMS,
-            *polydisperse_averages.CLAIMS,
-            *slab_comparison.CLAIMS,
-            *stiffness_ratio_crossover.CLAIMS,
-            *superposition.CLAIMS,
-            *symmetry_breaking.CLAIMS,
-            *theory.CLAIMS,
-            *torque.CLAIMS,
-        ),
-        key=_place,
-    )
-)
+CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in NAMES for claim in _claims_of(group)), key=_place))
 
 #: Figure groups whose datasets the claims read.
 GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING}))

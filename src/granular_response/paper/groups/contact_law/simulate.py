@@ -112,20 +112,20 @@ def simulate(
                 f"largest unbalanced force on a disk {FORCE}",
             ),
             "typical_force": variable(
-                ("friction",),
-                np.array([o.typical_force for o in linear]),
+                "friction",
+                [o.typical_force for o in linear],
                 f"mean normal force between disks at rest by the linear law {FORCE}",
             ),
             "normal_stiffness": variable(
                 ("friction", "law"),
-                np.array([[o.stiffness for o in laws] for laws in outcomes]),
+                [[o.stiffness for o in laws] for laws in outcomes],
                 "contact.normal_stiffness: of the 3/2 law at a normal force of one mean disk weight",
             ),
         },
         coords={
-            "friction": variable("friction", np.array(parameters.friction), "coefficient of friction between disks"),
+            "friction": variable("friction", parameters.friction, "coefficient of friction between disks"),
             "law": variable("law", list(LAWS), "contact law"),
-            "force": variable("force", np.array(parameters.forces), f"applied force {FORCE}"),
+            "force": variable("force", parameters.forces, f"applied force {FORCE}"),
             "x": variable("floor_disk", linear[0].x, f"rest position from the loaded disk, linear law {LENGTH}"),
         },
     )

@@ -117,9 +117,9 @@ def _dataset(task: Task, path: LoadPath, found: list[State]) -> xr.Dataset:
             ("state", "floor_disk"), response, "vertical floor force that the load adds, per applied force"
         ),
         smoothed_response=variable(("state", "floor_disk"), smooth, f"floor response {unit}"),
-        response_at_centre=variable(("state",), centre, f"floor response at x = 0 {unit}"),
-        peak_count=variable(("state",), count, "number of peaks of the smoothed response; 0 at rest"),
-        x=variable(("floor_disk",), x, f"rest position of a floor disk from the loaded disk {LENGTH}"),
+        response_at_centre=variable("state", centre, f"floor response at x = 0 {unit}"),
+        peak_count=variable("state", count, "number of peaks of the smoothed response; 0 at rest"),
+        x=variable("floor_disk", x, f"rest position of a floor disk from the loaded disk {LENGTH}"),
         smoothing_width=variable((), task.width, f"width w of the smoothing Gaussian {LENGTH}; 0: none"),
         polydispersity=variable((), scene.packing.model_dump()["polydispersity"], "delta: spread of the radii"),
         friction=variable((), scene.contact.friction, "coefficient of friction between disks"),

@@ -8,19 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from granular_response.plot import style
+from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
-from granular_response.plot.network import (
-    draw_box,
-    draw_disks,
-    draw_force_chains,
-    draw_force_key,
-    draw_load,
-    draw_loaded_disk,
-    force_scale,
-    pair_points,
-    wall_points,
-)
 from granular_response.state import Box
 
 #: Half of the width of the stress maps and of the profiles, in mean radii.
@@ -49,7 +38,7 @@ def _force_chains(data: xr.Dataset) -> Figure:
     figure, panels = style.figure(len(frictions), 1, width="single", height=2.4 * len(frictions) + 0.1)
     width, disk = float(data["width"]), int(data["loaded_disk"])
     added, at_wall = data["contact_added_force"].values, data["wall_added_force"].values
-    scale = force_scale(added.reshape(-1, 2), longest=4.6, widest=4.6)
+    scale = network.force_scale(added.reshape(-1, 2), longest=4.6, widest=4.6)
     smallest = 1e-3 * float(np.linalg.norm(added, axis=-1).max())
     radius = data["radius"].values
     for index, axes in enumerate(panels[:, 0]):
@@ -57,22 +46,22 @@ def _force_chains(data: xr.Dataset) -> Figure:
         pairs = data["contact_disk"].values, data["contact_partner"].values
         walls = data["wall_disk"].values, data["wall_index"].values
         inside = np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
-        draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT)
+        network.draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT)
         for point, force in (
-            (pair_points(position, radius, *pairs), added[index]),
-            (wall_points(position, radius, *walls), at_wall[index]),
+            (network.pair_points(position, radius, *pairs), added[index]),
+            (network.wall_points(position, radius, *walls), at_wall[index]),
         ):
             shown = np.abs(point[:, 0] - 0.5 * width) <= width / 6.0
-            draw_force_chains(axes, point[shown], force[shown], smallest=smallest, **scale)
+            network.draw_force_chains(axes, point[shown], force[shown], smallest=smallest, **scale)
         top = (float(position[disk, 0]), float(position[disk, 1]) + 1.0)
-        draw_loaded_disk(axes, (top[0], top[1] - 1.0), float(radius[disk]))
-        draw_load(axes, top)
-        draw_box(axes, Box(width), top[1], between=(width / 3.0, 2.0 * width / 3.0))
+        network.draw_loaded_disk(axes, (top[0], top[1] - 1.0), float(radius[disk]))
+        network.draw_load(axes, top)
+        network.draw_box(axes, Box(width), top[1], between=(width / 3.0, 2.0 * width / 3.0))
         style.no_axes(axes)
         axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-0.8, top[1] + 4.2))
         style.letter(axes, chr(ord("a") + index), text=_friction(frictions[index]))
         magnitude = _round(float(data["force"]) / 5.0)
-        draw_force_key(axes, (2.0 * width / 3.0 - 8.0, top[1] + 2.5), magnitude, **scale)
+        network.draw_force_key(axes, (2.0 * width / 3.0 - 8.0, top[1] + 2.5), magnitude, **scale)
     return figure
 
 

@@ -111,9 +111,7 @@ def simulate(
     listed = common_candidates([s for one in results for s in (one.rest, one.loaded)], packing.radius)
     rest, loaded = listed[::2], listed[1::2]
     disk = results[0].loaded_disk
-    coordinate = variable(
-        ("friction",), np.array(frictions), "coefficient of friction between disks and with the walls"
-    )
+    coordinate = variable("friction", frictions, "coefficient of friction between disks and with the walls")
     scalars = _scalars(rest, loaded, disk)
     stress = _stress_dataset(parameters, base, rest, loaded, disk, force, scalars)
     datasets = {
@@ -124,7 +122,7 @@ def simulate(
         chosen = [results[frictions.index(mu)] for mu in of_profiles]
         datasets["profiles"] = _profiles_dataset(
             packing, chosen, parameters.profiles.rows, profile_force
-        ).assign_coords(friction=variable(("friction",), np.array(of_profiles), coordinate.attrs["long_name"]))
+        ).assign_coords(friction=variable("friction", of_profiles, coordinate.attrs["long_name"]))
     return labelled(datasets, base)
 
 
@@ -261,7 +259,7 @@ def _stress_dataset(
     }
     dims = ("friction", "z", "x")
     of = "of the added forces per applied force, in 1/mean radius, compression positive"
-    data = {name: variable(("friction",), np.array(values[name]), text) for name, text in _SCALARS.items()}
+    data = {name: variable("friction", values[name], text) for name, text in _SCALARS.items()}
     data |= stress_components(dims, fields, of)
     data["stress_zz_lattice"] = variable(("z", "x"), elastic, f"stress component zz of the harmonic lattice {of}")
     data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}")
@@ -270,8 +268,8 @@ def _stress_dataset(
     return xr.Dataset(
         data,
         coords={
-            "x": variable(("x",), x, f"distance from the loaded disk {LENGTH}"),
-            "z": variable(("z",), z, f"height above the floor {LENGTH}"),
+            "x": variable("x", x, f"distance from the loaded disk {LENGTH}"),
+            "z": variable("z", z, f"height above the floor {LENGTH}"),
         },
     )
 
@@ -305,9 +303,7 @@ def _profiles_dataset(packing: Packing, results: Sequence[Loaded], rows: Sequenc
             "force": variable((), force, f"applied force {FORCE}"),
         },
         coords={
-            "row": variable(("row",), np.array(rows, dtype=float), "rows below the loaded disk"),
-            "depth": variable(
-                ("row",), [row_depth(float(row)) for row in rows], f"depth below the loaded disk {LENGTH}"
-            ),
+            "row": variable("row", np.array(rows, dtype=float), "rows below the loaded disk"),
+            "depth": variable("row", [row_depth(float(row)) for row in rows], f"depth below the loaded disk {LENGTH}"),
         },
     ).merge(certificates_dataset(states, "friction"))

@@ -11,31 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from granular_response.observe import events
+from granular_response.paper import slab_response as slab
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.friction_linear_range.parameters import LargeForces, Parameters, Tolerance
-from granular_response.paper.slab_response import (
-    Event,
-    LoadPath,
-    Measured,
-    Measures,
-    events_dataset,
-    first_change,
-    happenings,
-    locate,
-    measured_dataset,
-    states_picture,
-)
 from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.state import Crossing, State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, run_tasks
 
 
 @dataclass(frozen=True)
@@ -44,8 +32,8 @@ class PathResult:
 
     friction: float
     forces: tuple[float, ...]
-    measured: Measured
-    events: tuple[Event, ...]
+    measured: slab.Measured
+    events: tuple[slab.Event, ...]
     crossings: tuple[Crossing, ...]  #: of the path, without its bisections
     method: str
     rest: State
@@ -63,14 +51,14 @@ class PathTask:
     keep_states: bool = False
 
     def run(self) -> PathResult:
-        path = LoadPath.of(self.scene)
+        path = slab.LoadPath.of(self.scene)
         states = path.through(self.forces)
         crossings = tuple(path.crossings)
-        measures = Measures(path)
+        measures = slab.Measures(path)
         return PathResult(
             self.scene.contact.friction,
             self.forces,
-            Measured.of(measures, states),
+            slab.Measured.of(measures, states),
             tuple(self._events(path, measures, self.tolerance)) if self.tolerance else (),
             crossings,
             path.method,
@@ -78,11 +66,11 @@ class PathTask:
             tuple(states) if self.keep_states else (),
         )
 
-    def _events(self, path: LoadPath, measures: Measures, tolerance: Tolerance) -> list[Event]:
+    def _events(self, path: slab.LoadPath, measures: slab.Measures, tolerance: Tolerance) -> list[slab.Event]:
         widths = {"first_opening": tolerance.first_opening, "linear_range": tolerance.linear_range}
         return [
-            locate(name, path, self.forces, happened, widths.get(name, tolerance.shape), definition)
-            for name, (happened, definition) in happenings(
+            slab.locate(name, path, self.forces, happened, widths.get(name, tolerance.shape), definition)
+            for name, (happened, definition) in slab.happenings(
                 measures, path.known[self.forces[0]], tolerance.asymmetry
             ).items()
             if self.all_events or name in widths
@@ -97,10 +85,10 @@ class DynamicsTask:
     rest: State
     force: float
 
-    def run(self) -> tuple[State, Measured]:
-        path = LoadPath.of(self.scene, self.rest)
+    def run(self) -> tuple[State, slab.Measured]:
+        path = slab.LoadPath.of(self.scene, self.rest)
         state = path.at(self.force)
-        return state, Measured.of(Measures(path), [state])
+        return state, slab.Measured.of(slab.Measures(path), [state])
 
 
 @dataclass(frozen=True)
@@ -113,20 +101,13 @@ class FrictionTask:
     high: float
     tolerance: float
 
-    def run(self) -> Event:
+    def run(self) -> slab.Event:
         def single_peaked(friction: float) -> bool:
-            path = LoadPath.of(self.scene.updated({"contact.friction": friction}))
-            return not Measures(path).double_peaked(path.at(self.force))
+            path = slab.LoadPath.of(self.scene.updated({"contact.friction": friction}))
+            return not slab.Measures(path).double_peaked(path.at(self.force))
 
         found = events.bisect_event(single_peaked, self.low, self.high, self.tolerance, at_low=False, at_high=True)
         return _friction_crossover(self.force, found.low, found.high, self.tolerance, found.evaluations)
-
-
-Task = PathTask | DynamicsTask | FrictionTask
-
-
-def _run(task: Task) -> Any:
-    return task.run()
 
 
 def simulate(
@@ -142,28 +123,27 @@ def simulate(
     base, frictions, axis = parameters.base, parameters.frictions, parameters.friction_axis
     axis_frictions, axis_force = sorted(axis.frictions), axis.force
     tasks = _path_tasks(parameters, base, axis_frictions)
-    results: list[PathResult] = map_tasks(_run, tasks, workers=workers, progress=progress, what="load paths")
+    results: list[PathResult] = run_tasks(tasks, workers=workers, progress=progress, what="load paths")
     paths = {result.friction: result for result in results}
 
     on_axis = {mu: _at_force(paths[mu], axis_force) for mu in axis_frictions}
     double = [bool(measured.scalars["double_peaked"][0]) for measured in on_axis.values()]
-    low, high = first_change(axis_frictions, [not two for two in double])
+    low, high = slab.first_change(axis_frictions, [not two for two in double])
     refine = [FrictionTask(base, axis_force, low, high, axis.tolerance)]
     if not (double[0] and np.isfinite(high)):
         refine = []
     dynamics = _dynamics_tasks(parameters.dynamics, base, paths)
-    later: list[Task] = [*refine, *dynamics]
-    done = map_tasks(_run, later, workers=workers, progress=progress, what="large forces")
+    done = run_tasks([*refine, *dynamics], workers=workers, progress=progress, what="large forces")
     crossover = done[0] if refine else _friction_crossover(axis_force, low, high, axis.tolerance, 0)
-    shaken: list[tuple[State, Measured]] = done[len(refine) :]
+    shaken: list[tuple[State, slab.Measured]] = done[len(refine) :]
 
     main = [paths[mu] for mu in frictions]
     found = [*(event for result in main for event in result.events), crossover]
     datasets = {
         "response": _response_dataset(main),
-        "friction_axis": measured_dataset(
-            ("friction",), [([k], m) for k, m in enumerate(on_axis.values())], (len(on_axis),)
-        ).assign_coords(friction=_friction(axis_frictions)),
+        "friction_axis": slab.measured_along("friction", list(on_axis.values())).assign_coords(
+            friction=_friction(axis_frictions)
+        ),
         "crossings": _crossings_dataset(main),
     }
     datasets["friction_axis"]["force"] = variable((), axis_force, f"applied force {FORCE}")
@@ -176,11 +156,11 @@ def simulate(
         datasets["large_forces"] = large
         datasets["large_force_states"] = _picture(base, [paths[mu].rest, *(state for state, _ in shaken)])
         found.append(_loss_of_symmetry(mu, large, parameters.tolerance.asymmetry))
-    datasets["events"] = events_dataset(found)
+    datasets["events"] = slab.events_dataset(found)
     return labelled(datasets, base)
 
 
-def _path_tasks(parameters: Parameters, base: Scene, axis_frictions: Sequence[float]) -> list[Task]:
+def _path_tasks(parameters: Parameters, base: Scene, axis_frictions: Sequence[float]) -> list[PathTask]:
     frictions, axis_force = parameters.frictions, parameters.friction_axis.force
     further = {extra.friction: extra.forces for extra in parameters.extra_forces}
     largest = {end.friction: end.force for end in parameters.ends}
@@ -211,20 +191,20 @@ def _dynamics_tasks(given: LargeForces, base: Scene, paths: Mapping[float, PathR
     return [DynamicsTask(scene, paths[given.friction].rest, force) for force in sorted(given.forces)]
 
 
-def _at_force(result: PathResult, force: float) -> Measured:
+def _at_force(result: PathResult, force: float) -> slab.Measured:
     return result.measured.only(result.forces.index(force))
 
 
-def _friction_crossover(force: float, low: float, high: float, tolerance: float, evaluations: int) -> Event:
+def _friction_crossover(force: float, low: float, high: float, tolerance: float, evaluations: int) -> slab.Event:
     text = f"along the axis of friction at force {force:g}, the floor response no longer has two peaks"
-    return Event("friction_crossover", float("nan"), low, high, tolerance, evaluations, text)
+    return slab.Event("friction_crossover", float("nan"), low, high, tolerance, evaluations, text)
 
 
-def _loss_of_symmetry(friction: float, large: xr.Dataset, above: float) -> Event:
+def _loss_of_symmetry(friction: float, large: xr.Dataset, above: float) -> slab.Event:
     forces = large["force"].values
-    low, high = first_change(forces, (large["asymmetry"].values > above).tolist())
+    low, high = slab.first_change(forces, (large["asymmetry"].values > above).tolist())
     text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {above:g}"
-    return Event("loss_of_symmetry", friction, low, high, high - low, len(forces), text)
+    return slab.Event("loss_of_symmetry", friction, low, high, high - low, len(forces), text)
 
 
 def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
@@ -234,7 +214,7 @@ def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
         ((row, [forces.index(force) for force in result.forces]), result.measured) for row, result in enumerate(results)
     ]
     dims, shape = ("friction", "force"), (len(results), len(forces))
-    dataset = measured_dataset(dims, parts, shape).assign_coords(
+    dataset = slab.measured_dataset(dims, parts, shape).assign_coords(
         friction=_friction([result.friction for result in results]), force=_force(forces)
     )
     crossed = np.full(shape, np.nan)
@@ -250,11 +230,10 @@ def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
     return dataset
 
 
-def _large_forces_dataset(friction: float, tasks: Sequence[DynamicsTask], measured: Sequence[Measured]) -> xr.Dataset:
-    parts = [([k], one) for k, one in enumerate(measured)]
-    dataset = measured_dataset(("force",), parts, (len(parts),)).assign_coords(
-        force=_force([task.force for task in tasks])
-    )
+def _large_forces_dataset(
+    friction: float, tasks: Sequence[DynamicsTask], measured: Sequence[slab.Measured]
+) -> xr.Dataset:
+    dataset = slab.measured_along("force", measured).assign_coords(force=_force([task.force for task in tasks]))
     protocol = tasks[0].scene.protocol
     dataset["friction"] = variable((), friction, "coefficient of friction between disks")
     dataset["ramp_time"] = variable((), protocol.ramp_time, "duration of the load ramp in sqrt(radius/g)")
@@ -267,7 +246,7 @@ def _crossings_dataset(results: Sequence[PathResult]) -> xr.Dataset:
     found = [(result.friction, crossing) for result in results for crossing in result.crossings]
 
     def column(values: list, long_name: str) -> xr.Variable:
-        return variable(("crossing",), np.array(values, dtype=float), long_name)
+        return variable("crossing", np.array(values, dtype=float), long_name)
 
     return xr.Dataset(
         {
@@ -284,12 +263,12 @@ def _crossings_dataset(results: Sequence[PathResult]) -> xr.Dataset:
 
 
 def _picture(scene: Scene, states: Sequence[State]) -> xr.Dataset:
-    return states_picture(states, Problem.from_scene(scene).with_loads(states[0].position))
+    return slab.states_picture(states, Problem.from_scene(scene).with_loads(states[0].position))
 
 
 def _friction(values: Sequence[float]) -> xr.Variable:
-    return variable(("friction",), np.array(values), "coefficient of friction between disks")
+    return variable("friction", values, "coefficient of friction between disks")
 
 
 def _force(values: Sequence[float]) -> xr.Variable:
-    return variable(("force",), np.array(values), f"applied force {FORCE}")
+    return variable("force", values, f"applied force {FORCE}")

@@ -23,17 +23,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.observe import network
+from granular_response.paper import slab_response
 from granular_response.paper.groups.frictionless_crossover.parameters import Parameters
-from granular_response.paper.slab_response import (
-    SCALARS,
-    Event,
-    LoadPath,
-    Measured,
-    Measures,
-    events_dataset,
-    locate,
-    states_picture,
-)
 from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve.equilibrium import Rearranged
@@ -44,12 +35,8 @@ from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
 
-#: What is kept of the measurements; the others are about friction.
-KEPT = tuple(
-    name
-    for name in SCALARS
-    if name not in ("third_peak", "third_peak_prominence", "sliding_contacts", "asymmetry_sign")
-)
+#: What is not kept of the measurements: it is about friction.
+LEFT_OUT = ("third_peak", "third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")
 
 EVENTS = {
     "first_opening": "a contact within five lattice constants of the loaded disk is open that touches at rest",
@@ -93,8 +80,8 @@ class Outcome:
 
     slab: Slab
     forces: tuple[float, ...]
-    measured: Measured
-    events: Mapping[str, Event]
+    measured: slab_response.Measured
+    events: Mapping[str, slab_response.Event]
     rest_asymmetry: float
     new_neighbours: int
     problem: Problem
@@ -105,16 +92,16 @@ class Outcome:
 
 def solve(task: Task) -> Outcome:
     """Settle a slab, load it step by step, measure it and locate its events."""
-    path = LoadPath.of(task.scene, settle(task.scene))
+    path = slab_response.LoadPath.of(task.scene, settle(task.scene))
     states = path.through(task.forces)
-    measures = Measures(path)
+    measures = slab_response.Measures(path)
     happened: dict[str, Callable[[State], bool]] = {
         "first_opening": lambda state: measures.region(state).count > 0,
         "crossover": measures.double_peaked,
         "teardrop_reaches_floor": lambda state: measures.region(state).reaches_floor,
     }
     found = {
-        name: locate(name, path, task.forces, happened[name], _width(task, states, happened[name]), text)
+        name: slab_response.locate(name, path, task.forces, happened[name], _width(task, states, happened[name]), text)
         for name, text in EVENTS.items()
     }
     packing = path.problem.packing
@@ -123,7 +110,7 @@ def solve(task: Task) -> Outcome:
     return Outcome(
         slab=task.slab,
         forces=task.forces,
-        measured=Measured.of(measures, states),
+        measured=slab_response.Measured.of(measures, states),
         events=found,
         rest_asymmetry=rest_asymmetry(packing.position, path.rest, packing.width),
         new_neighbours=new_neighbours(packing.position, path.rest),
@@ -180,9 +167,9 @@ def simulate(
     first = outcomes[main]
     return {
         "response": response(first, parameters.forces),
-        "rest": states_picture([first.rest], first.problem),
+        "rest": slab_response.states_picture([first.rest], first.problem),
         "states": pictures(first, parameters.forces),
-        "events": events_dataset(list(first.events.values())),
+        "events": slab_response.events_dataset(list(first.events.values())),
         "sizes": table("slab", [outcomes[slab] for slab in sizes], parameters.size_forces),
         "widths": table("slab", [outcomes[slab] for slab in widths], parameters.size_forces),
         "stiffness": stiffness_table(
@@ -225,7 +212,7 @@ def tasks(parameters: Parameters) -> list[Task]:
 def pictures(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
     """The states of a slab along ``force``, with the region of opened contacts in each."""
     assert outcome.regions is not None
-    data = states_picture(outcome.states, outcome.problem, "force")
+    data = slab_response.states_picture(outcome.states, outcome.problem, "force")
     data["teardrop"] = variable(
         ("force", "contact"),
         outcome.regions.astype(np.int8),
@@ -234,7 +221,7 @@ def pictures(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
     horizontal = network.lattice_direction(outcome.rest) == network.HORIZONTAL
     count = outcome.regions.sum(axis=1)
     data["teardrop_horizontal"] = variable(
-        ("force",),
+        "force",
         np.where(count > 0, (outcome.regions & horizontal).sum(axis=1) / np.maximum(count, 1), np.nan),
         "fraction of the region's contacts that are horizontal at rest; nan without a region",
     )
@@ -246,13 +233,11 @@ def stiffness_table(outcomes: Sequence[Outcome], forces: Sequence[float], compar
     data = table("normal_stiffness", outcomes, forces)
     soft, stiff = (data["response_at_centre"].sel(normal_stiffness=k).values for k in compared)
     data["response_change"] = variable(
-        ("force",),
+        "force",
         soft / stiff - 1.0,
         "relative change of the response at x = 0 from the second to the first of compared_stiffness",
     )
-    data["compared_stiffness"] = variable(
-        ("compared",), np.array(compared), "normal stiffnesses whose responses are compared"
-    )
+    data["compared_stiffness"] = variable("compared", compared, "normal stiffnesses whose responses are compared")
     return data
 
 
@@ -261,9 +246,9 @@ def response(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
     data = table("slab", [outcome], forces).isel(slab=0)
     data = data.rename(floor_place="floor_disk").drop_vars([f"{name}_bracket" for name in EVENTS])
     return data.assign_coords(
-        floor_disk=variable(("floor_disk",), outcome.measured.disks, "index of the floor disk"),
+        floor_disk=variable("floor_disk", outcome.measured.disks, "index of the floor disk"),
         interior=variable(
-            ("floor_disk",), outcome.measured.interior.astype(np.int8), "1 for disks away from the side walls"
+            "floor_disk", outcome.measured.interior.astype(np.int8), "1 for disks away from the side walls"
         ),
     )
 
@@ -274,11 +259,6 @@ def table(dimension: str, outcomes: Sequence[Outcome], forces: Sequence[float]) 
     Slabs have different numbers of floor disks: ``floor_response`` and ``x`` run over ``floor_place``, from
     left to right, and are nan beyond the last disk of a slab.
     """
-    grid = (dimension, "force")
-
-    def along_grid(values: Callable[[Measured], NDArray]) -> NDArray:
-        return np.stack([values(o.measured)[np.searchsorted(o.forces, forces)] for o in outcomes])
-
     places = max(len(o.measured.x) for o in outcomes)
 
     def padded(values: FloatArray) -> FloatArray:
@@ -286,20 +266,20 @@ def table(dimension: str, outcomes: Sequence[Outcome], forces: Sequence[float]) 
         full[..., : values.shape[-1]] = values
         return full
 
-    data = {name: variable(grid, along_grid(_scalar(name)), SCALARS[name]) for name in KEPT}
-    for name, described in outcomes[0].measured.certificates.data_vars.items():
-        data[str(name)] = variable(grid, along_grid(_certified(str(name))), described.attrs["long_name"])
-    data["floor_response"] = variable(
-        (*grid, "floor_place"),
-        along_grid(lambda m: padded(m.response)),
-        "vertical floor force that the load adds, per applied force",
-    )
+    def along_grid(name: str) -> NDArray:
+        columns = [o.measured.columns[name][0][np.searchsorted(o.forces, forces)] for o in outcomes]
+        return np.stack([padded(column) for column in columns] if name == "floor_response" else columns)
+
+    grid = (dimension, "force")
+    data = {
+        name: variable((*grid, "floor_place") if name == "floor_response" else grid, along_grid(name), text)
+        for name, (_, text) in outcomes[0].measured.columns.items()
+        if name not in LEFT_OUT
+    }
     for name, text in EVENTS.items():
         brackets = [(o.events[name].low, o.events[name].high) for o in outcomes]
         data[f"{name}_bracket"] = variable(
-            (dimension, "bracket"),
-            np.array(brackets),
-            f"forces {FORCE} between which: {text}; nan if not up to the first",
+            (dimension, "bracket"), brackets, f"forces {FORCE} between which: {text}; nan if not up to the first"
         )
     own: dict[str, tuple[Any, str]] = {
         "layers": ([o.slab.layers for o in outcomes], "number of rows of the slab"),
@@ -317,21 +297,13 @@ def table(dimension: str, outcomes: Sequence[Outcome], forces: Sequence[float]) 
             "pairs touching at rest that are no lattice neighbours",
         ),
     }
-    coordinates = {name: variable((dimension,), np.array(values), text) for name, (values, text) in own.items()}
-    coordinates["force"] = variable(("force",), np.array(forces, float), f"applied force {FORCE}")
+    coordinates = {name: variable(dimension, values, text) for name, (values, text) in own.items()}
+    coordinates["force"] = variable("force", np.array(forces, float), f"applied force {FORCE}")
     coordinates["x"] = variable(
         (dimension, "floor_place"),
         np.stack([padded(o.measured.x) for o in outcomes]),
         f"rest position from the loaded disk {LENGTH}",
     )
     dataset = xr.Dataset(data).assign_coords(coordinates)
-    dataset["bracket"] = variable(("bracket",), np.array(["low", "high"]), "ends of a bracket")
+    dataset["bracket"] = variable("bracket", ["low", "high"], "ends of a bracket")
     return dataset
-
-
-def _scalar(name: str) -> Callable[[Measured], NDArray]:
-    return lambda part: part.scalars[name]
-
-
-def _certified(name: str) -> Callable[[Measured], NDArray]:
-    return lambda part: part.certificates[name].values

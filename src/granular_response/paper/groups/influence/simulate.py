@@ -161,7 +161,7 @@ def simulate(
         | {
             "fit": variable("fit", list(FITS), "rows of loads that are used"),
             "separation": variable(
-                "separation", np.array(parameters.separations), "of the halves from the disk, in places of the row"
+                "separation", parameters.separations, "of the halves from the disk, in places of the row"
             ),
         },
     )

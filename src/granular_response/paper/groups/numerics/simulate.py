@@ -9,7 +9,7 @@ static finish unless that is what is measured.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -26,7 +26,7 @@ from granular_response.solve.timestep import resolve_time_step, stability_limit
 from granular_response.state import State
 from granular_response.store.result import FORCE, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, Task, run_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -83,13 +83,7 @@ class RestartTask:
         still = replace(
             state, velocity=np.zeros_like(state.velocity), angular_velocity=np.zeros_like(state.angular_velocity)
         )
-        dynamics = Dynamics(problem, still, self.scene.protocol.integrator, resolve_time_step(problem))
-        dynamics.set_ramps(load=(self.force, self.force, 0.0))
-        energy = []
-        for _ in range(self.steps // READ_EVERY):
-            dynamics.advance(READ_EVERY)
-            energy.append(dynamics.kinetic_energy())
-        return np.array(energy)
+        return np.array(_read(problem, still, self.force, self.steps, READ_EVERY, Dynamics.kinetic_energy))
 
 
 @dataclass(frozen=True)
@@ -116,13 +110,10 @@ class SwingTask:
     def run(self) -> tuple[FloatArray, FloatArray]:
         """Mean acceleration of disks with two contacts or more, and kinetic energy per disk, at every reading."""
         problem, _, loaded = _by_dynamics(self.scene)
-        dynamics = Dynamics(problem, loaded, self.scene.protocol.integrator, resolve_time_step(problem))
-        dynamics.set_ramps(load=(1.0, 1.0, 0.0))
-        readings = []
-        for _ in range(self.steps // self.read_every):
-            dynamics.advance(self.read_every)
-            readings.append((dynamics.mean_acceleration(), dynamics.kinetic_energy()))
-        acceleration, energy = np.array(readings).T
+        both = _read(
+            problem, loaded, 1.0, self.steps, self.read_every, lambda d: (d.mean_acceleration(), d.kinetic_energy())
+        )
+        acceleration, energy = np.array(both).T
         return acceleration, energy
 
 
@@ -165,13 +156,6 @@ class DampingTask:
         return dynamics.time, float(bool(state.reached.settled)), stability_limit(problem, "beeman")
 
 
-Task = StopTask | RestartTask | ResponseTask | SwingTask | DisorderTask | DampingTask
-
-
-def _run(task: Task) -> Any:
-    return task.run()
-
-
 def rest_and_loaded(scene: Scene) -> tuple[State, State, NDArray[np.intp]]:
     """The packing at rest and under the scene's load, both by dynamics, and the disks of its lowest row.
 
@@ -180,6 +164,19 @@ def rest_and_loaded(scene: Scene) -> tuple[State, State, NDArray[np.intp]]:
     problem, rest, loaded = _by_dynamics(scene)
     force = float(np.abs(problem.load[:, 1]).sum())
     return rest, replace(loaded, load_factor=force), np.flatnonzero(problem.packing.row == 0)
+
+
+def _read(
+    problem: Problem, state: State, load: float, steps: int, every: int, read: Callable[[Dynamics], Any]
+) -> list[Any]:
+    """What is read of the dynamics that goes on from ``state`` under a constant load, at ``every`` so many steps."""
+    dynamics = Dynamics(problem, state, problem.scene.protocol.integrator, resolve_time_step(problem))
+    dynamics.set_ramps(load=(load, load, 0.0))
+    found = []
+    for _ in range(steps // every):
+        dynamics.advance(every)
+        found.append(read(dynamics))
+    return found
 
 
 def _by_dynamics(scene: Scene) -> tuple[Problem, State, State]:
@@ -252,9 +249,8 @@ def simulate(
             for name in integrators
         ],
     }
-    results = iter(
-        map_tasks(_run, [t for ts in tasks.values() for t in ts], workers=workers, progress=progress, what="runs")
-    )
+    every = [task for several in tasks.values() for task in several]
+    results = iter(run_tasks(every, workers=workers, progress=progress, what="runs"))
     found = {name: [next(results) for _ in several] for name, several in tasks.items()}
 
     packing = base.packing.build()
@@ -289,9 +285,9 @@ def _stop_energy(frictions: Sequence[float], energies: Sequence[float], found: l
             for name, text in texts.items()
         },
         coords={
-            "friction": variable(("friction",), np.array(frictions), "coefficient of friction between disks"),
+            "friction": variable("friction", frictions, "coefficient of friction between disks"),
             "stop_kinetic_energy": variable(
-                ("stop_kinetic_energy",), np.array(energies), "kinetic energy per disk at which the dynamics stops"
+                "stop_kinetic_energy", energies, "kinetic energy per disk at which the dynamics stops"
             ),
         },
     )
@@ -303,10 +299,10 @@ def _restart(forces: Sequence[float], found: list[FloatArray]) -> xr.Dataset:
             "kinetic_energy": variable(
                 ("load", "reading"), np.stack(found), "kinetic energy per disk after a restart of a finished state"
             ),
-            "load": variable(("load",), np.array(forces), f"load of the restarted state {FORCE}"),
+            "load": variable("load", forces, f"load of the restarted state {FORCE}"),
         },
         coords={
-            "step": variable(("reading",), READ_EVERY * np.arange(1, found[0].size + 1), "time steps since the restart")
+            "step": variable("reading", READ_EVERY * np.arange(1, found[0].size + 1), "time steps since the restart")
         },
     )
 
@@ -329,15 +325,15 @@ def _responses(
                 (dimension, "floor_disk"), response, "vertical floor force that the load adds, per applied force"
             ),
             "difference": variable(
-                (dimension,),
+                dimension,
                 np.abs(response - response[0]).max(axis=1) / largest,
                 "largest difference of the floor response from that of the first entry, per largest response",
             ),
-            **{name: variable((dimension,), np.array([i[name] for _, i in found]), t) for name, t in texts.items()},
+            **{name: variable(dimension, [i[name] for _, i in found], t) for name, t in texts.items()},
         },
         coords={
-            dimension: variable((dimension,), values, text),
-            "x": variable(("floor_disk",), x, "position from the loaded disk in mean disk radii"),
+            dimension: variable(dimension, values, text),
+            "x": variable("floor_disk", x, "position from the loaded disk in mean disk radii"),
         },
     )
 
@@ -353,8 +349,8 @@ def _swing(every: int, found: list[tuple[FloatArray, FloatArray]]) -> xr.Dataset
             for k, (name, text) in enumerate(texts.items())
         },
         coords={
-            "stop_rule": variable(("stop_rule",), np.array(STOP_RULES), "rule by which the run had stopped"),
-            "step": variable(("reading",), every * np.arange(1, found[0][0].size + 1), "time steps since the stop"),
+            "stop_rule": variable("stop_rule", STOP_RULES, "rule by which the run had stopped"),
+            "step": variable("reading", every * np.arange(1, found[0][0].size + 1), "time steps since the stop"),
         },
     )
 
@@ -369,8 +365,8 @@ def _disorder(x: FloatArray, found: list[FloatArray]) -> xr.Dataset:
             for k, (name, text) in enumerate((("stopped", "of runs that stop early"), ("finished", "in equilibrium")))
         },
         coords={
-            "realization": variable(("realization",), np.arange(len(found)), "realization of the radii"),
-            "x": variable(("x",), x, "position from the loaded disk in mean disk radii"),
+            "realization": variable("realization", np.arange(len(found)), "realization of the radii"),
+            "x": variable("x", x, "position from the loaded disk in mean disk radii"),
         },
     )
 
@@ -380,18 +376,14 @@ def _damping(ratios: Sequence[float], found: list[tuple[float, float, float]]) -
     return xr.Dataset(
         {
             "relaxation_time": variable(
-                ("damping_ratio",),
-                values[:, 0],
-                "time until the kinetic energy's envelope is at rest, in sqrt(radius/g)",
+                "damping_ratio", values[:, 0], "time until the kinetic energy's envelope is at rest, in sqrt(radius/g)"
             ),
-            "settled": variable(("damping_ratio",), values[:, 1].astype(np.int8), "1 if it came to rest"),
+            "settled": variable("damping_ratio", values[:, 1].astype(np.int8), "1 if it came to rest"),
             "beeman_limit": variable(
-                ("damping_ratio",), values[:, 2], "largest stable time step of Beeman's method in sqrt(radius/g)"
+                "damping_ratio", values[:, 2], "largest stable time step of Beeman's method in sqrt(radius/g)"
             ),
         },
         coords={
-            "damping_ratio": variable(
-                ("damping_ratio",), np.array(ratios), "dashpot over its critical value, nu / (2 sqrt(k))"
-            )
+            "damping_ratio": variable("damping_ratio", ratios, "dashpot over its critical value, nu / (2 sqrt(k))")
         },
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -45,24 +46,13 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
     """A row for each smoothing width, a column for each polydispersity."""
     deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
-    widths = crossovers["width"].values
+    widths = crossovers["width"].values.tolist()
     applied = shapes["applied_force"].values
     limits = 0.2 * float(np.nanmin(applied)), 5.0 * float(np.nanmax(applied))
-    figure, panels = style.figure(
-        len(widths),
-        len(deltas),
-        width="double",
-        height=0.5 + 1.85 * len(widths),
-        sharex=True,
-        sharey=True,
-    )
-    for index, (axes, (width, delta)) in enumerate(
-        zip(panels.ravel(), ((w, d) for w in widths for d in deltas), strict=True)
-    ):
-        here = np.flatnonzero(crossovers["polydispersity"].values == delta)
-        here = here[np.argsort(crossovers["friction"].values[here])]
-        axes.set(yscale="log", ylim=limits, xlim=(-0.07, 1.07))
-        axes.set_xticks([0.0, 0.2, 0.5, 1.0], ["0", "0.2", "0.5", "1"])
+    figure, panels = _grid(widths, deltas, 0.5 + 1.85 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
+    for (width, delta), axes in panels.items():
+        here = _of(crossovers, delta)
+        axes.set(ylim=limits, **_FRICTION_AXES)
         if delta:
             ordered = crossovers.sel(width=width).isel(case=np.flatnonzero(crossovers["polydispersity"].values == 0.0))
             ordered = ordered.sortby("friction")
@@ -70,15 +60,41 @@ def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Datas
         _diagram(axes, crossovers.sel(width=width).isel(case=here), applied[here], limits)
         if not delta:
             _transitions(axes, realizations.sel(width=width).isel(case=here), applied[here])
+    first = panels[widths[0], deltas[0]]
+    for text, x, y in (("two peaks", 0.06, 0.76), ("one peak", 0.45, 0.42)):
+        first.text(x, y, text, transform=first.transAxes, va="center", style="italic", fontsize=8)
+    return figure
+
+
+#: Axes of force against friction.
+_FRICTION_AXES: dict[str, Any] = {
+    "yscale": "log",
+    "xlim": (-0.07, 1.07),
+    "xticks": [0.0, 0.2, 0.5, 1.0],
+    "xticklabels": ["0", "0.2", "0.5", "1"],
+}
+
+
+def _grid(
+    widths: Sequence[float], deltas: Sequence[float], height: float, x: str, y: str
+) -> tuple[Figure, dict[tuple[float, float], Axes]]:
+    """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels."""
+    figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
+    found = dict(zip(((w, d) for w in widths for d in deltas), panels.ravel(), strict=True))
+    for index, ((width, delta), axes) in enumerate(found.items()):
         name = f"$\\delta = {delta:g}$" if delta else "lattice"
         style.letter(axes, chr(ord("a") + index), place="above", text=f"{name}, $w = {width:g}\\,\\bar R$")
     for axes in panels[-1]:
-        axes.set_xlabel(f"${style.BOTH_FRICTIONS}$")
+        axes.set_xlabel(x)
     for axes in panels[:, 0]:
-        axes.set_ylabel(style.FORCE)
-    for text, x, y in (("two peaks", 0.06, 0.76), ("one peak", 0.45, 0.42)):
-        panels[0, 0].text(x, y, text, transform=panels[0, 0].transAxes, va="center", style="italic", fontsize=8)
-    return figure
+        axes.set_ylabel(y)
+    return figure, found
+
+
+def _of(crossovers: xr.Dataset, delta: float) -> NDArray[np.intp]:
+    """The cases of a polydispersity in the order of friction."""
+    here = np.flatnonzero(crossovers["polydispersity"].values == delta)
+    return here[np.argsort(crossovers["friction"].values[here])]
 
 
 def _diagram(axes: Axes, data: xr.Dataset, applied: FloatArray, limits: tuple[float, float]) -> None:
@@ -136,35 +152,20 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
     """
     deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
     frictions = sorted(set(crossovers["friction"].values.tolist()))
-    widths = crossovers["width"].values
-    figure, panels = style.figure(
-        len(widths), len(deltas), width="double", height=0.6 + 1.7 * len(widths), sharex=True, sharey=True
-    )
+    widths = crossovers["width"].values.tolist()
+    what = f"means of {int(shapes.attrs['few'])} that agree"
+    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), "force over crossover force", what)
     drawn = {}
-    for row, width in enumerate(widths):
-        for column, delta in enumerate(deltas):
-            axes = panels[row, column]
-            one = crossovers.sel(width=width)
-            for case in np.flatnonzero((one["polydispersity"].values == delta) & (one["kind"].values == FOUND)):
-                friction = float(one["friction"][case])
-                agree = shapes["few_agree"].sel(width=width).values[case]
-                look = style.marked_line(frictions.index(friction)) | {"linewidth": 0.9}
-                (drawn[friction],) = axes.plot(
-                    shapes["applied_force"].values[case] / float(one["force"][case]), agree, **look
-                )
-            axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
-            axes.set(xscale="log", ylim=(0.2, 1.05))
-            style.letter(
-                axes,
-                chr(ord("a") + row * len(deltas) + column),
-                place="above",
-                text=f"$\\delta = {delta:g}$, $w = {width:g}\\,\\bar R$",
-            )
-    for axes in panels[-1]:
-        axes.set_xlabel("force over crossover force")
-    few = int(shapes.attrs["few"])
-    for axes in panels[:, 0]:
-        axes.set_ylabel(f"means of {few} that agree")
+    for (width, delta), axes in panels.items():
+        one = crossovers.sel(width=width)
+        for case in np.flatnonzero((one["polydispersity"].values == delta) & (one["kind"].values == FOUND)):
+            friction = float(one["friction"][case])
+            agree = shapes["few_agree"].sel(width=width).values[case]
+            look = style.marked_line(frictions.index(friction)) | {"linewidth": 0.9}
+            force = shapes["applied_force"].values[case] / float(one["force"][case])
+            (drawn[friction],) = axes.plot(force, agree, **look)
+        axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
+        axes.set(xscale="log", ylim=(0.2, 1.05))
     order = sorted(drawn)
     figure.legend(
         [drawn[friction] for friction in order],
@@ -178,43 +179,26 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
 def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
     """Crossovers by what counts as two peaks; found ones alone, those of single realizations beside them."""
     deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
-    widths = crossovers["width"].values
-    figure, panels = style.figure(
-        len(widths), len(deltas), width="double", height=0.6 + 1.7 * len(widths), sharex=True, sharey=True
-    )
+    widths = crossovers["width"].values.tolist()
+    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
     tolerances += [(float(t), others.sel({"tolerance": t})) for t in others["tolerance"].values]
     colours = style.ordered_colours(len(tolerances))
     handles = {}
-    for row, width in enumerate(widths):
-        for column, delta in enumerate(deltas):
-            axes = panels[row, column]
-            here = np.flatnonzero(crossovers["polydispersity"].values == delta)
-            here = here[np.argsort(crossovers["friction"].values[here])]
-            for k, (tolerance, data) in enumerate(sorted(tolerances, key=lambda pair: pair[0])):
-                one = data.sel(width=width).isel(case=here)
-                found = one["kind"].values == FOUND
-                look = style.marked_line(k) | {"color": colours[k], "linewidth": 0.9, "markersize": 3.0}
-                friction, force = one["friction"].values[found], one["force"].values[found]
-                (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look)
-            single = realizations.sel(width=width).isel(case=here)
-            known = np.isfinite(single["median"].values)
-            (handles["median of realizations"],) = axes.plot(
-                single["friction"].values[known],
-                single["median"].values[known],
-                linestyle="none",
-                marker="x",
-                color=style.VERMILION,
-                markersize=4.0,
-            )
-            axes.set(yscale="log", xlim=(-0.07, 1.07))
-            axes.set_xticks([0.0, 0.2, 0.5, 1.0], ["0", "0.2", "0.5", "1"])
-            name = f"$\\delta = {delta:g}$, $w = {width:g}\\,\\bar R$"
-            style.letter(axes, chr(ord("a") + row * len(deltas) + column), place="above", text=name)
-    for axes in panels[-1]:
-        axes.set_xlabel(f"${style.BOTH_FRICTIONS}$")
-    for axes in panels[:, 0]:
-        axes.set_ylabel(style.FORCE)
+    for (width, delta), axes in panels.items():
+        here = _of(crossovers, delta)
+        for k, (tolerance, data) in enumerate(sorted(tolerances, key=lambda pair: pair[0])):
+            one = data.sel(width=width).isel(case=here)
+            found = one["kind"].values == FOUND
+            look = style.marked_line(k) | {"color": colours[k], "linewidth": 0.9, "markersize": 3.0}
+            friction, force = one["friction"].values[found], one["force"].values[found]
+            (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look)
+        single = realizations.sel(width=width).isel(case=here)
+        friction, median = single["friction"].values, single["median"].values
+        known = np.isfinite(median)
+        cross: dict[str, Any] = {"linestyle": "none", "marker": "x", "color": style.VERMILION, "markersize": 4.0}
+        (handles["median of realizations"],) = axes.plot(friction[known], median[known], **cross)
+        axes.set(**_FRICTION_AXES)
     figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=len(handles), title="dip")
     return figure
 

@@ -134,15 +134,15 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
     made = {}
     for name, rows in numbers.items():
         values = np.array(rows)
-        made[name] = variable(("case",), values[:, 0], text[name])
+        made[name] = variable("case", values[:, 0], text[name])
         made[f"{name}_interval"] = variable(("case", "level"), values[:, 1:], "quantiles of the bootstrapped mean")
     return xr.Dataset(
         {
             "dip": at_force["shape"].variable,
             "dip_interval": at_force["shape_interval"].variable,
-            "applied_force": variable(("case",), [force for _, _, force in chosen], f"applied force {FORCE}"),
+            "applied_force": variable("case", [force for _, _, force in chosen], f"applied force {FORCE}"),
             "distance": variable(
-                ("case",), [d for _, d, _ in chosen], f"distance of neighbours before gravity acts {LENGTH}"
+                "case", [d for _, d, _ in chosen], f"distance of neighbours before gravity acts {LENGTH}"
             ),
             **made,
         },
@@ -197,8 +197,8 @@ def _datasets(
     dims = ("width", "case")
     cases = {name: source[name].variable for name in CASE}
     coordinates = {
-        "width": variable(("width",), np.array(parameters.widths), f"width w of the smoothing Gaussian {LENGTH}"),
-        "level": variable(("level",), np.array(LEVELS), "part of the bootstrap draws below"),
+        "width": variable("width", parameters.widths, f"width w of the smoothing Gaussian {LENGTH}"),
+        "level": variable("level", LEVELS, "part of the bootstrap draws below"),
         **cases,
     }
     flags = {"flag_values": np.arange(len(KINDS), dtype=np.int8), "flag_meanings": " ".join(KINDS)}
@@ -216,7 +216,7 @@ def _datasets(
         },
         coords={
             **coordinates,
-            "kind_of_draw": variable(("kind_of_draw",), list(KINDS), "kinds of bootstrap draws"),
+            "kind_of_draw": variable("kind_of_draw", list(KINDS), "kinds of bootstrap draws"),
         },
         attrs={"tolerance": parameters.tolerance},
     )
@@ -226,7 +226,7 @@ def _datasets(
         {
             "force": variable(
                 dims_of_others,
-                np.array([[[other[0] for other in one] for one in row] for row in others]),
+                [[[other[0] for other in one] for one in row] for row in others],
                 f"crossover force of the mean response, or its bound {FORCE}",
             ),
             "kind": variable(
@@ -237,7 +237,7 @@ def _datasets(
             ),
             "interval": variable(
                 (*dims_of_others, "level"),
-                np.array([[[quantiles(other[2]) for other in one] for one in row] for row in others]),
+                [[[quantiles(other[2]) for other in one] for one in row] for row in others],
                 quantile,
             ),
             "draws": variable(
@@ -249,9 +249,7 @@ def _datasets(
         },
         coords={
             **coordinates,
-            "tolerance": variable(
-                ("tolerance",), np.array(parameters.other_tolerances), "shape from which on there are two peaks"
-            ),
+            "tolerance": variable("tolerance", parameters.other_tolerances, "shape from which on there are two peaks"),
         },
     )
     step, each = (*dims, "step"), (*dims, "realization", "step")

@@ -14,18 +14,8 @@ from matplotlib.ticker import MaxNLocator
 from scipy.spatial import ConvexHull
 
 from granular_response.paper.captions import letters
-from granular_response.plot import style
+from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
-from granular_response.plot.network import (
-    draw_box,
-    draw_contacts,
-    draw_disks,
-    draw_force_chains,
-    draw_force_key,
-    force_scale,
-    pair_points,
-    wall_points,
-)
 from granular_response.state import Box
 
 #: Cases that are drawn, left and right; of the two frictionless minima one, the other is its mirror image.
@@ -45,14 +35,14 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     figure, panels = style.figure(3, 2, width="double", height=3.9)
     shown = piles.sel(case=list(DRAWN))
-    scale = force_scale(shown["contact_force"].values.reshape(-1, 2), longest=3.4, widest=2.8)
+    scale = network.force_scale(shown["contact_force"].values.reshape(-1, 2), longest=3.4, widest=2.8)
     fields = stress["stress_zz"].sel(case=list(DRAWN))
     largest = float(fields.max())
     levels = np.asarray(MaxNLocator(8).tick_values(0.0, largest))[1:-1]  # without zero and what is above all
     width = float(piles["width"])
     top = float(piles["position"].values[..., 1].max()) + 1.0
     for column, (case, name) in enumerate(DRAWN.items()):
-        forces, map_axes, network = panels[:, column]
+        forces, map_axes, contacts = panels[:, column]
         one = piles.sel(case=case)
         _forces(forces, one, scale)
         style.letter(forces, "ab"[column], place="above", text=f"forces, {name}")
@@ -63,14 +53,14 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         map_axes.axhspan(0.0, near, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
         map_axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT if column == 0 else "")
         style.letter(map_axes, "cd"[column], place="above", text="$\\sigma_{zz}$")
-        _network(network, one)
-        style.letter(network, "ef"[column], place="above", text="contacts")
-        for axes in (forces, network):
-            draw_box(axes, Box(width), 2.0)
+        _network(contacts, one)
+        style.letter(contacts, "ef"[column], place="above", text="contacts")
+        for axes in (forces, contacts):
+            network.draw_box(axes, Box(width), 2.0)
             style.no_axes(axes)
             axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
-        draw_force_key(forces, (0.8 * width, 0.9 * top), KEY, **scale)
+        network.draw_force_key(forces, (0.8 * width, 0.9 * top), KEY, **scale)
     bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
     bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
     bar.set_label(style.STRESS_OF_GRAVITY)
@@ -79,13 +69,13 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
 
 def _forces(axes: Axes, one: xr.Dataset, scale: Mapping[str, float]) -> None:
     position, radius = one["position"].values, one["radius"].values
-    draw_disks(axes, position, radius)
+    network.draw_disks(axes, position, radius)
     touching = one["contact_status"].values != 0
     pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
     force = one["contact_force"].values[touching]
-    draw_force_chains(axes, pair_points(position, radius, *pairs), force, **scale)
-    at_wall = wall_points(position, radius, one["wall_disk"].values, one["wall_index"].values)
-    draw_force_chains(axes, at_wall, one["wall_force"].values, **scale)
+    network.draw_force_chains(axes, network.pair_points(position, radius, *pairs), force, **scale)
+    at_wall = network.wall_points(position, radius, one["wall_disk"].values, one["wall_index"].values)
+    network.draw_force_chains(axes, at_wall, one["wall_force"].values, **scale)
 
 
 def _outline(axes: Axes, one: xr.Dataset) -> None:
@@ -101,9 +91,9 @@ def _outline(axes: Axes, one: xr.Dataset) -> None:
 
 def _network(axes: Axes, one: xr.Dataset) -> None:
     touching = one["contact_status"].values != 0
-    draw_disks(axes, one["position"].values, one["radius"].values)
+    network.draw_disks(axes, one["position"].values, one["radius"].values)
     pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
-    draw_contacts(axes, one["position"].values, *pairs, linewidth=0.6)
+    network.draw_contacts(axes, one["position"].values, *pairs, linewidth=0.6)
 
 
 def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:

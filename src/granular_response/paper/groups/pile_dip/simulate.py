@@ -85,7 +85,7 @@ def simulate(
 
 
 def _case() -> xr.Variable:
-    return variable(("case",), list(CASES), "pile; the two frictionless ones are mirror images")
+    return variable("case", list(CASES), "pile; the two frictionless ones are mirror images")
 
 
 def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
@@ -111,9 +111,9 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
                 np.stack([state.position for state in states]),
                 f"disk centre x, z {LENGTH}",
             ),
-            "radius": variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
-            "contact_disk": variable(("contact",), pairs.first, "disk that the contact force acts on"),
-            "contact_partner": variable(("contact",), pairs.second, "other disk"),
+            "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
+            "contact_disk": variable("contact", pairs.first, "disk that the contact force acts on"),
+            "contact_partner": variable("contact", pairs.second, "other disk"),
             "contact_force": variable(
                 (*dims, "axis"),
                 np.stack([state.pair_force() for state in states]),
@@ -126,8 +126,8 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
                 flag_values=np.array([0, 1, 2], np.int8),
                 flag_meanings="open sticking sliding",
             ),
-            "wall_disk": variable(("wall_contact",), walls.first, "disk that the wall's force acts on"),
-            "wall_index": variable(("wall_contact",), walls.second, "wall: 0 floor, 1 left, 2 right"),
+            "wall_disk": variable("wall_contact", walls.first, "disk that the wall's force acts on"),
+            "wall_index": variable("wall_contact", walls.second, "wall: 0 floor, 1 left, 2 right"),
             "wall_force": variable(
                 ("case", "wall_contact", "axis"),
                 np.stack([state.wall_force() for state in states]),
@@ -135,12 +135,12 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
             ),
             "floor_force": variable(("case", "floor_disk"), floor, f"vertical floor force {FORCE}"),
             "floor_dip": variable(
-                ("case",),
+                "case",
                 [central_dip(x, force) for force in floor],
                 "how far the floor force under the apex is below the lower maximum beside it, per largest",
             ),
             "floor_asymmetry": variable(
-                ("case",), asymmetry, f"largest difference of a floor force from its mirror image {FORCE}"
+                "case", asymmetry, f"largest difference of a floor force from its mirror image {FORCE}"
             ),
             "image_difference": variable(
                 (),
@@ -149,15 +149,15 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
             ),
             "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
             **{
-                name: variable(("case",), values, text)
+                name: variable("case", values, text)
                 for (name, text), values in zip(texts.items(), scalars, strict=True)
             },
         },
         coords={
             "case": _case(),
-            "axis": variable(("axis",), ["x", "z"], "axis labels"),
-            "floor_disk": variable(("floor_disk",), bottom, "index of the floor disk"),
-            "x_floor": variable(("floor_disk",), x, f"position from the axis of the pile {LENGTH}"),
+            "axis": variable("axis", ["x", "z"], "axis labels"),
+            "floor_disk": variable("floor_disk", bottom, "index of the floor disk"),
+            "x_floor": variable("floor_disk", x, f"position from the axis of the pile {LENGTH}"),
         },
     ).merge(certificates_dataset(states, "case"))
 
@@ -200,9 +200,7 @@ def _stress_dataset(packing: Packing, states: Sequence[State], w: float, spacing
             ("case", "x"), line, "vertical stress at the height of the dip, in weights per mean radius"
         ),
         "dip": variable(
-            ("case",),
-            dips,
-            "how far the vertical stress on the axis is below the lower maximum beside it, per largest",
+            "case", dips, "how far the vertical stress on the axis is below the lower maximum beside it, per largest"
         ),
         "dip_of_mean": variable(
             (), central_dip(x, line[:2].mean(axis=0)), "the same of the mean of the two frictionless minima"
@@ -214,7 +212,7 @@ def _stress_dataset(packing: Packing, states: Sequence[State], w: float, spacing
         data,
         coords={
             "case": _case(),
-            "x": variable(("x",), x, f"distance from the axis of the pile {LENGTH}"),
-            "z": variable(("z",), z, f"height above the floor {LENGTH}"),
+            "x": variable("x", x, f"distance from the axis of the pile {LENGTH}"),
+            "z": variable("z", z, f"height above the floor {LENGTH}"),
         },
     )

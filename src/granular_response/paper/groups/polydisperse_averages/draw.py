@@ -11,19 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from granular_response.plot import style
-from granular_response.plot.network import (
-    draw_box,
-    draw_disks,
-    draw_force_chains,
-    draw_force_key,
-    draw_load,
-    draw_loaded_disk,
-    draw_rotations,
-    force_scale,
-    pair_points,
-    wall_points,
-)
+from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, contact_force
 
 FloatArray = NDArray[np.float64]
@@ -61,26 +49,26 @@ def _forces(data: xr.Dataset) -> Figure:
     force = float(data["force"][1])
     radius = data["radius"].values
     top = float((data["position"].values[..., 1] + radius).max())
-    at_rest = force_scale(pair[0], wall[0], longest=3.8, widest=4.2)
+    at_rest = network.force_scale(pair[0], wall[0], longest=3.8, widest=4.2)
     for index, axes in enumerate(panels[:, 0]):
         scale = {name: KEYS[0] / KEYS[index] * per_force for name, per_force in at_rest.items()}
         position = data["position"].values[index]
         shown = (pair[0], wall[0]) if index == 0 else (pair[1] - pair[0], wall[1] - wall[0])
-        draw_disks(axes, position, radius)
-        draw_rotations(axes, position, radius, data["angle"].values[index], color=style.SKY, linewidth=0.5)
-        draw_box(axes, Box(width), top)
+        network.draw_disks(axes, position, radius)
+        network.draw_rotations(axes, position, radius, data["angle"].values[index], color=style.SKY, linewidth=0.5)
+        network.draw_box(axes, Box(width), top)
         pairs = data["contact_disk"].values, data["contact_partner"].values
-        draw_force_chains(axes, pair_points(position, radius, *pairs), shown[0], **scale)
-        at_wall = wall_points(position, radius, data["wall_disk"].values, data["wall_index"].values)
-        draw_force_chains(axes, at_wall, shown[1], **scale)
+        network.draw_force_chains(axes, network.pair_points(position, radius, *pairs), shown[0], **scale)
+        at_wall = network.wall_points(position, radius, data["wall_disk"].values, data["wall_index"].values)
+        network.draw_force_chains(axes, at_wall, shown[1], **scale)
         name = "at rest under gravity" if index == 0 else f"added by {style.equals(style.F_EXT, force, style.WEIGHT)}"
         style.letter(axes, "ab"[index], place="above", text=name)
-        draw_force_key(axes, (width - 14.0, top + 2.8), KEYS[index], **scale)
+        network.draw_force_key(axes, (width - 14.0, top + 2.8), KEYS[index], **scale)
         style.no_axes(axes)
         axes.set(xlim=(-1.5, width + 1.5), ylim=(-1.5, top + 4.0))
     x, z = data["position"].values[1, disk] + [0.0, radius[disk]]
-    draw_loaded_disk(panels[1, 0], (float(x), float(z - radius[disk])), float(radius[disk]))
-    draw_load(panels[1, 0], (float(x), float(z)), length=3.6)
+    network.draw_loaded_disk(panels[1, 0], (float(x), float(z - radius[disk])), float(radius[disk]))
+    network.draw_load(panels[1, 0], (float(x), float(z)), length=3.6)
     return figure
 
 

@@ -87,8 +87,8 @@ def _forces_dataset(task: Task, found: Realization, polydispersity: float) -> xr
     dataset = states_dataset(states)
     dataset["axis"].attrs.update(long_name="axis labels", units="1")
     return dataset.assign(
-        force=variable(("state",), np.array([state.load_factor for state in states]), f"applied force {FORCE}"),
-        radius=variable(("disk",), packing.radius, f"disk radius {LENGTH}"),
+        force=variable("state", [state.load_factor for state in states], f"applied force {FORCE}"),
+        radius=variable("disk", packing.radius, f"disk radius {LENGTH}"),
         width=variable((), packing.width, f"distance of the side walls {LENGTH}"),
         loaded_disk=variable((), int(problem.load_disk[0]), "index of the loaded disk"),
         polydispersity=variable((), polydispersity, "delta: spread of the radii"),

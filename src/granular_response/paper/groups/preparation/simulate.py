@@ -15,21 +15,12 @@ import numpy as np
 import xarray as xr
 
 from granular_response.observe import network
+from granular_response.paper import slab_response as slab
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.preparation.parameters import Parameters, Part
-from granular_response.paper.slab_response import (
-    Event,
-    LoadPath,
-    Measured,
-    Measures,
-    events_dataset,
-    happenings,
-    locate,
-    measured_dataset,
-)
 from granular_response.scene import Scene
 from granular_response.store.result import FORCE, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import Progress, run_tasks
 
 
 @dataclass(frozen=True)
@@ -43,17 +34,17 @@ class Task:
 
     def run(self) -> Outcome:
         """The slab settled and loaded by each of the forces."""
-        path = LoadPath.of(self.scene)
+        path = slab.LoadPath.of(self.scene)
         states = path.through(self.forces)
-        measures = Measures(path)
-        asked = happenings(measures, states[0], self.asymmetry)
+        measures = slab.Measures(path)
+        asked = slab.happenings(measures, states[0], self.asymmetry)
         pairs = path.rest.pairs
         level = pairs.touching & (network.lattice_direction(path.rest) == network.HORIZONTAL) & measures.near
         return Outcome(
             self,
-            Measured.of(measures, states),
+            slab.Measured.of(measures, states),
             [
-                locate(name, path, self.forces, happened, math.inf, definition)
+                slab.locate(name, path, self.forces, happened, math.inf, definition)
                 for name, (happened, definition) in asked.items()
             ],
             float(pairs.normal_force[level].mean()) if level.any() else 0.0,
@@ -64,8 +55,8 @@ class Task:
 @dataclass(frozen=True)
 class Outcome:
     task: Task
-    measured: Measured
-    events: list[Event]
+    measured: slab.Measured
+    events: list[slab.Event]
     level_force: float  #: mean normal force of horizontal contacts at rest
     rest_mobilised: list[int]  #: contacts of disks near the Coulomb limit at rest, by margin
 
@@ -91,17 +82,11 @@ def _scene(base: Scene, part: Part) -> Scene:
     return base.updated({"contact.friction": part.friction, "wall.friction": part.friction if rough else 0.0})
 
 
-def _run(task: Task) -> Outcome:
-    return task.run()
-
-
 def simulate(
     parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
 ) -> dict[str, xr.Dataset]:
     """Datasets ``response`` (case, force), nan above the last force of a case, and ``events``."""
-    outcomes: list[Outcome] = map_tasks(
-        _run, tasks(parameters), workers=workers, progress=progress, what="prepared slabs"
-    )
+    outcomes = run_tasks(tasks(parameters), workers=workers, progress=progress, what="prepared slabs")
     order = [way.name for way in parameters.ways]
     outcomes = sorted(outcomes, key=lambda o: (*_walls_and_friction(o), order.index(o.task.way)))
     return labelled({"response": _response(outcomes, parameters.forces), "events": _events(outcomes)}, parameters.base)
@@ -114,24 +99,24 @@ def _walls_and_friction(outcome: Outcome) -> tuple[float, float]:
 
 def _response(outcomes: Sequence[Outcome], forces: Sequence[float]) -> xr.Dataset:
     parts = [((k, slice(len(o.task.forces))), o.measured) for k, o in enumerate(outcomes)]
-    dataset = measured_dataset(("case", "force"), parts, (len(outcomes), len(forces)))
+    dataset = slab.measured_dataset(("case", "force"), parts, (len(outcomes), len(forces)))
     dataset["level_force"] = variable(
-        ("case",),
-        np.array([o.level_force for o in outcomes]),
+        "case",
+        [o.level_force for o in outcomes],
         f"mean normal force at rest of touching horizontal contacts in the central third {FORCE}",
     )
     dataset["rest_mobilised"] = variable(
         ("case", "margin"),
-        np.array([o.rest_mobilised for o in outcomes]),
+        [o.rest_mobilised for o in outcomes],
         "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
     )
-    axis = variable(("force",), np.array(forces), f"applied force {FORCE}")
+    axis = variable("force", forces, f"applied force {FORCE}")
     return dataset.assign_coords({"force": axis, **_labels("case", outcomes, [1] * len(outcomes))})
 
 
 def _events(outcomes: Sequence[Outcome]) -> xr.Dataset:
     """The events of all cases; the labels of their case stand beside them."""
-    dataset = events_dataset([event for o in outcomes for event in o.events])
+    dataset = slab.events_dataset([event for o in outcomes for event in o.events])
     return dataset.assign(_labels("event", outcomes, [len(o.events) for o in outcomes]))
 
 
@@ -148,4 +133,4 @@ def _labels(dimension: str, outcomes: Sequence[Outcome], repeats: Sequence[int])
         "friction": (np.array([scene.contact.friction for scene in scenes]), "coefficient of friction between disks"),
         "wall_friction": (np.array([scene.wall.friction for scene in scenes]), "coefficient of friction of walls"),
     }
-    return {name: variable((dimension,), np.repeat(values, repeats), text) for name, (values, text) in columns.items()}
+    return {name: variable(dimension, np.repeat(values, repeats), text) for name, (values, text) in columns.items()}

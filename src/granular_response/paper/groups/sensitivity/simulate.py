@@ -152,26 +152,26 @@ def _dataset(known: list[Variant], outcomes: list[Outcome]) -> xr.Dataset:
         {
             "floor_response": variable(("variant", "floor_disk"), response, "floor response per applied force"),
             "largest_difference": variable(
-                ("variant",), np.abs(difference).max(axis=1), "largest difference of the floor response"
+                "variant", np.abs(difference).max(axis=1), "largest difference of the floor response"
             ),
             "rms_difference": variable(
-                ("variant",), np.sqrt((difference**2).mean(axis=1)), "rms difference of the floor response"
+                "variant", np.sqrt((difference**2).mean(axis=1)), "rms difference of the floor response"
             ),
-            "response_sum": variable(("variant",), response.sum(axis=1), "sum of the floor response"),
+            "response_sum": variable("variant", response.sum(axis=1), "sum of the floor response"),
             "kinetic_energy": variable(
-                ("variant",),
-                np.array([o.kinetic_energy for o in outcomes]),
+                "variant",
+                [o.kinetic_energy for o in outcomes],
                 "kinetic energy per disk where the dynamics stopped, in mean weight times mean radius",
             ),
             "force_residual": variable(
-                ("variant",),
-                np.array([o.force_residual for o in outcomes]),
+                "variant",
+                [o.force_residual for o in outcomes],
                 "largest unbalanced force on a disk in mean disk weights",
             ),
-            "text": variable(("variant",), np.array([v.text for v in known]), "what is changed"),
+            "text": variable("variant", [v.text for v in known], "what is changed"),
         },
         coords={
-            "variant": variable(("variant",), np.array([v.name for v in known]), "name of the variant"),
-            "x": variable(("floor_disk",), outcomes[0].x, "lattice position from the loaded disk in mean radii"),
+            "variant": variable("variant", [v.name for v in known], "name of the variant"),
+            "x": variable("floor_disk", outcomes[0].x, "lattice position from the loaded disk in mean radii"),
         },
     )

@@ -130,7 +130,7 @@ def _dataset(slabs: list[tuple[Case, int]], outcomes: list[Outcome], ratio: floa
         other.append(apart["rough" if case.floor == "smooth" else "smooth"])
 
     def column(values: list[Any], long_name: str) -> xr.Variable:
-        return variable(("slab",), np.array(values), long_name)
+        return variable("slab", values, long_name)
 
     along = ("slab", "floor_disk")
     compared = f"largest difference within {COMPARED:g} slab heights of the load, per largest elastic response"

@@ -115,9 +115,9 @@ def _time_steps(parameters: TimeSteps, seed: int) -> Plan:
                     ),
                 },
                 coords={
-                    "integrator": variable(("integrator",), np.array(integrators), "integrator"),
-                    name: variable((name,), np.array(values), AXES[name][1]),
-                    "ratio": variable(("ratio",), np.array(ratios), "time step over the predicted limit"),
+                    "integrator": variable("integrator", integrators, "integrator"),
+                    name: variable(name, values, AXES[name][1]),
+                    "ratio": variable("ratio", ratios, "time step over the predicted limit"),
                 },
             )
         return datasets
@@ -181,8 +181,8 @@ def _drift(parameters: Drift, seed: int) -> Plan:
                 ),
             },
             coords={
-                "system": variable(("system",), np.array(list(systems)), "what moves"),
-                "integrator": variable(("integrator",), np.array(integrators), "integrator"),
+                "system": variable("system", list(systems), "what moves"),
+                "integrator": variable("integrator", integrators, "integrator"),
             },
         )
         return {"drift": dataset}
@@ -213,12 +213,12 @@ def _collisions(parameters: Collisions) -> Plan:
                 )
             },
             coords={
-                "body": variable(("body",), np.array(bodies), "what the disk hits"),
-                "friction_law": variable(("friction_law",), np.array(laws), "protocol.friction_law"),
-                "damping_ratio": variable(("damping_ratio",), np.array(damping), AXES["damping_ratio"][1]),
-                "friction": variable(("friction",), np.array(frictions), "coefficient of friction"),
-                "angle": variable(("angle",), np.array(angles), "angle of incidence from grazing in degrees"),
-                "spin": variable(("spin",), np.array(spins), "spin of the hitting disk, rim speed over speed"),
+                "body": variable("body", bodies, "what the disk hits"),
+                "friction_law": variable("friction_law", laws, "protocol.friction_law"),
+                "damping_ratio": variable("damping_ratio", damping, AXES["damping_ratio"][1]),
+                "friction": variable("friction", frictions, "coefficient of friction"),
+                "angle": variable("angle", angles, "angle of incidence from grazing in degrees"),
+                "spin": variable("spin", spins, "spin of the hitting disk, rim speed over speed"),
             },
         )
         return {"collisions": dataset}
@@ -268,8 +268,8 @@ def _rolling(parameters: Rolling) -> Plan:
                 "exact_rim_speed": variable(dims, np.stack([r for _, r in exact]), "rim speed in closed form"),
             },
             coords={
-                "speed": variable(("start",), np.array([v for v, _ in starts]), "velocity at first"),
-                "spin": variable(("start",), np.array([w for _, w in starts]), "spin at first, counter-clockwise"),
+                "speed": variable("start", [v for v, _ in starts], "velocity at first"),
+                "spin": variable("start", [w for _, w in starts], "spin at first, counter-clockwise"),
             },
         )
         dataset["friction"] = variable((), friction, "coefficient of friction of the floor")
@@ -299,7 +299,7 @@ def _rounding(parameters: Rounding, seed: int) -> Plan:
                 )
                 for name, text in texts.items()
             },
-            coords={"case": variable(("case",), np.array(list(cases)), "packing and load")},
+            coords={"case": variable("case", list(cases), "packing and load")},
         )
         dataset["displacement"] = variable((), size, "largest displacement of the rest state, in mean radii")
         return {"rounding": dataset}
@@ -324,10 +324,7 @@ def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
             "twin_difference": "largest difference of floor responses to the mirrored twin, over the load",
         }
         dataset = xr.Dataset(
-            {
-                key: variable(("scene",), np.array([getattr(t, key) for t in trials]), text)
-                for key, text in texts.items()
-            }
+            {key: variable("scene", [getattr(t, key) for t in trials], text) for key, text in texts.items()}
         )
         words = {
             "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
@@ -338,7 +335,7 @@ def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
         for name, (values, text) in words.items():
             codes = np.array([values.index(getattr(t, name)) for t in trials], np.int8)
             legend = ", ".join(f"{code} {value}" for code, value in enumerate(values))
-            dataset[name] = variable(("scene",), codes, f"{text}: {legend}")
+            dataset[name] = variable("scene", codes, f"{text}: {legend}")
         # what a wrong result was, for whoever has to look at it
         wrong = [f"{k}: {t.message}" for k, t in enumerate(trials) if t.outcome == "wrong"]
         dataset.attrs["wrong"] = "; ".join(wrong)

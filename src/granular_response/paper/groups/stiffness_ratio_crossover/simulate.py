@@ -23,17 +23,9 @@ from numpy.typing import NDArray
 
 from granular_response.observe.events import bisect_event
 from granular_response.observe.peaks import central_dip, is_double_peaked
+from granular_response.paper import slab_response as slab
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.stiffness_ratio_crossover.parameters import Parameters
-from granular_response.paper.slab_response import (
-    Event,
-    LoadPath,
-    Measured,
-    Measures,
-    events_dataset,
-    first_change,
-    measured_dataset,
-)
 from granular_response.scene import Scene
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import Progress, map_tasks
@@ -73,11 +65,11 @@ class Ratio:
         return self.base.updated(changes)
 
 
-def measure(task: Ratio) -> tuple[Measured, str]:
+def measure(task: Ratio) -> tuple[slab.Measured, str]:
     """The measured response of a packing at one stiffness ratio, and the method that found it."""
-    path = LoadPath.of(task.scene())
+    path = slab.LoadPath.of(task.scene())
     state = path.at(task.force)
-    return Measured.of(Measures(path), [state]), path.method
+    return slab.Measured.of(slab.Measures(path), [state]), path.method
 
 
 @dataclass(frozen=True)
@@ -92,7 +84,7 @@ class Search:
     tolerance: float
 
 
-def narrow(search: Search) -> Event:
+def narrow(search: Search) -> slab.Event:
     """Bisect an event of ``EVENTS``; every evaluation settles and loads a packing."""
     happened = _HAPPENED[search.name]
 
@@ -114,7 +106,7 @@ def simulate(
     results = map_tasks(measure, tasks, workers=workers, progress=progress, what="stiffness ratios")
     measured = [result for result, _ in results]
 
-    found: list[Event] = []
+    found: list[slab.Event] = []
     searches: list[Search] = []
     for name, low, high in _brackets(ratios, measured):
         if np.isfinite(high) and low > 0.0 and high - low > tolerance:
@@ -124,13 +116,10 @@ def simulate(
     found += map_tasks(narrow, searches, workers=workers, progress=progress, what="crossovers")
     found.sort(key=lambda event: list(EVENTS).index(event.name))
 
-    response = measured_dataset(
-        ("stiffness_ratio",), [(slice(k, k + 1), one) for k, one in enumerate(measured)], ratios.shape
-    )
-    response = response.assign_coords(stiffness_ratio=_ratio(ratios))
+    response = slab.measured_along("stiffness_ratio", measured).assign_coords(stiffness_ratio=_ratio(ratios))
     response["force"] = variable((), force, f"applied force {FORCE}")
     response["methods"] = variable(
-        ("stiffness_ratio",), [method for _, method in results], "method that found the loaded state"
+        "stiffness_ratio", [method for _, method in results], "method that found the loaded state"
     )
     packing = base.packing.build()
     datasets = {
@@ -138,7 +127,7 @@ def simulate(
         "elastic": elastic_bodies(
             np.union1d(ratios, ELASTIC_RATIOS), measured[0].x, packing.row_count.size, packing.width
         ),
-        "events": events_dataset(found).drop_vars("friction"),
+        "events": slab.events_dataset(found).drop_vars("friction"),
     }
     datasets["events"]["low"].attrs["long_name"] = "stiffness ratio before the event"
     return labelled(datasets, base)
@@ -182,7 +171,7 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
                 dims, dip, "how far the profile at x = 0 is below the lower maximum beside it, per largest value"
             ),
             "root": variable(
-                ("rotations",),
+                "rotations",
                 [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
                 "k_2t/k_2n at which r of Sec. V.C is 0",
             ),
@@ -194,42 +183,42 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
         },
         coords={
             "stiffness_ratio": _ratio(ratios),
-            "x": variable(("floor_disk",), x, f"position of the floor disk from the load {LENGTH}"),
-            "body": variable(("body",), list(BODIES), "elastic body that carries the force"),
-            "rotations": variable(("rotations",), list(ROTATIONS), "whether the disks turn"),
+            "x": variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
+            "body": variable("body", list(BODIES), "elastic body that carries the force"),
+            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
         },
     )
 
 
-def _two_peaks_ended(measured: Measured) -> bool:
+def _two_peaks_ended(measured: slab.Measured) -> bool:
     return not is_double_peaked(measured.x, measured.response[0], interior=measured.interior)
 
 
-def _largest_at_centre(measured: Measured) -> bool:
+def _largest_at_centre(measured: slab.Measured) -> bool:
     return central_dip(measured.x, measured.response[0], interior=measured.interior) < 0.0
 
 
-_HAPPENED: dict[str, Callable[[Measured], bool]] = {
+_HAPPENED: dict[str, Callable[[slab.Measured], bool]] = {
     "two_peaks_end": _two_peaks_ended,
     "central_maximum_begins": _largest_at_centre,
 }
 
 
-def _brackets(ratios: FloatArray, measured: Sequence[Measured]) -> list[tuple[str, float, float]]:
+def _brackets(ratios: FloatArray, measured: Sequence[slab.Measured]) -> list[tuple[str, float, float]]:
     """Where on the axis each event lies."""
     ended = [_two_peaks_ended(one) for one in measured]
     central = [_largest_at_centre(one) for one in measured]
     # the last stretch of ratios with the maximum at the centre; there may be others below it
     begun = [all(central[k:]) for k in range(len(central))]
     return [
-        ("two_peaks_end", *first_change(ratios, ended)),
-        ("central_maximum_begins", *first_change(ratios, begun)),
+        ("two_peaks_end", *slab.first_change(ratios, ended)),
+        ("central_maximum_begins", *slab.first_change(ratios, begun)),
     ]
 
 
-def _event(name: str, base: Scene, low: float, high: float, tolerance: float, evaluations: int) -> Event:
-    return Event(name, base.contact.friction, low, high, tolerance, evaluations, EVENTS[name])
+def _event(name: str, base: Scene, low: float, high: float, tolerance: float, evaluations: int) -> slab.Event:
+    return slab.Event(name, base.contact.friction, low, high, tolerance, evaluations, EVENTS[name])
 
 
 def _ratio(ratios: FloatArray) -> xr.Variable:
-    return variable(("stiffness_ratio",), ratios, "tangential stiffness over normal stiffness")
+    return variable("stiffness_ratio", ratios, "tangential stiffness over normal stiffness")

@@ -29,7 +29,7 @@ from granular_response.solve.choice import load_method
 from granular_response.solve.stages import climb
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
-from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.rest import rest_of
 from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
@@ -84,11 +84,6 @@ class Single:
     response: FloatArray  #: (forces, floor disks) added floor force per force
     contact_change: FloatArray  #: (forces,) change of the added contact forces per force against the first force
     load_x: float  #: rest position of the loaded disk
-
-
-def settle(scene: Scene) -> State:
-    """The rest state of a slab; raises what the solvers raise."""
-    return rest_state(Problem.from_scene(scene))
 
 
 def load_pair(task: Task) -> Pair:
@@ -183,7 +178,7 @@ def simulate(
     packing = base.packing.build()
 
     scenes = [base.updated({"packing.realization": r}) for r in range(parameters.realizations)]
-    rests = map_tasks(settle, scenes, workers=workers, progress=progress, what="rest")
+    rests = map_tasks(rest_of, scenes, workers=workers, progress=progress, what="rest")
     settled = list(zip(scenes, rests, strict=True))
     singles = map_tasks(
         load_single,
@@ -204,11 +199,11 @@ def simulate(
     x = np.array([rest.position[disks, 0] - one.load_x for rest, one in zip(rests, singles, strict=True)])
     coordinates = {
         "distance": variable(
-            ("distance",),
+            "distance",
             2.0 * np.array(offsets),
             "places between the two loaded disks, their distance in mean disk diameters",
         ),
-        "force": variable(("force",), np.array(parameters.forces), f"each of the two applied forces {FORCE}"),
+        "force": variable("force", parameters.forces, f"each of the two applied forces {FORCE}"),
     }
     by_pair = [pairs[r * len(offsets) : (r + 1) * len(offsets)] for r in range(with_pairs)]
     datasets = {
@@ -231,7 +226,7 @@ def _responses(
         {
             "floor_response": variable(
                 ("realization", "distance", "force", "part", "floor_disk"),
-                np.array([[pair.response for pair in row] for row in pairs]),
+                [[pair.response for pair in row] for row in pairs],
                 "vertical floor force that the load adds, per force on one disk",
             ),
             "by_dynamics": variable(
@@ -250,9 +245,9 @@ def _responses(
         },
         coords={
             **coordinates,
-            "floor_disk": variable(("floor_disk",), disks, "index of the floor disk"),
-            "part": variable(("part",), list(PARTS), "which of the forces act"),
-            "side": variable(("side",), list(PARTS[:2]), "which of the loaded disks"),
+            "floor_disk": variable("floor_disk", disks, "index of the floor disk"),
+            "part": variable("part", list(PARTS), "which of the forces act"),
+            "side": variable("side", list(PARTS[:2]), "which of the loaded disks"),
         },
     )
 
@@ -260,12 +255,12 @@ def _responses(
 def _errors(pairs: Sequence[Sequence[Pair]], gaps: int, coordinates: Mapping[str, xr.Variable]) -> xr.Dataset:
     dims = ("realization", "distance", "force")
     data = {
-        name: variable(dims, np.array([[pair.errors[name] for pair in row] for row in pairs]), text)
+        name: variable(dims, [[pair.errors[name] for pair in row] for row in pairs], text)
         for name, text in ERRORS.items()
     }
     data["row_error"] = variable(
         (*dims, "gap"),
-        np.array([[pair.row_error[:, ::-1] for pair in row] for row in pairs]),
+        [[pair.row_error[:, ::-1] for pair in row] for row in pairs],
         "root mean square of both - left - right over that of both, contact forces between two rows, as vectors",
     )
     for name, text in CERTIFIED.items():
@@ -274,7 +269,7 @@ def _errors(pairs: Sequence[Sequence[Pair]], gaps: int, coordinates: Mapping[str
     depth = np.sqrt(3.0) * (np.arange(gaps) + 0.5)
     return xr.Dataset(
         data,
-        coords={**coordinates, "gap": variable(("gap",), depth, f"depth below the top row, on the lattice {LENGTH}")},
+        coords={**coordinates, "gap": variable("gap", depth, f"depth below the top row, on the lattice {LENGTH}")},
     )
 
 
@@ -295,21 +290,19 @@ def _linear_range(
             ),
             "contact_change": variable(
                 ("realization", "force"),
-                np.array([one.contact_change for one in singles]),
+                [one.contact_change for one in singles],
                 "change of the contact forces per force that one force adds, root mean square, relative to those "
                 "at the smallest force",
             ),
             "linear_until": variable(
-                ("realization",),
+                "realization",
                 np.array(forces)[first - 1],
                 f"last force {FORCE} up to which the response at x = 0 is that to the smallest force",
             ),
             "nonlinear_from": variable(
-                ("realization",),
-                np.append(forces, np.nan)[first],
-                f"first force {FORCE} at which it is not; nan for none",
+                "realization", np.append(forces, np.nan)[first], f"first force {FORCE} at which it is not; nan for none"
             ),
         },
-        coords={"force": variable(("force",), np.array(forces), f"force on the middle disk {FORCE}")},
+        coords={"force": variable("force", forces, f"force on the middle disk {FORCE}")},
         attrs={"width": width, "tolerance": tolerance},
     )

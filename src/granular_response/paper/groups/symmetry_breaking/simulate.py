@@ -13,32 +13,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from granular_response.observe import network
 from granular_response.observe.events import EventNotBracketed, bisect_event
+from granular_response.paper import slab_response as slab
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.symmetry_breaking.parameters import Copies, Parameters, Protocol
-from granular_response.paper.slab_response import (
-    Event,
-    FloatArray,
-    LoadPath,
-    Measured,
-    Measures,
-    events_dataset,
-    measured_dataset,
-    states_picture,
-)
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Dynamics, Problem, Stop, relax
 from granular_response.solve.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.rest import rest_of
+from granular_response.sweeps.tasks import Progress, map_tasks, run_tasks
 
 #: When a displaced equilibrium counts as settled, and how many steps it gets: growth from a small displacement
 #: shows long before.
@@ -49,9 +39,9 @@ HELD_STOP = Stop(kinetic_energy=1e-15, rule="envelope", maximum_steps=200_000)
 class BracketResult:
     """The bracket for one protocol, with all runs that it took."""
 
-    event: Event
+    event: slab.Event
     forces: tuple[float, ...]
-    measured: Measured  #: at ``forces``
+    measured: slab.Measured  #: at ``forces``
     states: tuple[State, ...]  #: the last symmetric and the first asymmetric one, if there are both
 
 
@@ -66,8 +56,8 @@ class BracketTask:
     above: float  #: asymmetry that counts as lost symmetry
 
     def run(self) -> BracketResult:
-        path = LoadPath.of(self.protocol.scene(self.base), self.rest)
-        measures = Measures(path)
+        path = slab.LoadPath.of(self.protocol.scene(self.base), self.rest)
+        measures = slab.Measures(path)
 
         def asymmetric(force: float) -> bool:
             return measures.asymmetry(path.at(force)) > self.above
@@ -83,9 +73,9 @@ class BracketTask:
             f"dynamics with a ramp of {self.protocol.ramp_time:g} and a time step of "
             f"{self.protocol.time_step:g}: the asymmetry of the floor response exceeds {self.above:g}"
         )
-        event = Event("loss_of_symmetry", measures.friction, low, high, self.tolerance, len(forces), text)
+        event = slab.Event("loss_of_symmetry", measures.friction, low, high, self.tolerance, len(forces), text)
         ends = tuple(path.known[force] for force in (low, high) if force in path.known)
-        measured = Measured.of(measures, [path.known[force] for force in forces])
+        measured = slab.Measured.of(measures, [path.known[force] for force in forces])
         return BracketResult(event, forces, measured, ends if len(ends) == 2 else ())
 
 
@@ -98,18 +88,18 @@ class CopyTask:
     packing: Packing
     force: float
 
-    def run(self) -> Measured:
-        path = LoadPath.of(self.scene, packing=self.packing)
-        return Measured.of(Measures(path), [path.at(self.force)])
+    def run(self) -> slab.Measured:
+        path = slab.LoadPath.of(self.scene, packing=self.packing)
+        return slab.Measured.of(slab.Measures(path), [path.at(self.force)])
 
 
 @dataclass(frozen=True)
 class HeldResult:
     """Equilibria of the load path, each before and after a small displacement under constant force."""
 
-    branch: Measured
-    displaced: Measured
-    displacement: FloatArray  #: (force,) largest distance of a disk from its place before
+    branch: slab.Measured
+    displaced: slab.Measured
+    displacement: slab.FloatArray  #: (force,) largest distance of a disk from its place before
 
 
 @dataclass(frozen=True)
@@ -122,14 +112,14 @@ class HeldTask:
     displacement: float
 
     def run(self) -> HeldResult:
-        path = LoadPath.of(self.scene, self.rest)
+        path = slab.LoadPath.of(self.scene, self.rest)
         states = path.through(self.forces)
         settled = [self._displaced(path.problem, state) for state in states]
-        measures = Measures(path)
+        measures = slab.Measures(path)
         moved = [
             float(np.abs(after.position - before.position).max()) for before, after in zip(states, settled, strict=True)
         ]
-        return HeldResult(Measured.of(measures, states), Measured.of(measures, settled), np.array(moved))
+        return HeldResult(slab.Measured.of(measures, states), slab.Measured.of(measures, settled), np.array(moved))
 
     def _displaced(self, problem: Problem, state: State) -> State:
         shift = _random_shift(state.position.shape, self.displacement, seed=0)
@@ -139,23 +129,6 @@ class HeldTask:
         factor = state.load_factor
         settled = relax(dynamics, HELD_STOP, load=(factor, factor, 0.0))
         return replace(settled, reached=settled.reached.after(state.reached))
-
-
-@dataclass(frozen=True)
-class RestTask:
-    """The packing settled under gravity."""
-
-    scene: Scene
-
-    def run(self) -> State:
-        return rest_state(Problem.from_scene(self.scene))
-
-
-Task = BracketTask | CopyTask | HeldTask | RestTask
-
-
-def _run(task: Task) -> Any:
-    return task.run()
 
 
 def simulate(
@@ -170,16 +143,14 @@ def simulate(
     """
     base, protocols = parameters.scene, parameters.protocols
     first = protocols[0].scene(base)
-    alone: list[Task] = [RestTask(first)]
-    (rest,) = map_tasks(_run, alone, workers=1, progress=progress, what="rest state")
+    (rest,) = map_tasks(rest_of, [first], workers=1, progress=progress, what="rest state")
 
     brackets = [BracketTask(base, rest, protocol, parameters.tolerance, parameters.asymmetry) for protocol in protocols]
     copies = _copy_tasks(parameters.copies, first)
     held = HeldTask(parameters.base, rest, parameters.held.forces, parameters.held.displacement)
     # long ones first, so that no core waits for them in the end
     longest = sorted(brackets, key=lambda t: -(100.0 + t.protocol.ramp_time) / t.protocol.time_step)
-    tasks: list[Task] = [*longest, held, *copies]
-    results = map_tasks(_run, tasks, workers=workers, progress=progress, what="loss of symmetry")
+    results = run_tasks([*longest, held, *copies], workers=workers, progress=progress, what="loss of symmetry")
     found: list[BracketResult] = [results[longest.index(task)] for task in brackets]
 
     datasets = {
@@ -189,7 +160,7 @@ def simulate(
         "copies": _copies_dataset(copies, results[len(brackets) + 1 :]),
     }
     problem = Problem.from_scene(base).with_loads(rest.position)
-    datasets["states"] = states_picture([rest, *found[0].states], problem)
+    datasets["states"] = slab.states_picture([rest, *found[0].states], problem)
     for dataset in datasets.values():
         dataset["friction_coefficient"] = variable((), base.contact.friction, "coefficient of friction between disks")
     return labelled(datasets, base)
@@ -229,7 +200,7 @@ def shuffled(packing: Packing, seed: int) -> Packing:
     )
 
 
-def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
+def displaced(packing: Packing, shift: slab.FloatArray, *, mirror_image: bool = False) -> Packing:
     """The packing with its disks moved by ``shift`` (n, 2), or by the mirror image of it."""
     if mirror_image:
         image = network.mirror_disks(packing.position, 0.5 * packing.width)
@@ -237,12 +208,12 @@ def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False
     return replace(packing, position=packing.position + shift)
 
 
-def _random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
+def _random_shift(shape: tuple[int, ...], size: float, seed: int) -> slab.FloatArray:
     return np.random.default_rng(seed).uniform(-size, size, shape)
 
 
 def _brackets_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult]) -> xr.Dataset:
-    dataset = events_dataset([result.event for result in found])
+    dataset = slab.events_dataset([result.event for result in found])
     return dataset.assign(_protocol_columns("event", protocols))
 
 
@@ -250,8 +221,8 @@ def _protocol_columns(dimension: str, protocols: Sequence[Protocol]) -> dict[str
     ramps = np.array([protocol.ramp_time for protocol in protocols])
     steps = np.array([protocol.time_step for protocol in protocols])
     return {
-        "ramp_time": variable((dimension,), ramps, "duration of the load ramp in sqrt(radius/g)"),
-        "time_step": variable((dimension,), steps, "time step in sqrt(radius/g)"),
+        "ramp_time": variable(dimension, ramps, "duration of the load ramp in sqrt(radius/g)"),
+        "time_step": variable(dimension, steps, "time step in sqrt(radius/g)"),
     }
 
 
@@ -263,43 +234,41 @@ def _runs_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult])
         (slice(int(start), int(start) + count), result.measured)
         for start, count, result in zip(starts, counts, found, strict=False)
     ]
-    dataset = measured_dataset(("run",), parts, (int(starts[-1]),))
+    dataset = slab.measured_dataset(("run",), parts, (int(starts[-1]),))
     of_run = [protocol for protocol, count in zip(protocols, counts, strict=True) for _ in range(count)]
     forces = np.concatenate([result.forces for result in found])
     return dataset.assign(
-        {**_protocol_columns("run", of_run), "force": variable(("run",), forces, f"applied force {FORCE}")}
+        {**_protocol_columns("run", of_run), "force": variable("run", forces, f"applied force {FORCE}")}
     )
 
 
-def _copies_dataset(tasks: Sequence[CopyTask], measured: Sequence[Measured]) -> xr.Dataset:
+def _copies_dataset(tasks: Sequence[CopyTask], measured: Sequence[slab.Measured]) -> xr.Dataset:
     """The copies, and how far each is from the first one and from its mirror image."""
-    dataset = measured_dataset(("copy",), [([k], m) for k, m in enumerate(measured)], (len(measured),))
+    dataset = slab.measured_along("copy", measured)
     response = dataset["floor_response"].values
     largest = response[0].max()
     text = "largest difference of the floor response to {} of the first copy, per largest response"
     return dataset.assign(
-        name=variable(("copy",), [task.name for task in tasks], "how the copy differs from the packing"),
+        name=variable("copy", [task.name for task in tasks], "how the copy differs from the packing"),
         force=variable((), tasks[0].force, f"applied force {FORCE}"),
-        difference=variable(("copy",), np.abs(response - response[0]).max(axis=1) / largest, text.format("that")),
+        difference=variable("copy", np.abs(response - response[0]).max(axis=1) / largest, text.format("that")),
         mirror_difference=variable(
-            ("copy",),
-            np.abs(response[:, ::-1] - response[0]).max(axis=1) / largest,
-            text.format("the mirror image"),
+            "copy", np.abs(response[:, ::-1] - response[0]).max(axis=1) / largest, text.format("the mirror image")
         ),
     )
 
 
 def _held_dataset(task: HeldTask, result: HeldResult) -> xr.Dataset:
     count = len(task.forces)
-    dataset = measured_dataset(("force",), [(slice(0, count), result.displaced)], (count,))
-    before = measured_dataset(("force",), [(slice(0, count), result.branch)], (count,))
+    dataset = slab.measured_dataset(("force",), [(slice(0, count), result.displaced)], (count,))
+    before = slab.measured_dataset(("force",), [(slice(0, count), result.branch)], (count,))
     return dataset.assign(
         branch_asymmetry=variable(
-            ("force",), before["asymmetry"].values, "asymmetry of the floor response before the displacement"
+            "force", before["asymmetry"].values, "asymmetry of the floor response before the displacement"
         ),
         branch_response=variable(
             ("force", "floor_disk"), before["floor_response"].values, "floor response before the displacement"
         ),
-        moved=variable(("force",), result.displacement, f"largest distance from the place before {LENGTH}"),
+        moved=variable("force", result.displacement, f"largest distance from the place before {LENGTH}"),
         displacement=variable((), task.displacement, f"largest random displacement {LENGTH}"),
-    ).assign_coords(force=variable(("force",), np.array(task.forces), f"applied force {FORCE}"))
+    ).assign_coords(force=variable("force", task.forces, f"applied force {FORCE}"))

@@ -10,17 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.paper.captions import letters
-from granular_response.plot import style
-from granular_response.plot.network import (
-    draw_disks,
-    draw_force_chains,
-    draw_force_key,
-    draw_load,
-    draw_loaded_disk,
-    draw_torque,
-    force_scale,
-    pair_points,
-)
+from granular_response.plot import network, style
 
 #: Force of the key, in mean disk weights.
 KEY = 5.0
@@ -43,7 +33,7 @@ def _chains(data: xr.Dataset) -> Figure:
     height = np.ptp(limits["ylim"]) / np.ptp(limits["xlim"]) * style.DOUBLE / 3.0 + 0.2
     figure, panels = style.figure(rows, 3, width="double", height=float(height) * rows)
     added = data["contact_added_force"].values
-    scale = force_scale(added.reshape(-1, 2), longest=3.2, widest=4.6)
+    scale = network.force_scale(added.reshape(-1, 2), longest=3.2, widest=4.6)
     pairs = data["contact_disk"].values, data["contact_partner"].values
     for index, axes in enumerate(panels.ravel()):
         style.no_axes(axes)
@@ -51,13 +41,13 @@ def _chains(data: xr.Dataset) -> Figure:
             continue
         position = data["position"].values[index]
         inside = (np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0) & (position[:, 1] >= low - 1.0)
-        draw_disks(axes, position[inside], radius[inside])
-        point = pair_points(position, radius, *pairs)
+        network.draw_disks(axes, position[inside], radius[inside])
+        point = network.pair_points(position, radius, *pairs)
         shown = (point[:, 0] >= left) & (point[:, 0] <= right) & (point[:, 1] >= low)
-        draw_force_chains(axes, point[shown], added[index][shown], **scale)
-        draw_loaded_disk(axes, (float(position[disk, 0]), float(position[disk, 1])), float(radius[disk]))
+        network.draw_force_chains(axes, point[shown], added[index][shown], **scale)
+        network.draw_loaded_disk(axes, (float(position[disk, 0]), float(position[disk, 1])), float(radius[disk]))
         _loads(axes, position[disk], data["applied_force"].values, float(torques[index]))
-        draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
+        network.draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
         axes.set(**limits)
         style.letter(axes, chr(ord("a") + index), place="above", text=_torque(float(torques[index])))
     return figure
@@ -65,8 +55,8 @@ def _chains(data: xr.Dataset) -> Figure:
 
 def _loads(axes: Axes, centre: np.ndarray, force: np.ndarray, torque: float) -> None:
     """The force as a straight arrow to the disk's centre, a clockwise torque as an arc over it."""
-    draw_load(axes, (float(centre[0]), float(centre[1])), (float(force[0]), float(force[1])), length=4.6)
-    draw_torque(axes, (float(centre[0]), float(centre[1])), -torque)
+    network.draw_load(axes, (float(centre[0]), float(centre[1])), (float(force[0]), float(force[1])), length=4.6)
+    network.draw_torque(axes, (float(centre[0]), float(centre[1])), -torque)
 
 
 def _reach(data: xr.Dataset) -> Figure:

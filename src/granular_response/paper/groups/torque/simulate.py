@@ -27,7 +27,7 @@ from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, loaded_states
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
-from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.rest import rest_of
 from granular_response.sweeps.tasks import Progress, map_tasks
 
 FloatArray = NDArray[np.float64]
@@ -39,11 +39,6 @@ class Turned:
 
     scene: Scene
     rest: State
-
-
-def settle(scene: Scene) -> State:
-    """The rest state of a slab; raises what the solvers raise."""
-    return rest_state(Problem.from_scene(scene))
 
 
 def load(task: Turned) -> tuple[State, int]:
@@ -62,14 +57,14 @@ def simulate(
     direction = np.array([np.cos(angle), -np.sin(angle)])
     scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in torques.tolist()]
 
-    (rest,) = map_tasks(settle, [scenes[0]], workers=1, progress=progress, what="rest")
+    (rest,) = map_tasks(rest_of, [scenes[0]], workers=1, progress=progress, what="rest")
     results = map_tasks(
         load, [Turned(scene, rest) for scene in scenes], workers=workers, progress=progress, what="torques"
     )
     packing = base.packing.build()
     rest, *loaded = common_candidates([rest, *(state for state, _ in results)], packing.radius)
     disk = results[0][1]
-    coordinate = variable(("torque",), torques, "applied torque, clockwise, in mean disk weights times mean radius")
+    coordinate = variable("torque", torques, "applied torque, clockwise, in mean disk weights times mean radius")
     stress = _stress_dataset(packing, rest, loaded, parameters.stress_width, parameters.stress_spacing)
     datasets = {
         "torques": _states_dataset(packing, rest, loaded, disk, force * direction),
@@ -88,11 +83,9 @@ def _load(force: FloatArray, torque: float) -> dict[str, Any]:
 def _states_dataset(packing: Packing, rest: State, loaded: Sequence[State], disk: int, force: FloatArray) -> xr.Dataset:
     turned = [state.angle[disk] - rest.angle[disk] for state in loaded]
     return added_forces_dataset([rest] * len(loaded), loaded, packing, "torque").assign(
-        rotation=variable(
-            ("torque",), turned, "rotation of the loaded disk by the load, counter-clockwise, in radians"
-        ),
+        rotation=variable("torque", turned, "rotation of the loaded disk by the load, counter-clockwise, in radians"),
         loaded_disk=variable((), disk, "index of the loaded disk"),
-        applied_force=variable(("axis",), force, f"applied force x, z {FORCE}"),
+        applied_force=variable("axis", force, f"applied force x, z {FORCE}"),
     )
 
 
@@ -107,8 +100,8 @@ def _stress_dataset(packing: Packing, rest: State, loaded: Sequence[State], w: f
     return xr.Dataset(
         data,
         coords={
-            "x": variable(("x",), x, f"distance from the left wall {LENGTH}"),
-            "z": variable(("z",), z, f"height above the floor {LENGTH}"),
+            "x": variable("x", x, f"distance from the left wall {LENGTH}"),
+            "z": variable("z", z, f"height above the floor {LENGTH}"),
         },
     )
 
@@ -155,10 +148,10 @@ def _reach_dataset(
         },
         coords={
             "ring": variable(
-                ("ring",), 0.5 * (edges[:-1] + edges[1:]), f"mean distance of the ring from the load {LENGTH}"
+                "ring", 0.5 * (edges[:-1] + edges[1:]), f"mean distance of the ring from the load {LENGTH}"
             ),
-            "ring_inner": variable(("ring",), edges[:-1], f"inner radius of the ring {LENGTH}"),
-            "ring_outer": variable(("ring",), edges[1:], f"outer radius of the ring {LENGTH}"),
+            "ring_inner": variable("ring", edges[:-1], f"inner radius of the ring {LENGTH}"),
+            "ring_outer": variable("ring", edges[1:], f"outer radius of the ring {LENGTH}"),
         },
     )
 

@@ -56,8 +56,8 @@ def averages_dataset(ensembles: xr.Dataset, x: FloatArray, *, widths: Sequence[f
             "force": ensembles["force"].variable,
         },
         coords={
-            "width": variable(("width",), np.array(widths), f"width w of the smoothing Gaussian {LENGTH}"),
-            "x": variable(("x",), x, f"distance from the loaded disk {LENGTH}"),
+            "width": variable("width", widths, f"width w of the smoothing Gaussian {LENGTH}"),
+            "x": variable("x", x, f"distance from the loaded disk {LENGTH}"),
             **{name: ensembles[name].variable for name in ("polydispersity", "friction", "lattice_constant")},
         },
         attrs={"few": few},
@@ -87,7 +87,7 @@ def individual_dataset(ensembles: xr.Dataset, shown: Individual, x: FloatArray) 
             "width": variable((), width, f"width w of the smoothing Gaussian {LENGTH}"),
         },
         coords={
-            "x": variable(("x",), x, f"distance from the loaded disk {LENGTH}"),
+            "x": variable("x", x, f"distance from the loaded disk {LENGTH}"),
             **{
                 name: ensembles[name].isel(case=cases).variable
                 for name in ("polydispersity", "friction", "lattice_constant")
@@ -121,13 +121,13 @@ def linear_range_dataset(
             "static_until": variable(
                 dims, np.stack([one.loaded["static_until"] for one in found]), LOADED["static_until"]
             ),
-            "linear_until": variable(("path",), end[:, 0], f"last force {FORCE} at which the response {below}"),
-            "nonlinear_from": variable(("path",), end[:, 1], f"first force {FORCE} at which it does not; nan for none"),
+            "linear_until": variable("path", end[:, 0], f"last force {FORCE} at which the response {below}"),
+            "nonlinear_from": variable("path", end[:, 1], f"first force {FORCE} at which it does not; nan for none"),
         },
         coords={
-            "polydispersity": variable(("path",), [delta for delta, _ in grid], "delta: spread of the radii"),
-            "friction": variable(("path",), [mu for _, mu in grid], "coefficient of friction, walls frictionless"),
-            "force": variable(("force",), np.array(forces), f"applied force {FORCE}"),
+            "polydispersity": variable("path", [delta for delta, _ in grid], "delta: spread of the radii"),
+            "friction": variable("path", [mu for _, mu in grid], "coefficient of friction, walls frictionless"),
+            "force": variable("force", forces, f"applied force {FORCE}"),
         },
         attrs={"width": width, "tolerance": tolerance},
     )

@@ -21,12 +21,12 @@ from granular_response.store.result import FORCE, LENGTH, variable
 def _case_coordinates(cases: Sequence[Case]) -> dict[str, xr.Variable]:
     lattice = [str(case.lattice_constant) for case in cases]
     return {
-        "polydispersity": variable(("case",), [c.polydispersity for c in cases], "delta: spread of the radii"),
-        "friction": variable(("case",), [c.friction for c in cases], "coefficient of friction, walls included"),
+        "polydispersity": variable("case", [c.polydispersity for c in cases], "delta: spread of the radii"),
+        "friction": variable("case", [c.friction for c in cases], "coefficient of friction, walls included"),
         "lattice_constant": variable(
-            ("case",), lattice, f"distance of neighbours before gravity acts {LENGTH}, or how it is chosen"
+            "case", lattice, f"distance of neighbours before gravity acts {LENGTH}, or how it is chosen"
         ),
-        "realizations": variable(("case",), [c.realizations for c in cases], "number of packings"),
+        "realizations": variable("case", [c.realizations for c in cases], "number of packings"),
     }
 
 
@@ -101,7 +101,7 @@ def packings_dataset(cases: Sequence[Case], found: Sequence[Realization]) -> xr.
             ),
         },
         coords={
-            "angle": variable(("angle",), angle, "angle of a contact with the horizontal, in radians"),
+            "angle": variable("angle", angle, "angle of a contact with the horizontal, in radians"),
             **_case_coordinates(cases),
         },
     )
