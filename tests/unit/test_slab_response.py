@@ -20,7 +20,6 @@ from granular_response.paper.slab_response import (
     half_maximum_width,
     locate,
     measured_dataset,
-    mobilised_contacts,
     states_picture,
 )
 from granular_response.state import OPEN, SLIDING, STICKING
@@ -103,10 +102,10 @@ def test_mobilised_contacts_are_near_the_coulomb_limit(path):
     tangential[touching] = 2.0 * 0.3 * np.array([-1.0, 0.985, 0.94, 0.0])
     pairs = replace(state.pairs, status=status, normal_force=normal, tangential_force=tangential)
     made = replace(state, pairs=pairs)
-    assert [mobilised_contacts(made, 0.3, margin) for margin in (1e-6, 0.02, 0.1)] == [1, 2, 3]
-    assert mobilised_contacts(made, 0.0, 0.1) == 0
+    assert [int(made.pairs.near_limit(0.3, margin).sum()) for margin in (1e-6, 0.02, 0.1)] == [1, 2, 3]
+    assert int(made.pairs.near_limit(0.0, 0.1).sum()) == 0
     opened = replace(made, pairs=replace(pairs, status=np.zeros_like(status)))
-    assert mobilised_contacts(opened, 0.3, 0.1) == 0
+    assert int(opened.pairs.near_limit(0.3, 0.1).sum()) == 0
 
 
 def test_half_maximum_width():

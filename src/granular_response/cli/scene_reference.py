@@ -9,19 +9,7 @@ import os
 from dataclasses import dataclass, field
 from typing import Any, get_args
 
-from ..scene import (
-    Contact,
-    FilePacking,
-    Load,
-    PilePacking,
-    Preparation,
-    Protocol,
-    RowSelector,
-    Scene,
-    SceneError,
-    SlabPacking,
-    Wall,
-)
+from .. import scene
 from ..scene import text as yaml_text
 from ..scene.base import Description
 from ..scene.lattice import LatticePacking
@@ -100,7 +88,7 @@ class Section:
         """What the message about a wrong value says."""
         try:
             self.model(**{**self.given, name: _WRONG})
-        except SceneError as error:
+        except scene.SceneError as error:
             rule = str(error).split(": ", 1)[1].removeprefix("must be ")
         else:
             raise TypeError(f"{self.model.__name__}.{name} takes anything")
@@ -109,16 +97,16 @@ class Section:
 
 _BOTH = frozenset(LatticePacking.model_fields) - {"kind", "layers"}
 SECTIONS = (
-    Section("Slab", "packing", SlabPacking, left_out=_BOTH),
-    Section("Pile", "packing", PilePacking, left_out=_BOTH),
-    Section("Slab or pile", "packing", SlabPacking, left_out=frozenset(SlabPacking.model_fields) - _BOTH),
-    Section("Packing from a file", "packing", FilePacking, {"kind": "file", "path": "disks.csv", "width": 1.0}),
-    Section("Contacts between disks", "contact", Contact),
-    Section("Floor and side walls", "wall", Wall),
-    Section("Loads", "loads[]", Load, {"disk": "top-centre", "force": (0.0, 0.0)}),
-    Section("A disk by its row", "loads[].disk", RowSelector, {"row": "top"}),
-    Section("Preparation", "preparation", Preparation),
-    Section("Protocol", "protocol", Protocol),
+    Section("Slab", "packing", scene.SlabPacking, left_out=_BOTH),
+    Section("Pile", "packing", scene.PilePacking, left_out=_BOTH),
+    Section("Slab or pile", "packing", scene.SlabPacking, left_out=frozenset(scene.SlabPacking.model_fields) - _BOTH),
+    Section("Packing from a file", "packing", scene.FilePacking, {"kind": "file", "path": "disks.csv", "width": 1.0}),
+    Section("Contacts between disks", "contact", scene.Contact),
+    Section("Floor and side walls", "wall", scene.Wall),
+    Section("Loads", "loads[]", scene.Load, {"disk": "top-centre", "force": (0.0, 0.0)}),
+    Section("A disk by its row", "loads[].disk", scene.RowSelector, {"row": "top"}),
+    Section("Preparation", "preparation", scene.Preparation),
+    Section("Protocol", "protocol", scene.Protocol),
 )
 
 
@@ -129,7 +117,9 @@ def every() -> list[Key]:
 
 def lines() -> str:
     """All keys as Markdown: the parts of a scene, then a table for each."""
-    parts = [_table(("part", "meaning"), [(f"`{n}`", f.description or "") for n, f in Scene.model_fields.items()])]
+    parts = [
+        _table(("part", "meaning"), [(f"`{n}`", f.description or "") for n, f in scene.Scene.model_fields.items()])
+    ]
     for section in SECTIONS:
         rows: list[tuple[str, ...]] = [
             (f"`{key.path}`", f"`{key.default}`" if key.default else "must be given", *key.words())
@@ -151,7 +141,7 @@ def plain(part: str = "") -> str:
             default = f"default {key.default}" if key.default else "must be given"
             paragraphs.append(f"  {key.path}{unit}: {default}\n    {key.allowed}\n    {key.meaning}")
     if not paragraphs:
-        raise SceneError(f"no key of a scene begins with {part}, parts are {', '.join(Scene.model_fields)}")
+        raise scene.SceneError(f"no key of a scene begins with {part}, parts are {', '.join(scene.Scene.model_fields)}")
     return "\n".join(paragraphs)
 
 

@@ -20,7 +20,7 @@ def require_same_candidates(rest: State, loaded: State) -> None:
     for kind in ("pairs", "walls"):
         a: Contacts = getattr(rest, kind)
         b: Contacts = getattr(loaded, kind)
-        if not (np.array_equal(a.first, b.first) and np.array_equal(a.second, b.second)):
+        if not a.same_candidates(b):
             raise ValueError(
                 f"{kind}: the two states list different candidate contacts "
                 f"({a.first.size} and {b.first.size}); "

@@ -35,7 +35,7 @@ def contact_changes(rest: Contacts, loaded: Contacts) -> ContactChanges:
 
     Raises ``ValueError`` if the candidates differ.
     """
-    if not (np.array_equal(rest.first, loaded.first) and np.array_equal(rest.second, loaded.second)):
+    if not rest.same_candidates(loaded):
         raise ValueError(
             f"contacts: the two states list different candidates "
             f"({rest.first.size} and {loaded.first.size}); "

@@ -11,6 +11,7 @@ lengths are measured in the rest state, in mean radii.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,28 +44,16 @@ def teardrop(
     rest: State,
     loaded: State,
     loaded_disk: int,
-    *,
-    start: BoolArray | None = None,
-    lattice_constant: float = 2.0,
-    reach: float = 1.2,
-    start_distance: float = 5.0,
+    **region: Any,
 ) -> OpenRegion:
     """Region of the pairs that touch at rest and are open under load, nearest to ``loaded_disk`` (Fig. 5).
 
-    ``start`` (a mask over pairs, such as ``interior_contacts``) can narrow where the region may begin.
+    ``region``: ``start``, ``lattice_constant``, ``reach`` and ``start_distance`` of :func:`open_region`.
     Raises ``ValueError`` if the states list different candidates.
     """
     require_same_candidates(rest, loaded)
     opened = contact_changes(rest.pairs, loaded.pairs).opened
-    return open_region(
-        rest,
-        opened,
-        rest.position[loaded_disk],
-        start=start,
-        lattice_constant=lattice_constant,
-        reach=reach,
-        start_distance=start_distance,
-    )
+    return open_region(rest, opened, rest.position[loaded_disk], **region)
 
 
 def open_region(
@@ -79,7 +68,8 @@ def open_region(
 ) -> OpenRegion:
     """Connected region of the ``opened`` pairs ((m,) mask) that begins nearest to ``origin`` ((2,)).
 
-    ``state`` gives the geometry. Contacts that are equally near to the origin (within a hundredth of a
+    ``state`` gives the geometry. ``start`` (a mask over pairs, such as ``interior_contacts``) can narrow where the
+    region may begin. Contacts that are equally near to the origin (within a hundredth of a
     lattice constant) all begin the region, so a symmetric network has a symmetric region. The width of a row
     takes in all contacts whose centres differ in height by less than a quarter of the row spacing. The region
     reaches the floor with a contact of which both disks touch the floor in ``state``: on the lattice, a

@@ -135,6 +135,11 @@ def letters(stem: str) -> Iterator[str]:
     return (chr(code) for code in range(ord(first), ord("z") + 1))
 
 
+def panels(forces: Sequence[float]) -> str:
+    """The force of each panel."""
+    return ", ".join(f"({chr(ord('a') + k)}) {force:g}" for k, force in enumerate(forces)) + f" {WEIGHT}."
+
+
 def number(stem: str) -> int | None:
     """The paper's figure that a picture belongs to: NN of ``figNN...``."""
     match = re.match(r"fig(\d+)", stem)

@@ -183,7 +183,7 @@ class Measures:
 
     def mobilised(self, state: State) -> list[int]:
         """Number of contacts of disks within each of ``MARGINS`` of the Coulomb limit."""
-        return [mobilised_contacts(state, self.friction, margin) for margin in MARGINS]
+        return [int(state.pairs.near_limit(self.friction, margin).sum()) for margin in MARGINS]
 
     def scalars(self, state: State) -> dict[str, float]:
         """One value for each of ``SCALARS``."""
@@ -214,15 +214,6 @@ class Measures:
             return 0.0
         found = peaks.find_peaks(self.x, self.response(state), interior=self.interior)
         return float(found.prominence[np.abs(found.position) <= 1.0].max())
-
-
-def mobilised_contacts(state: State, friction: float, margin: float) -> int:
-    """Contacts of disks with ``|f_t| >= (1 - margin) friction f_n``; none without friction."""
-    if not friction > 0.0:
-        return 0
-    pairs = state.pairs
-    limit = (1.0 - margin) * friction * pairs.normal_force
-    return int(np.count_nonzero(pairs.touching & (np.abs(pairs.tangential_force) >= limit)))
 
 
 def asymmetry_sign(x: FloatArray, response: FloatArray) -> int:

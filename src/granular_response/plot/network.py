@@ -167,8 +167,8 @@ def draw_state_changes(
     before, now = (state["wall_status"].values[on_floor] != OPEN for state in (rest, loaded))
     for name, mask in _changes(before, now).items():
         _segments(axes, centre[mask], centre[mask] * (1.0, 0.0), CONTACT_LINES[name])
-    draw_loaded_disk(axes, (float(x), float(z)), radius)
-    draw_load(axes, (float(x), float(z) + radius), length=3.5)
+    draw_loaded_disk(axes, (x, z), radius)
+    draw_load(axes, (x, z + radius), length=3.5)
     draw_box(axes, Box(width), float(position[:, 1].max()), between=(left, right))
     axes.set(xlim=(left, right), ylim=(-0.6, float(z) + radius + 4.0))
     style.no_axes(axes)
@@ -288,39 +288,40 @@ def draw_force_key(
 
 def draw_load(
     axes: Axes,
-    at: tuple[float, float],
-    direction: tuple[float, float] = (0.0, -1.0),
+    at: ArrayLike,
+    direction: ArrayLike = (0.0, -1.0),
     *,
     length: float = 4.0,
     colour: Any = style.VERMILION,
 ) -> None:
     """An arrow of ``length`` radii that ends at ``at`` and shows where, and which way, a force is applied."""
-    unit = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
-    tail = np.asarray(at, dtype=float) - length * unit
+    tip, along = np.asarray(at, dtype=float), np.asarray(direction, dtype=float)
+    tail = tip - length * (along / np.linalg.norm(along))
     axes.annotate(
         "",
-        xy=at,
-        xytext=(float(tail[0]), float(tail[1])),
+        xy=tuple(tip.tolist()),
+        xytext=tuple(tail.tolist()),
         arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0},
         annotation_clip=False,
         zorder=10,
     )
-    _include(axes, np.stack([tail, np.asarray(at, dtype=float)]))
+    _include(axes, np.stack([tail, tip]))
 
 
-def draw_loaded_disk(axes: Axes, at: tuple[float, float], radius: float) -> None:
+def draw_loaded_disk(axes: Axes, at: ArrayLike, radius: float) -> None:
     """Outline a disk that carries a load."""
-    draw_disks(axes, [at], radius, edgecolor=style.VERMILION, linewidth=0.9, zorder=6)
+    draw_disks(axes, np.reshape(at, (1, 2)), radius, edgecolor=style.VERMILION, linewidth=0.9, zorder=6)
 
 
-def draw_torque(axes: Axes, at: tuple[float, float], torque: float, *, radius: float = 1.7) -> None:
+def draw_torque(axes: Axes, at: ArrayLike, torque: float, *, radius: float = 1.7) -> None:
     """An arc with an arrow over a disk at ``at``, the way that ``torque`` turns it; nothing for zero."""
     if not torque:
         return
     start, end = np.radians(20.0), np.radians(150.0)
     if torque < 0.0:
         start, end = end, start
-    ends = [(at[0] + radius * np.cos(a), at[1] + radius * np.sin(a)) for a in (start, end)]
+    x, z = np.asarray(at, dtype=float)
+    ends = [(x + radius * np.cos(a), z + radius * np.sin(a)) for a in (start, end)]
     axes.add_patch(
         FancyArrowPatch(
             ends[0],

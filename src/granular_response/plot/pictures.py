@@ -94,6 +94,13 @@ class Shown:
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
         return self.values("contact_disk"), self.values("contact_partner")
 
+    def forces(self, added: bool) -> tuple[FloatArray, FloatArray]:
+        """Of contacts of disks and at walls, ``added``: what the load adds to them."""
+        pair, wall = (
+            self.values(name) - (self.values(name, 0) if added else 0.0) for name in ("contact_force", "wall_force")
+        )
+        return pair, wall
+
     @cached_property
     def loads(self) -> list[tuple[int, FloatArray, float]]:
         """Disk, force and torque of each load in this state."""
@@ -159,9 +166,7 @@ def forces(
         raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
     if largest is not None and not largest > 0.0:
         raise PictureError(f"largest = {largest}: must be positive")
-    pair, wall = (
-        shown.values(name) - (shown.values(name, 0) if added else 0.0) for name in ("contact_force", "wall_force")
-    )
+    pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
     point = np.concatenate(
@@ -249,14 +254,11 @@ def stress(
         raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
-    pair_force, wall_force = (
-        shown.values(name) - (shown.values(name, 0) if added else 0.0) for name in ("contact_force", "wall_force")
-    )
     separation = shown.box.separation(shown.position[first], shown.position[second])
     carried = ContactForces(
         point=np.concatenate([shown.position[first], at_wall]),
         branch=np.concatenate([separation, at_wall - shown.box.on_wall(at_wall, wall)]),
-        force=np.concatenate([pair_force, wall_force]),
+        force=np.concatenate(shown.forces(added)),
     )
     step = max(0.5, shown.box.width / 240.0)
     x = np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
@@ -404,8 +406,7 @@ def _title(what: str, shown: Shown) -> str:
     if shown.index:
         total = sum(float(np.hypot(*force)) for _, force, _ in shown.loads)
         load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$"
-    text = {"forces": "forces", "contacts": "contacts", "stress": "stress", "packing": "packing"}
-    return "floor response" if what == "response" else f"{text[what]}, {load}"
+    return "floor response" if what == "response" else f"{what}, {load}"
 
 
 def _axes(ax: Axes | None, aspect: float) -> Axes:
@@ -449,13 +450,13 @@ def _loads(axes: Axes, shown: Shown, *, shift: float = 0.0) -> None:
     largest = max((float(np.hypot(*force)) for _, force, _ in shown.loads), default=0.0)
     for disk, force, torque in shown.loads:
         centre, radius = shown.position[disk] + (shift, 0.0), float(shown.radius[disk])
-        network.draw_loaded_disk(axes, (float(centre[0]), float(centre[1])), radius)
+        network.draw_loaded_disk(axes, centre, radius)
         size = float(np.hypot(*force))
         if size > 0.0:
             tip = centre - radius * force / size
             length = max(3.0, 0.16 * shown.top) * size / largest
-            network.draw_load(axes, (float(tip[0]), float(tip[1])), (float(force[0]), float(force[1])), length=length)
-        network.draw_torque(axes, (float(centre[0]), float(centre[1])), torque, radius=1.7 * radius)
+            network.draw_load(axes, tip, force, length=length)
+        network.draw_torque(axes, centre, torque, radius=1.7 * radius)
 
 
 def _legend(axes: Axes, handles: Sequence[Any], shown: Shown) -> None:

@@ -22,15 +22,9 @@ AT_LIMIT = 1e-9
 
 def at_limit(problem: Problem, state: State) -> int:
     """How many closed contacts are at the Coulomb limit: what they answer depends on the direction of a load."""
-    count = 0
-    for contacts, friction, law in (
-        (state.pairs, problem.pair_friction, problem.pair_law),
-        (state.walls, problem.wall_friction, problem.wall_law),
-    ):
-        if friction:
-            limit = (1.0 - AT_LIMIT) * law.friction * contacts.normal_force
-            count += int((contacts.touching & (np.abs(contacts.tangential_force) >= limit)).sum())
-    return count
+    pairs = state.pairs.near_limit(problem.pair_law.friction if problem.pair_friction else 0.0, AT_LIMIT)
+    walls = state.walls.near_limit(problem.wall_law.friction if problem.wall_friction else 0.0, AT_LIMIT)
+    return int(pairs.sum() + walls.sum())
 
 
 def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str = "refuse") -> FloatArray:

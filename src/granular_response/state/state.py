@@ -43,6 +43,15 @@ class Contacts:
         """(m,) whether the contact is at the Coulomb limit."""
         return self.status == SLIDING
 
+    def near_limit(self, friction: float, margin: float) -> NDArray[np.bool_]:
+        """(m,) whether the contact is closed with ``|f_t| >= (1 - margin) friction f_n``; none without friction."""
+        limit = (1.0 - margin) * friction * self.normal_force
+        return self.touching & (np.abs(self.tangential_force) >= limit) & (friction > 0.0)
+
+    def same_candidates(self, other: Contacts) -> bool:
+        """Whether both list the same candidates in the same order, so that they subtract contact by contact."""
+        return np.array_equal(self.first, other.first) and np.array_equal(self.second, other.second)
+
     def __repr__(self) -> str:
         count = f"{len(self.first)} candidates, {self.touching.sum()} touching, {self.sliding.sum()} sliding"
         return f"Contacts({count})"

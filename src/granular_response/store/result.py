@@ -84,13 +84,9 @@ def common_candidates(states: Sequence[State], radius) -> list[State]:
     states = list(states)
     for _ in range(2):
         for k in range(1, len(states)):
-            same = all(
-                np.array_equal(getattr(getattr(states[0], kind), side), getattr(getattr(states[k], kind), side))
-                for kind in ("pairs", "walls")
-                for side in ("first", "second")
-            )
-            if not same:
-                states[0], states[k] = match_candidates(states[0], states[k], radius)
+            first, other = states[0], states[k]
+            if not (first.pairs.same_candidates(other.pairs) and first.walls.same_candidates(other.walls)):
+                states[0], states[k] = match_candidates(first, other, radius)
     return states
 
 

@@ -209,10 +209,19 @@ class Claims(list[Claim]):
         self.group = group
 
     def add(
-        self, id: str, place: str, measured: str, paper: str, *figures: int, derivation: bool = False
+        self,
+        id: str,
+        place: str,
+        measured: str,
+        paper: str,
+        figures: int | tuple[int, ...] = (),
+        *,
+        derivation: bool = False,
     ) -> Callable[[Measure], Measure]:
+        shown = (figures,) if isinstance(figures, int) else figures
+
         def said(measure: Measure) -> Measure:
-            self.append(Claim(id, place, measured, paper, measure, figures, self.group, derivation))
+            self.append(Claim(id, place, measured, paper, measure, shown, self.group, derivation))
             return measure
 
         return said
@@ -270,47 +279,7 @@ def sampled(what: str, event: Quantity, paper: float, words: Bounds) -> Conditio
 
 def about(what: str, found: Quantity, paper: float, words: Bounds, unit: str = "") -> Condition:
     """The paper gives the number with "about"."""
-    return near(what, found, words, "about", unit, of=paper)
-
-
-def near(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "", of: float = 1.0) -> Condition:
-    """Off ``of`` by at most the word's part of it."""
-    return Condition(what, _known(found), (1.0 - words[word]) * of, (1.0 + words[word]) * of, (word,), unit)
-
-
-def at_most(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
-    return Condition(what, _known(found), most=words[word], words=(word,), unit=unit)
-
-
-def at_least(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
-    return Condition(what, _known(found), words[word], words=(word,), unit=unit)
-
-
-def lower(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Condition:
-    """The ratio is below 1 by the word's bound or more."""
-    return Condition(what, _known(ratio), most=1.0 - words[word], words=(word,))
-
-
-def higher(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Condition:
-    """The ratio is above 1 by the word's bound or more."""
-    return Condition(what, _known(ratio), 1.0 + words[word], words=(word,))
-
-
-def hardly_lower(what: str, ratio: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
-    """The ratio is below 1 by the word's bound at most."""
-    return Condition(what, _known(ratio), 1.0 - words[word], words=(word,), unit=unit)
-
-
-def _known(found: float | Quantity) -> Quantity:
-    return found if isinstance(found, Quantity) else Quantity.exact(found)
-
-
-def each(
-    what: str, found: Mapping[str, Quantity], condition: Callable[[Quantity], Condition], unit: str = ""
-) -> Finding:
-    """A number for each reading, by its name, and what is asked of each."""
-    texts = ", ".join(f"{quantity.text(unit)} ({name})" for name, quantity in found.items())
-    return Finding(what + texts, [Reading(name, condition(quantity)) for name, quantity in found.items()])
+    return Condition(what, found, (1.0 - words["about"]) * paper, (1.0 + words["about"]) * paper, ("about",), unit)
 
 
 def rises(what: str, values: Sequence[Quantity]) -> Condition:
@@ -320,17 +289,3 @@ def rises(what: str, values: Sequence[Quantity]) -> Condition:
         min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), steps[0].kind
     )
     return Condition(f"{what}, smallest ratio of neighbours", smallest, least=1.0, strict=True)
-
-
-def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:
-    """Where the response at x = 0 is more than ``tolerance`` off that to the smallest force, between stored forces.
-
-    Raises NotMeasured for a path without two forces.
-    """
-    value, force = path["response_at_centre"].values, path["force"].values
-    known = np.isfinite(value)
-    value, force = value[known], force[known]
-    if value.size < 2:
-        raise NotMeasured("a path of the linear range holds no forces")
-    off = np.flatnonzero(np.abs(value / value[0] - 1.0) > tolerance)
-    return Quantity.bracket(force[off[0] - 1], force[off[0]]) if off.size else Quantity.bracket(force[-1], np.nan)

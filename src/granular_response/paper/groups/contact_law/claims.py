@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ...claims.claim import Claims, Data, Finding, Reading, at_most
+from ...claims import asked
+from ...claims.claim import Claims, Data, Finding, Reading
 from ...claims.words import Bounds
 
 GROUP = "contact_law"
@@ -23,7 +24,7 @@ def linear_fit(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"friction {mu:g}",
-                at_most(
+                asked.at_most(
                     "largest difference of the responses, per largest response",
                     float(one.max()),
                     words,

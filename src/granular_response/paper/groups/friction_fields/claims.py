@@ -4,20 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import (
-    Claims,
-    Condition,
-    Data,
-    Finding,
-    NotMeasured,
-    Quantity,
-    Reading,
-    at,
-    at_most,
-    hardly_lower,
-    higher,
-    lower,
-)
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
 from ...claims.words import Bounds
 
 GROUP = "friction_fields"
@@ -36,14 +24,10 @@ NEAR, FAINT = 6.0, 0.1
 )
 def along_lattice(data: Data, words: Bounds) -> Finding:
     tilt = float(at(data.get(GROUP, "stress", "misalignment", "friction"), friction=0.0)["misalignment"])
-    return Finding(
+    return asked.one_reading(
         f"added forces {tilt:.2f} degrees off the contact lines",
-        [
-            Reading(
-                "friction 0",
-                at_most("sine of the mean angle to the contact lines", np.sin(np.radians(tilt)), words, "visible"),
-            )
-        ],
+        "friction 0",
+        asked.at_most("sine of the mean angle to the contact lines", np.sin(np.radians(tilt)), words, "visible"),
     )
 
 
@@ -68,7 +52,7 @@ def vertical_chain(data: Data, words: Bounds) -> Finding:
                 Condition(
                     "angle of the forces below the load to the vertical, degrees", Quantity.exact(angle), most=15.0
                 ),
-                higher("their share of the force per that at friction 0", ratio, words, "marked"),
+                asked.higher("their share of the force per that at friction 0", ratio, words, "marked"),
             )
         ],
     )
@@ -84,15 +68,11 @@ def vertical_chain(data: Data, words: Bounds) -> Finding:
 def stress(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "distance_to_lattice", "friction")
     value = {mu: float(at(study, friction=mu)["distance_to_lattice"]) for mu in (0.0, 1.0)}
-    return Finding(
+    return asked.one_reading(
         f"rms difference from the isotropic harmonic lattice: {value[1.0]:.1%} at friction 1, {value[0.0]:.0%} at 0",
-        [
-            Reading(
-                "farther than 6 radii from the load",
-                at_most("rms difference at friction 1", value[1.0], words, "similar", "%"),
-                lower("that difference per the one at friction 0", value[1.0] / value[0.0], words, "marked"),
-            )
-        ],
+        "farther than 6 radii from the load",
+        asked.at_most("rms difference at friction 1", value[1.0], words, "similar", "%"),
+        asked.lower("that difference per the one at friction 0", value[1.0] / value[0.0], words, "marked"),
     )
 
 
@@ -107,15 +87,11 @@ def closer_with_friction(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "distance_to_lattice", "friction").sortby("friction")
     friction, distance = study["friction"].values, study["distance_to_lattice"].values
     worst = float((distance[1:] / distance[:-1]).max())
-    return Finding(
+    return asked.one_reading(
         "rms difference of sigma_zz from the isotropic harmonic lattice: "
         + ", ".join(f"{d:.1%} (friction {mu:g})" for mu, d in zip(friction, distance, strict=True)),
-        [
-            Reading(
-                "farther than 6 radii from the load",
-                lower("largest ratio of neighbouring frictions", worst, words, "visible"),
-            )
-        ],
+        "farther than 6 radii from the load",
+        asked.lower("largest ratio of neighbouring frictions", worst, words, "visible"),
     )
 
 
@@ -175,13 +151,9 @@ def profiles(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "profiles", "axis_magnitude", "friction", "row")
     off = float(at(study, friction=0.0)["axis_magnitude"].max())
     on = float(at(study, friction=1.0)["axis_magnitude"].min())
-    return Finding(
+    return asked.one_reading(
         f"below the load at most {off:.2f} of the largest force at its depth at friction 0, at least {on:.2f} at 1",
-        [
-            Reading(
-                "150 mg",
-                lower("below the load per largest, friction 0", off, words, "marked"),
-                hardly_lower("below the load per largest, friction 1", on, words, "slightly"),
-            )
-        ],
+        "150 mg",
+        asked.lower("below the load per largest, friction 0", off, words, "marked"),
+        asked.hardly_lower("below the load per largest, friction 1", on, words, "slightly"),
     )

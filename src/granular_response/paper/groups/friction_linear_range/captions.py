@@ -2,24 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import xarray as xr
 
-from granular_response.paper.captions import WEIGHT, Caption, of_scene, values
+from granular_response.paper.captions import WEIGHT, Caption, of_scene, panels, values
 
-from .draw import (
-    AXIS_FRICTIONS,
-    DYNAMIC_FORCES,
-    LARGE_FORCES,
-    PAPER_CROSSOVER,
-    PAPER_SYMMETRIC,
-    PAPER_THIRD_PEAK,
-    PROFILE_FORCES,
-    at_forces,
-    at_frictions,
-    contact_forces,
-)
+from . import draw
 from .parameters import Parameters
 
 
@@ -42,12 +31,12 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         ),
         "fig07_friction_response": Caption(
             f"Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2; the paper sees the crossover "
-            f"from one peak to two near {PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. Each "
-            "curve has its symbols at other disks, as some nearly cover each other.",
+            f"from one peak to two near {draw.PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. "
+            "Each curve has its symbols at other disks, as some nearly cover each other.",
             "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
             of_scene(
                 parameters.scene,
-                force=at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist(),
+                force=draw.at_forces(response.sel(friction=0.2), draw.PROFILE_FORCES)["force"].values.tolist(),
                 friction=[0.2, 1.0],
             ),
         ),
@@ -58,14 +47,14 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             of_scene(
                 parameters.scene,
                 force=parameters.friction_axis.force,
-                friction=at_frictions(datasets["friction_axis"], AXIS_FRICTIONS),
+                friction=draw.at_frictions(datasets["friction_axis"], draw.AXIS_FRICTIONS),
             ),
         ),
     }
     for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
         states = datasets.get(f"states_mu_{friction:g}")
         if states is not None:
-            shown = contact_forces(states)
+            shown = draw.contact_forces(states)
             found[stem] = Caption(
                 f"What the force does to the contacts of an ordered slab at µ = {friction:g}, the central third: "
                 "those that it opens (thick), that slide (middle) and that it leaves alone (thin). Arrow and circle: "
@@ -76,14 +65,14 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             )
     if "large_forces" in datasets:
         dynamic = datasets["large_forces"]
-        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values
-        left = at_forces(response.sel(friction=0.2), LARGE_FORCES)["force"].values
+        beyond = draw.at_forces(dynamic, draw.DYNAMIC_FORCES)["force"].values
+        left = draw.at_forces(response.sel(friction=0.2), draw.LARGE_FORCES)["force"].values
         found["fig16_large_forces"] = Caption(
             f"Floor response of ordered slabs under large forces. (a) µ = 0.2, F_ext = {values(left.tolist())} "
-            f"{WEIGHT}; the paper sees the crossover near {PAPER_CROSSOVER:g} {WEIGHT} and a third peak at x = 0 from "
-            f"{PAPER_THIRD_PEAK:g} {WEIGHT} on. (b) µ = 1, dynamics from rest to F_ext = {values(beyond.tolist())} "
-            f"{WEIGHT}; in the paper symmetry is lost beyond {PAPER_SYMMETRIC:g} {WEIGHT}, and at 95 {WEIGHT} the "
-            "response is the mirror image of another.",
+            f"{WEIGHT}; the paper sees the crossover near {draw.PAPER_CROSSOVER:g} {WEIGHT} and a third peak at x = 0 "
+            f"from {draw.PAPER_THIRD_PEAK:g} {WEIGHT} on. (b) µ = 1, dynamics from rest to F_ext = "
+            f"{values(beyond.tolist())} {WEIGHT}; in the paper symmetry is lost beyond {draw.PAPER_SYMMETRIC:g} "
+            f"{WEIGHT}, and at 95 {WEIGHT} the response is the mirror image of another.",
             "(a) A plateau, then two peaks with a third one between them. (b) One symmetric bell and three lopsided "
             "curves with a sharp negative dip to the left or the right of the middle.",
             of_scene(
@@ -93,8 +82,3 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             ),
         )
     return found
-
-
-def panels(forces: Sequence[float]) -> str:
-    """The force of each panel."""
-    return ", ".join(f"({chr(ord('a') + k)}) {force:g}" for k, force in enumerate(forces)) + f" {WEIGHT}."

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 
-from ...claims import preparations
+from ...claims import asked, preparations
 from ...claims.claim import (
     Claims,
     Condition,
@@ -19,11 +19,6 @@ from ...claims.claim import (
     Reading,
     about,
     at,
-    at_least,
-    at_most,
-    higher,
-    linear_until,
-    lower,
     rises,
     sampled,
 )
@@ -48,12 +43,12 @@ def at_force(
     """The paper's number for an event: "about" it, or the first of its sampled forces at or above it."""
 
     def measure(data: Data, words: Bounds) -> Finding:
-        def asked(end: Quantity) -> list[Condition]:
+        def wanted(end: Quantity) -> list[Condition]:
             return [sampled(what, end, paper, words) if first_sampled else about(what, end, paper, words, "mg")]
 
         own = "the first sampled force at or above it" if first_sampled else "gravity at once"
         found = data.event(GROUP, event, friction)
-        return Finding(f"{text} {found.text('mg')}", _ways(data, event, (friction,), asked, own))
+        return Finding(f"{text} {found.text('mg')}", _ways(data, event, (friction,), wanted, own))
 
     return measure
 
@@ -65,7 +60,7 @@ for _k, _mu, _paper, _figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (
         f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, by bisection on the "
         "load path",
         f"{_paper:g} mg",
-        *_figures,
+        _figures,
     )(at_force("first_opening", _mu, _paper, what="first opening", text="opens at", first_sampled=True))
 
 
@@ -75,8 +70,8 @@ def _ranges(data: Data, frictions: tuple[float, ...]) -> dict[str, list[Quantity
     curves = [at(study, friction=mu) for mu in frictions]
     return {
         "response 1 % off": [data.event(GROUP, "linear_range", mu) for mu in frictions],
-        "response 2 % off": [linear_until(curve, 0.02) for curve in curves],
-        "response 5 % off": [linear_until(curve, 0.05) for curve in curves],
+        "response 2 % off": [asked.linear_until(curve, 0.02) for curve in curves],
+        "response 5 % off": [asked.linear_until(curve, 0.05) for curve in curves],
         "first opening": [data.event(GROUP, "first_opening", mu) for mu in frictions],
     }
 
@@ -86,16 +81,16 @@ _OTHERWISE = {"response 1 % off": "linear_range", "first opening": "first_openin
 
 
 def _by_end(
-    data: Data, found: dict[str, list[Quantity]], frictions: tuple[float, ...], asked: Callable[..., list[Condition]]
+    data: Data, found: dict[str, list[Quantity]], frictions: tuple[float, ...], wanted: Callable[..., list[Condition]]
 ) -> list[Reading]:
     """What is asked of the ends at no friction and at ``frictions``; without it preparations do not differ."""
     return [
-        *(Reading(name, *asked(*ends)) for name, ends in found.items()),
+        *(Reading(name, *wanted(*ends)) for name, ends in found.items()),
         *(
             Reading(f"{name}, {reading.name}", *reading.conditions)
             for name, event in _OTHERWISE.items()
             for reading in preparations.readings(
-                data, event, frictions, lambda *ends, without=found[name][0]: asked(without, *ends)
+                data, event, frictions, lambda *ends, without=found[name][0]: wanted(without, *ends)
             )
         ),
     ]
@@ -109,7 +104,7 @@ def _by_end(
     6,
 )
 def linear_range(data: Data, words: Bounds) -> Finding:
-    def asked(without: Quantity, *ends: Quantity) -> list[Condition]:
+    def wanted(without: Quantity, *ends: Quantity) -> list[Condition]:
         least = (1.0 - words["almost"]) * 10.0
         return [
             Condition(f"times larger at friction {mu:g}", end.per(without), least, 10.0, ("almost",))
@@ -120,7 +115,7 @@ def linear_range(data: Data, words: Bounds) -> Finding:
     ratios = {name: [f"{end.per(ends[0]).value:.3g}" for end in ends[1:]] for name, ends in found.items()}
     return Finding(
         "at friction 0.2 and 1: " + ", ".join(f"{' and '.join(r)} times ({name})" for name, r in ratios.items()),
-        _by_end(data, found, (0.2, 1.0), asked),
+        _by_end(data, found, (0.2, 1.0), wanted),
         "The paper does not say how far off a response is no longer linear, nor how gravity came",
     )
 
@@ -168,15 +163,16 @@ def single_peak(data: Data, words: Bounds) -> Finding:
 def sharper(data: Data, words: Bounds) -> Finding:
     curve = _up_to_50(data, "half_maximum_width", "peak_height")
     width, height = curve["half_maximum_width"].values, curve["peak_height"].values
-    narrower = lower("width at 50 mg per that at the smallest force", width[-1] / width[0], words, "visible")
-    return Finding(
+    narrower = asked.lower("width at 50 mg per that at the smallest force", width[-1] / width[0], words, "visible")
+    return asked.one_reading(
         f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[-1]:.1f} R, the height "
         f"grows from {height[0]:.4f} to {height[-1]:.4f}",
-        [Reading("gravity at once", narrower)],
+        "gravity at once",
+        narrower,
     )
 
 
-CLAIMS.add("R3a", "V.E, Fig. 16a", "friction 0.2: force of the crossover to two peaks", "about 20 mg", 7, 16)(
+CLAIMS.add("R3a", "V.E, Fig. 16a", "friction 0.2: force of the crossover to two peaks", "about 20 mg", (7, 16))(
     at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from")
 )
 CLAIMS.add(
@@ -202,7 +198,7 @@ def third_peak_small(data: Data, words: Bounds) -> Finding:
         f"prominence {size[beyond[0]]:.3f} of the largest response at {force[beyond[0]]:g} mg, up to "
         f"{size[beyond].max():.3f} at {force[beyond][size[beyond].argmax()]:g} mg",
         [
-            Reading(f"{force[k]:g} mg", at_most("prominence per largest response", size[k], words, "small", "%"))
+            Reading(f"{force[k]:g} mg", asked.at_most("prominence per largest response", size[k], words, "small", "%"))
             for k in beyond
         ],
         "It keeps growing; the paper does not say up to which force it looked",
@@ -234,10 +230,11 @@ def sharp(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     asymmetry, force = runs["asymmetry"].values, runs["force"].values
     step = float(asymmetry[first] - asymmetry[first - 1])
-    return Finding(
+    return asked.one_reading(
         f"asymmetry from {asymmetry[first - 1]:.1e} at {force[first - 1]:g} mg to {asymmetry[first]:.2f} at "
         f"{force[first]:g} mg",
-        [Reading(RAMP, at_least("change between two forces, per largest response", step, words, "gradual"))],
+        RAMP,
+        asked.at_least("change between two forces, per largest response", step, words, "gradual"),
     )
 
 
@@ -255,7 +252,7 @@ def sliding_drops(data: Data, words: Bounds) -> Finding:
     readings = [
         Reading(
             f"within {margin:.0%} of the Coulomb limit",
-            lower("sliding contacts after per before", after / before, words, "marked"),
+            asked.lower("sliding contacts after per before", after / before, words, "marked"),
         )
         for margin, before, after in cases
         if before > 0
@@ -281,15 +278,11 @@ def network_changes(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     network = runs["network_asymmetry"].values
     before, after = Quantity.exact(network[first - 1]), Quantity.exact(network[first:].min())
-    return Finding(
+    return asked.one_reading(
         f"contacts without a mirror image: {network[first - 1]:.1%} before, {network[first]:.1%} after",
-        [
-            Reading(
-                RAMP,
-                Condition("contacts without a mirror image before", before, most=0.0),
-                Condition("smallest part without a mirror image after", after, 0.0, strict=True),
-            )
-        ],
+        RAMP,
+        Condition("contacts without a mirror image before", before, most=0.0),
+        Condition("smallest part without a mirror image after", after, 0.0, strict=True),
     )
 
 
@@ -324,7 +317,7 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
         )
     seen = f"{best[1]:g} and {best[2]:g} mg, difference {best[0]:.1%}" if pairs else "no pair of opposite sign"
     what = "difference of one response and the mirrored other, per largest response"
-    return Finding(f"{seen}{turned}", [Reading(RAMP, at_most(what, best[0], words, "holds", "%"))])
+    return asked.one_reading(f"{seen}{turned}", RAMP, asked.at_most(what, best[0], words, "holds", "%"))
 
 
 @CLAIMS.add(
@@ -332,17 +325,16 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     "V.B, Fig. 9",
     "force at which the open region reaches the lowest row at friction 1 over that at 0.2",
     "smaller than for 0.2",
-    8,
-    9,
+    (8, 9),
 )
 def floor_earlier(data: Data, words: Bounds) -> Finding:
-    def asked(low: Quantity, high: Quantity) -> list[Condition]:
+    def wanted(low: Quantity, high: Quantity) -> list[Condition]:
         return [Condition("force at friction 1 per that at 0.2", low.per(high), most=1.0, strict=True)]
 
     low, high = (data.event(GROUP, "reaches_floor", mu) for mu in (1.0, 0.2))
     return Finding(
         f"at the floor from {low.text('mg')} (friction 1) and {high.text('mg')} (friction 0.2)",
-        _ways(data, "reaches_floor", (1.0, 0.2), asked, "gravity at once"),
+        _ways(data, "reaches_floor", (1.0, 0.2), wanted, "gravity at once"),
     )
 
 
@@ -354,9 +346,10 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     if not beyond.any():
         raise NotMeasured(f"data/{GROUP}.nc: response ends before the open region reaches the floor")
     double = int(np.count_nonzero(curve["double_peaked"].values[beyond]))
-    return Finding(
+    return asked.one_reading(
         f"two peaks at {double} of {beyond.sum()} forces beyond {floor.high:.4g} mg",
-        [Reading("gravity at once", Condition("forces beyond it with two peaks", Quantity.exact(double), most=0.0))],
+        "gravity at once",
+        Condition("forces beyond it with two peaks", Quantity.exact(double), most=0.0),
     )
 
 
@@ -391,8 +384,7 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
     "V.B, Figs. 4, 8",
     "opened contacts at friction 0.2 over those without friction under the same force",
     "the region of open contacts is considerably smaller",
-    4,
-    8,
+    (4, 8),
 )
 def smaller_region(data: Data, words: Bounds) -> Finding:
     names = ("teardrop_depth", "teardrop_width", "reaches_floor", "opened_contacts")
@@ -404,15 +396,11 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
         raise NotMeasured(f"data/{GROUP}.nc: response holds no force at which the regions can be compared")
     ratio = full["opened_contacts"].values[open_] / without["opened_contacts"].values[open_]
     found = Quantity.range(ratio, float(np.median(ratio)))
-    return Finding(
+    return asked.one_reading(
         f"opened contacts at friction 0.2 per those without, until the region reaches the floor: {ratio.min():.2f} to "
         f"{ratio.max():.2f}",
-        [
-            Reading(
-                "gravity at once",
-                lower("opened contacts per those without friction, same force", found, words, "marked"),
-            )
-        ],
+        "gravity at once",
+        asked.lower("opened contacts per those without friction, same force", found, words, "marked"),
     )
 
 
@@ -421,8 +409,7 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     "V.B, Figs. 4, 8",
     "force at which the open region reaches the lowest row at friction 0.2 over that without friction",
     "it reaches the floor only for a much larger force",
-    4,
-    8,
+    (4, 8),
 )
 def floor_later(data: Data, words: Bounds) -> Finding:
     late, early = (data.event(GROUP, "reaches_floor", mu) for mu in (0.2, 0.0))
@@ -432,7 +419,7 @@ def floor_later(data: Data, words: Bounds) -> Finding:
             data,
             "reaches_floor",
             (0.2,),
-            lambda end: [higher("force with friction per without", end.per(early), words, "marked")],
+            lambda end: [asked.higher("force with friction per without", end.per(early), words, "marked")],
             "gravity at once",
         ),
     )
@@ -453,9 +440,10 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
         raise NotMeasured(f"data/{GROUP}.nc: response holds too few forces before the first opening")
     change = float(np.ptp(before) / before[0])
     what = "change of the response before a contact opens"
-    return Finding(
+    return asked.one_reading(
         f"the response at x = 0 changes by {change:.2%} up to the first opening at {event.text('mg')}",
-        [Reading("gravity at once", at_most(what, change, words, "visible", "%"))],
+        "gravity at once",
+        asked.at_most(what, change, words, "visible", "%"),
     )
 
 
@@ -489,16 +477,12 @@ def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
     axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
     dip = axis["central_dip"].values
     back = float(np.diff(dip).max())
-    return Finding(
+    return asked.one_reading(
         f"dip at x = 0 at 15 mg from {dip[0]:.0%} without friction to {dip[-1]:.1%} at friction "
         f"{float(axis['friction'][-1]):g}; largest step back {back:.2%} of the largest response",
-        [
-            Reading(
-                "floor response at 15 mg",
-                at_most("largest growth of the dip with friction", back, words, "visible", "%"),
-                at_least("fall of the dip over all", dip[0] - dip[-1], words, "marked"),
-            )
-        ],
+        "floor response at 15 mg",
+        asked.at_most("largest growth of the dip with friction", back, words, "visible", "%"),
+        asked.at_least("fall of the dip over all", dip[0] - dip[-1], words, "marked"),
     )
 
 
@@ -515,14 +499,14 @@ def friction_crossover(data: Data, words: Bounds) -> Finding:
     axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
     first, last = float(axis["central_dip"][0]), float(axis["central_dip"][-1])
 
-    def asked(dip: float) -> Sequence[Condition]:
+    def wanted(dip: float) -> Sequence[Condition]:
         return (
-            at_least("dip without friction", first, words, "visible", "%"),
-            at_most("dip with much friction", dip, words, "visible", "%"),
+            asked.at_least("dip without friction", first, words, "visible", "%"),
+            asked.at_most("dip with much friction", dip, words, "visible", "%"),
         )
 
     largest = float(axis["friction"][-1])
-    readings = [Reading("gravity at once", Condition("friction", event, 0.0, largest), *asked(last))]
+    readings = [Reading("gravity at once", Condition("friction", event, 0.0, largest), *wanted(last))]
     if preparations.LOADING in data.groups:
-        readings += [Reading(name, *asked(dip)) for name, dip in preparations.dips(data, 1.0).items()]
+        readings += [Reading(name, *wanted(dip)) for name, dip in preparations.dips(data, 1.0).items()]
     return Finding(f"two peaks up to friction {event.text()}, one above", readings)

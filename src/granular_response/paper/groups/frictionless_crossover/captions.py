@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from granular_response.paper.captions import RADIUS, WEIGHT, Caption, of_scene, values
+from granular_response.paper.captions import RADIUS, WEIGHT, Caption, of_scene, panels, values
 
 from .draw import COMPARED_FORCE, NETWORK_FORCES, PROFILE_FORCES, STIFFNESS_FORCES, nearest
 from .parameters import Parameters
@@ -70,8 +70,3 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             {**deep, "force": parameters.size_forces},
         ),
     }
-
-
-def panels(forces: list[float]) -> str:
-    """The force of each panel."""
-    return ", ".join(f"({chr(ord('a') + k)}) {force:g}" for k, force in enumerate(forces)) + f" {WEIGHT}."

@@ -5,18 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...claims.claim import (
-    Claims,
-    Condition,
-    Data,
-    Finding,
-    NotMeasured,
-    Quantity,
-    Reading,
-    at_most,
-    hardly_lower,
-    near,
-)
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "frictionless_crossover"
@@ -34,15 +24,15 @@ ROW, DISK = float(np.sqrt(3.0)), 2.0
     "IV.A, Fig. 3",
     "without friction: force at which the floor response gets two peaks, each above the response at x = 0",
     "one peak turns into two as the force grows",
-    3,
-    4,
+    (3, 4),
 )
 def crossover(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "crossover")
     largest = float(data.get(GROUP, "response", "force")["force"].max())
-    return Finding(
+    return asked.one_reading(
         f"two peaks from {event.text('mg')}",
-        [Reading("as described", Condition("two peaks from", event, 0.0, largest, unit="mg"))],
+        "as described",
+        Condition("two peaks from", event, 0.0, largest, unit="mg"),
     )
 
 
@@ -51,20 +41,15 @@ def crossover(data: Data, words: Bounds) -> Finding:
     "IV.A, Figs. 3, 4",
     "that force per the force at which the open region reaches the lowest row",
     "the crossover comes at slightly smaller forces than the open region's reaching the floor",
-    3,
-    4,
+    (3, 4),
 )
 def before_the_floor(data: Data, words: Bounds) -> Finding:
     event, floor = data.event(GROUP, "crossover"), data.event(GROUP, "teardrop_reaches_floor")
     ratio = event.per(floor)
-    return Finding(
+    return asked.one_reading(
         f"two peaks from {event.text('mg')}, the open region at the floor from {floor.text('mg')}",
-        [
-            Reading(
-                "as described",
-                Condition("crossover per force at the floor", ratio, 1.0 - words["slightly"], 1.0, ("slightly",)),
-            )
-        ],
+        "as described",
+        Condition("crossover per force at the floor", ratio, 1.0 - words["slightly"], 1.0, ("slightly",)),
     )
 
 
@@ -97,15 +82,11 @@ def _open_regions(data: Data) -> list[tuple[float, float, np.ndarray]]:
 def horizontal(data: Data, words: Bounds) -> Finding:
     regions = _open_regions(data)
     least = min(share for _, share, _ in regions)
-    return Finding(
+    return asked.one_reading(
         f"horizontal part of the opened contacts until their region reaches the floor: at least {least:.1%}",
-        [
-            Reading(
-                "until the region reaches the floor",
-                hardly_lower("smallest horizontal part of the opened contacts", least, words, "visible", "%"),
-            )
-        ],
-        "At larger forces oblique contacts open too, close below the load; the paper describes none",
+        "until the region reaches the floor",
+        asked.hardly_lower("smallest horizontal part of the opened contacts", least, words, "visible", "%"),
+        remark="At larger forces oblique contacts open too, close below the load; the paper describes none",
     )
 
 
@@ -114,8 +95,7 @@ def horizontal(data: Data, words: Bounds) -> Finding:
     "IV.A, Fig. 4",
     "rows and depth of that region at growing forces",
     "the region has the shape of a teardrop and grows with the force",
-    4,
-    5,
+    (4, 5),
 )
 def teardrop(data: Data, words: Bounds) -> Finding:
     regions = [counts for _, _, counts in _open_regions(data)]
@@ -124,26 +104,22 @@ def teardrop(data: Data, words: Bounds) -> Finding:
     widest = regions[-1]
     if len(widest) < 4:
         raise NotMeasured(f"data/{GROUP}.nc: no region of four rows that has not reached the floor")
-    return Finding(
+    return asked.one_reading(
         f"contacts by row, from below, before the region reaches the floor: {', '.join(map(str, widest))}; depth grows "
         f"from {depth[0]:.1f} to {depth.max():.1f} R",
-        [
-            Reading(
-                "as described",
-                Condition(
-                    "widest row per the wider end",
-                    Quantity.exact(widest.max() / max(widest[0], widest[-1])),
-                    1.0,
-                    strict=True,
-                ),
-                Condition(
-                    "smallest growth of the depth with the force, rows (known to half a row)",
-                    Quantity.exact(float(np.diff(depth).min() / ROW)),
-                    -0.5,
-                ),
-                Condition("growth of the depth, rows", Quantity.exact(float((depth.max() - depth[0]) / ROW)), 0.5),
-            )
-        ],
+        "as described",
+        Condition(
+            "widest row per the wider end",
+            Quantity.exact(widest.max() / max(widest[0], widest[-1])),
+            1.0,
+            strict=True,
+        ),
+        Condition(
+            "smallest growth of the depth with the force, rows (known to half a row)",
+            Quantity.exact(float(np.diff(depth).min() / ROW)),
+            -0.5,
+        ),
+        Condition("growth of the depth, rows", Quantity.exact(float((depth.max() - depth[0]) / ROW)), 0.5),
     )
 
 
@@ -183,7 +159,9 @@ def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
                     "bracket",
                 )
                 conditions.append(
-                    hardly_lower(f"{what} per that in {slabs['layers'].values[0]:.0f} layers", ratio, words, "slightly")
+                    asked.hardly_lower(
+                        f"{what} per that in {slabs['layers'].values[0]:.0f} layers", ratio, words, "slightly"
+                    )
                 )
                 if what == "depth":
                     texts.append(f"{ratio.value:.2f} in {slabs['layers'].values[k]:.0f} layers (k_N = {stiffness:g})")
@@ -288,19 +266,15 @@ def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     for what, size in (("depth", depth[:, use]), ("width", width[:, use])):
         spread = float((np.ptp(size[high], axis=0) / size[-1]).max())
         conditions.append(
-            at_most(f"largest change of the {what} for k_N of 2000 and more", spread, words, "nearly", "%")
+            asked.at_most(f"largest change of the {what} for k_N of 2000 and more", spread, words, "nearly", "%")
         )
     grown = float(((depth[-1] - depth[0])[use] / ROW).max())
-    return Finding(
+    return asked.one_reading(
         f"depth grows by up to {grown:.1f} rows from k_N = {stiffness[0]:g} to {stiffness[-1]:g}; for 2000 and more it "
         f"changes by {conditions[0].found.value:.1%}",
-        [
-            Reading(
-                "forces at which the region reaches no floor",
-                *conditions,
-                Condition("growth of the depth, rows", Quantity.exact(grown), 0.5),
-            )
-        ],
+        "forces at which the region reaches no floor",
+        *conditions,
+        Condition("growth of the depth, rows", Quantity.exact(grown), 0.5),
     )
 
 
@@ -322,7 +296,8 @@ def crossover_and_stiffness(data: Data, words: Bounds) -> Finding:
         raise NotMeasured(f"data/{GROUP}.nc: stiffness holds too few stiffnesses from 1000 to 1e5")
     ratios = [end.per(ends[-1]) for end in ends[:-1]]
     spread = Quantity(ratios[0].value, min(r.low for r in ratios), max(r.high for r in ratios), "range")
-    return Finding(
+    return asked.one_reading(
         f"crossover from k_N = 1000 to 1e5: {ends[0].text('mg')} to {ends[-1].text('mg')}",
-        [Reading("15 layers", near("crossover force per that at the largest k_N", spread, words, "nearly"))],
+        "15 layers",
+        asked.near("crossover force per that at the largest k_N", spread, words, "nearly"),
     )

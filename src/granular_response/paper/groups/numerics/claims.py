@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...claims import asked
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at, at_most
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
 from ...claims.words import Bounds
 
 FloatArray = NDArray[np.float64]
@@ -59,9 +60,10 @@ def stop_energy(data: Data, words: Bounds) -> Finding:
 def restart(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "restart", "kinetic_energy", "load")
     largest = float(study["kinetic_energy"].max())
-    return Finding(
+    return asked.one_reading(
         f"at most {largest:.1e} per disk at every look",
-        [Reading("every load and look", Condition("kinetic energy per disk", Quantity.exact(largest), most=1e-22))],
+        "every load and look",
+        Condition("kinetic energy per disk", Quantity.exact(largest), most=1e-22),
     )
 
 
@@ -74,19 +76,13 @@ def restart(data: Data, words: Bounds) -> Finding:
 def at_rest(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "at_rest", "network_fixed_steps", "sliding_contacts", "loose_disks")
     fixed, sliding, loose = (float(study[n]) for n in ("network_fixed_steps", "sliding_contacts", "loose_disks"))
-    return Finding(
+    return asked.one_reading(
         f"network fixed for {fixed:.0f} steps, {sliding:.0f} sliding contacts, {loose:.0f} disks with fewer than two "
         "contacts",
-        [
-            Reading(
-                "at the stop",
-                Condition(
-                    "steps with a fixed network", Quantity.exact(fixed), 100.0 * words["several"], words=("several",)
-                ),
-                Condition("sliding contacts", Quantity.exact(sliding), most=0.0),
-                Condition("disks with fewer than two contacts", Quantity.exact(loose), most=0.0),
-            )
-        ],
+        "at the stop",
+        Condition("steps with a fixed network", Quantity.exact(fixed), 100.0 * words["several"], words=("several",)),
+        Condition("sliding contacts", Quantity.exact(sliding), most=0.0),
+        Condition("disks with fewer than two contacts", Quantity.exact(loose), most=0.0),
     )
 
 
@@ -139,7 +135,9 @@ def integrators(data: Data, words: Bounds) -> Finding:
 
 
 def _unseen(difference: float, words: Bounds) -> Reading:
-    return Reading("friction 0.2, 15 mg", at_most("difference per largest response", difference, words, "visible", "%"))
+    return Reading(
+        "friction 0.2, 15 mg", asked.at_most("difference per largest response", difference, words, "visible", "%")
+    )
 
 
 @CLAIMS.add(
@@ -201,7 +199,8 @@ def disorder(data: Data, words: Bounds) -> Finding:
 
     single = float(np.median(np.abs(stopped - finished).max(axis=1) / finished.max(axis=1)))
     found = over_realizations(np.arange(number), lambda picked, axis: difference(picked.astype(int), axis))
-    return Finding(
+    return asked.one_reading(
         f"mean of {number}: {found.text('%')} of its largest value; single realizations: median {single:.2%}",
-        [Reading("1 %, as for floor forces", Condition("error of the mean response", found, most=0.01, unit="%"))],
+        "1 %, as for floor forces",
+        Condition("error of the mean response", found, most=0.01, unit="%"),
     )

@@ -10,21 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from ...claims import asked
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import (
-    Claims,
-    Condition,
-    Data,
-    Finding,
-    NotMeasured,
-    Quantity,
-    Reading,
-    at,
-    at_least,
-    at_most,
-    each,
-    hardly_lower,
-)
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
 from ...claims.words import Bounds
 
 FloatArray = NDArray[np.float64]
@@ -114,8 +102,8 @@ def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 title(start),
-                at_least("dip at friction 0", without, words, "visible", "%"),
-                at_most("dip at friction 0.2", full, words, "visible", "%"),
+                asked.at_least("dip at friction 0", without, words, "visible", "%"),
+                asked.at_most("dip at friction 0.2", full, words, "visible", "%"),
             )
         )
     return Finding(
@@ -222,8 +210,7 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
     "VI.A, Figs. 21, 22",
     "crossover force against friction at each polydispersity (0.01, 0.1, 0.25)",
     "the larger the friction, the larger the crossover force",
-    21,
-    22,
+    (21, 22),
 )
 def rises_with_friction(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "friction", "rises")
@@ -234,8 +221,7 @@ def rises_with_friction(data: Data, words: Bounds) -> Finding:
     "VI.A, Figs. 21, 22",
     "crossover force against polydispersity at each friction",
     "the crossover force decreases with increasing polydispersity",
-    21,
-    22,
+    (21, 22),
 )
 def falls_with_disorder(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "polydispersity", "falls")
@@ -274,18 +260,12 @@ def five_enough(data: Data, words: Bounds) -> Finding:
         raise NotMeasured(f"data/{GROUP}.nc: shapes holds too few forces away from a crossover")
     typical = over_realizations(chosen, np.mean)
     few = int(crossover["realizations"].values[usual].min())
-    return Finding(
+    return asked.one_reading(
         f"means of five have as many peaks as the mean of all in {typical.text('%')} of the draws, mean over "
         f"{chosen.size} forces away from the crossover; {chosen.min():.0%} at the worst of them",
-        [
-            Reading(
-                "w = 6",
-                Condition(
-                    "draws of five that agree", typical, 1.0 - words["holds"], words=("holds", "similar"), unit="%"
-                ),
-            )
-        ],
-        f"Five are drawn from {few} or more",
+        "w = 6",
+        Condition("draws of five that agree", typical, 1.0 - words["holds"], words=("holds", "similar"), unit="%"),
+        remark=f"Five are drawn from {few} or more",
     )
 
 
@@ -378,8 +358,8 @@ def gradual(data: Data, words: Bounds) -> Finding:
         steps = over_realizations(np.fmax.reduce(np.fmax(np.abs(np.diff(dips)), np.abs(np.diff(leans))), axis=1))
         name = f"polydispersity {delta:g}"
         texts.append(f"{step.text()} in the mean, {steps.text()} in the median realization ({name})")
-        means.append(at_most(name, step, words, "gradual"))
-        singles.append(at_most(name, steps, words, "gradual"))
+        means.append(asked.at_most(name, step, words, "gradual"))
+        singles.append(asked.at_most(name, steps, words, "gradual"))
     if not means:
         raise NotMeasured(f"data/{GROUP}.nc: shapes holds no disordered case with friction 1")
     return Finding(
@@ -416,7 +396,7 @@ def coordination(data: Data, words: Bounds) -> Finding:
         for start, case in _packings(data, *names.values())
         for text, name in names.items()
     }
-    return each("contacts per disk: ", means, lambda q: Condition("contacts per disk", q, low, high, ("about",)))
+    return asked.each("contacts per disk: ", means, lambda q: Condition("contacts per disk", q, low, high, ("about",)))
 
 
 @CLAIMS.add(
@@ -433,10 +413,10 @@ def missing_horizontal(data: Data, words: Bounds) -> Finding:
     for start, case in _packings(data, *names):
         gone = [full[k] - case[name].values for k, name in enumerate(names)]
         shares[title(start)] = over_realizations(gone[0] / (gone[0] + gone[1]), np.mean)
-    return each(
+    return asked.each(
         "horizontal part of the contacts that the lattice has and the packing has not: ",
         shares,
-        lambda share: at_least("horizontal part of the missing contacts", share, words, "marked", "%"),
+        lambda share: asked.at_least("horizontal part of the missing contacts", share, words, "marked", "%"),
         "%",
     )
 
@@ -466,10 +446,10 @@ def resembles(data: Data, words: Bounds) -> Finding:
         if len(values) < 3:
             raise NotMeasured(f"data/{GROUP}.nc: realizations holds too few forces {name}")
         typical[name] = over_realizations(values)
-    return each(
+    return asked.each(
         "rms difference of the median realization from the mean, per the mean's rms, median over cases and forces: ",
         typical,
-        lambda one: at_most("rms difference of a typical realization from the mean", one, words, "similar", "%"),
+        lambda one: asked.at_most("rms difference of a typical realization from the mean", one, words, "similar", "%"),
         "%",
     )
 
@@ -486,7 +466,7 @@ def fluctuations(data: Data, words: Bounds) -> Finding:
     for start, *cases in _at_15(data, "shapes", "spread", "spread_interval", "level"):
         without, full = (_with_interval(case, "spread") for case in cases)
         ratios[title(start)] = without.per(full)
-    return each(
+    return asked.each(
         "spread of the responses of realizations at 15 mg, friction 0 over 0.2: ",
         ratios,
         lambda ratio: Condition("spread without friction per spread with 0.2", ratio, 1.0, strict=True),
@@ -507,7 +487,7 @@ def evident(data: Data, words: Bounds) -> Finding:
         if min(without.size, full.size) < 5:
             raise NotMeasured(f"data/{GROUP}.nc: realizations holds too few responses at polydispersity 0.01")
         apart[title(start)] = over_realizations((without[:, None] > full[None, :]).mean(axis=1), np.mean)
-    return each(f"{what}: ", apart, lambda part: hardly_lower(what, part, words, "holds", "%"), "%")
+    return asked.each(f"{what}: ", apart, lambda part: asked.hardly_lower(what, part, words, "holds", "%"), "%")
 
 
 def linear_end(path: xr.Dataset, tolerance: float) -> Quantity:

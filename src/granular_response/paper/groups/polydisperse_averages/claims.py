@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Reading, linear_until
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Reading
 from ...claims.words import Bounds
 
 GROUP = "polydisperse_averages"
@@ -31,7 +32,7 @@ def shorter_range(data: Data, words: Bounds) -> Finding:
                 here = np.isclose(study["polydispersity"].values, delta) & np.isclose(study["friction"].values, mu)
                 if not here.any():
                     raise NotMeasured(f"data/{GROUP}.nc: linear_range holds no {delta:g} with friction {mu:g}")
-                ends.append(linear_until(study.isel(path=int(np.flatnonzero(here)[0])), tolerance))
+                ends.append(asked.linear_until(study.isel(path=int(np.flatnonzero(here)[0])), tolerance))
             conditions.append(Condition(f"range per lattice at friction {mu:g}", ends[0].per(ends[1]), most=1.0))
         if not conditions:
             raise NotMeasured(f"data/{GROUP}.nc: linear_range holds no polydispersity 0.01")

@@ -67,8 +67,8 @@ def _forces(data: xr.Dataset) -> Figure:
         style.no_axes(axes)
         axes.set(xlim=(-1.5, width + 1.5), ylim=(-1.5, top + 4.0))
     x, z = data["position"].values[1, disk] + [0.0, radius[disk]]
-    network.draw_loaded_disk(panels[1, 0], (float(x), float(z - radius[disk])), float(radius[disk]))
-    network.draw_load(panels[1, 0], (float(x), float(z)), length=3.6)
+    network.draw_loaded_disk(panels[1, 0], (x, z - radius[disk]), float(radius[disk]))
+    network.draw_load(panels[1, 0], (x, z), length=3.6)
     return figure
 
 

@@ -17,21 +17,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.paper.datasets import labelled
-from granular_response.paper.groups.polydisperse_averages.ensemble.averages import (
-    averages_dataset,
-    individual_dataset,
-    linear_range_dataset,
-)
-from granular_response.paper.groups.polydisperse_averages.ensemble.datasets import (
-    ensembles_dataset,
-    packings_dataset,
-)
-from granular_response.paper.groups.polydisperse_averages.ensemble.realizations import (
-    Realization,
-    Task,
-    ensemble_task,
-    realize,
-)
+from granular_response.paper.groups.polydisperse_averages.ensemble import averages, datasets, realizations
 from granular_response.paper.groups.polydisperse_averages.parameters import Case, Parameters
 from granular_response.scene import SceneError
 from granular_response.solve import Problem
@@ -44,11 +30,11 @@ def simulate(
 ) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles``, ``averages``, ``individual``, ``packings``, ``linear_range`` and ``forces``."""
     cases, picture, linear = parameters.columns, parameters.forces_picture, parameters.linear_range
-    tasks: list[Task] = []
+    tasks: list[realizations.Task] = []
     shown = -1
     for case in cases:
         for realization in range(case.realizations):
-            task = ensemble_task(parameters, case, realization)
+            task = realizations.ensemble_task(parameters, case, realization)
             asked = (picture.polydispersity, picture.friction, picture.realization)
             this = (case.polydispersity, case.friction, realization)
             if shown < 0 and this == asked and picture.force in case.forces:
@@ -58,25 +44,25 @@ def simulate(
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for delta, mu in grid:
         case = Case(delta, mu, parameters.lattice_constant, linear.forces, 1, wall_friction=0.0)
-        tasks.append(replace(ensemble_task(parameters, case, 0), ramp_time=linear.ramp_time))
+        tasks.append(replace(realizations.ensemble_task(parameters, case, 0), ramp_time=linear.ramp_time))
 
-    found = map_tasks(realize, tasks, workers=workers, progress=progress, what="realizations")
+    found = map_tasks(realizations.realize, tasks, workers=workers, progress=progress, what="realizations")
     ensemble, single = found[: len(found) - len(grid)], found[len(found) - len(grid) :]
-    ensembles = ensembles_dataset(cases, ensemble)
+    ensembles = datasets.ensembles_dataset(cases, ensemble)
     half = round(parameters.reach / parameters.spacing)
     x = np.arange(-half, half + 1, dtype=float) * parameters.spacing
-    datasets = {
+    made = {
         "ensembles": ensembles,
-        "averages": averages_dataset(ensembles, x, widths=parameters.widths, few=parameters.few),
-        "individual": individual_dataset(ensembles, parameters.individual, x),
-        "packings": packings_dataset(cases, ensemble),
-        "linear_range": linear_range_dataset(grid, linear.forces, single, linear.width, linear.tolerance),
+        "averages": averages.averages_dataset(ensembles, x, widths=parameters.widths, few=parameters.few),
+        "individual": averages.individual_dataset(ensembles, parameters.individual, x),
+        "packings": datasets.packings_dataset(cases, ensemble),
+        "linear_range": averages.linear_range_dataset(grid, linear.forces, single, linear.width, linear.tolerance),
         "forces": _forces_dataset(tasks[shown], found[shown], picture.polydispersity),
     }
-    return labelled(datasets, tasks[0].scene)
+    return labelled(made, tasks[0].scene)
 
 
-def _forces_dataset(task: Task, found: Realization, polydispersity: float) -> xr.Dataset:
+def _forces_dataset(task: realizations.Task, found: realizations.Realization, polydispersity: float) -> xr.Dataset:
     """The states of Fig. 2: at rest, and under load."""
     problem = Problem.from_scene(task.scene)
     if len(found.states) != 2:

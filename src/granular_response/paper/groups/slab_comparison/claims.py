@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at_most
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "slab_comparison"
@@ -35,7 +36,7 @@ def large_systems(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"friction {mu:g}, {floor} floor, gravity {gravity}, {wide:g} disks a row per layer",
-                at_most("difference from the elastic slab in the deepest one", deep, words, "holds", "%"),
+                asked.at_most("difference from the elastic slab in the deepest one", deep, words, "holds", "%"),
                 Condition("that per the one in the thinnest", Quantity.exact(deep / thin), most=1.0),
             )
         )

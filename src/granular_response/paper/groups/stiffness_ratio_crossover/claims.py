@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, about, at_most
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, about
 from ...claims.words import Bounds
 
 GROUP = "stiffness_ratio_crossover"
@@ -62,7 +63,7 @@ def independent(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"from {start:g} on",
-                at_most("change from the response at 0.8, per its largest value", largest, words, "nearly", "%"),
+                asked.at_most("change from the response at 0.8, per its largest value", largest, words, "nearly", "%"),
             )
         )
     return Finding(
@@ -77,9 +78,10 @@ def independent(data: Data, words: Bounds) -> Finding:
 def no_sliding(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "response", "sliding_contacts", "stiffness_ratio")
     sliding = study["sliding_contacts"].values[study["stiffness_ratio"].values > 0.0]
-    return Finding(
+    return asked.one_reading(
         f"at most {sliding.max():.0f} contacts of disks at the Coulomb limit, at all ratios above 0",
-        [Reading("at rest under 15 mg", Condition("sliding contacts", Quantity.exact(sliding.max()), most=0.0))],
+        "at rest under 15 mg",
+        Condition("sliding contacts", Quantity.exact(sliding.max()), most=0.0),
     )
 
 
@@ -88,8 +90,7 @@ def no_sliding(data: Data, words: Bounds) -> Finding:
     "V.C",
     "root of the half plane's criterion r over the ratio at which the slab's two peaks end",
     "the criterion fits the finite slab quite well",
-    10,
-    11,
+    (10, 11),
 )
 def criterion(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "elastic", "root", "rotations")

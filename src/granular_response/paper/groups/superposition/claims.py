@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...claims import asked
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claims, Data, Finding, Measure, NotMeasured, Quantity, Reading, about, at, at_most, lower
+from ...claims.claim import Claims, Data, Finding, Measure, NotMeasured, Quantity, Reading, about, at
 from ...claims.words import Bounds
 
 GROUP = "superposition"
@@ -25,7 +26,7 @@ def superposition(force: float, word: str) -> Measure:
             readings.append(
                 Reading(
                     text,
-                    at_most(
+                    asked.at_most(
                         "largest difference of whole and sum, median of the realizations", typical, words, word, "%"
                     ),
                 )
@@ -61,10 +62,11 @@ def linear_range(data: Data, words: Bounds) -> Finding:
         value = typical.value if typical.value < 1e6 else float("nan")
         typical = Quantity(value, min(typical.low, float(until.max())), float("inf"), typical.kind)
     last = f"{beyond.max():.3g} mg" if np.isfinite(beyond).all() else f"beyond {until.max():.3g} mg"
-    return Finding(
+    return asked.one_reading(
         f"median {typical.text('mg')}; single realizations end between {until.min():.3g} mg and {last}",
-        [Reading("5 % off, typical realization", about("end of the linear range", typical, 0.4, words, "mg"))],
-        "The paper has one realization and does not say how far off a response is no longer linear",
+        "5 % off, typical realization",
+        about("end of the linear range", typical, 0.4, words, "mg"),
+        remark="The paper has one realization and does not say how far off a response is no longer linear",
     )
 
 
@@ -91,7 +93,7 @@ def falls_with_depth(data: Data, words: Bounds) -> Finding:
         readings.append(
             Reading(
                 f"loads {distance:g} apart",
-                lower("difference in the deepest row per the largest of any row", fall, words, "marked"),
+                asked.lower("difference in the deepest row per the largest of any row", fall, words, "marked"),
             )
         )
     return Finding(

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity
 from ...claims.words import Bounds
 
 GROUP = "theory"
 CLAIMS = Claims(GROUP)
 
 
-@CLAIMS.add("K2", "V.C", "root of r(beta) without horizontal springs", "0.2915", 10, 11, derivation=True)
+@CLAIMS.add("K2", "V.C", "root of r(beta) without horizontal springs", "0.2915", (10, 11), derivation=True)
 def root(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "peak_criterion", "root", "rotations")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
-    return Finding(
+    return asked.one_reading(
         f"{roots['suppressed']:.6f}; with disks free to turn {roots['free']:.4f} (3/11)",
-        [
-            Reading(
-                "rotations suppressed, as in eq. (5)",
-                Condition("root", Quantity.exact(roots["suppressed"]), 0.29145, 0.29155),
-            )
-        ],
-        "Eq. (5) keeps the disks from turning; the paper's disks turn",
+        "rotations suppressed, as in eq. (5)",
+        Condition("root", Quantity.exact(roots["suppressed"]), 0.29145, 0.29155),
+        remark="Eq. (5) keeps the disks from turning; the paper's disks turn",
     )
 
 
@@ -36,14 +33,10 @@ def root(data: Data, words: Bounds) -> Finding:
 def moduli(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "moduli", "error", "rotations", "measured", "formula")
     error = study.sel(rotations="suppressed")["error"].values
-    return Finding(
+    return asked.one_reading(
         f"largest difference {error.max():.1e} of the largest modulus, {error.size} lattices",
-        [
-            Reading(
-                "rotations suppressed, as in eq. (5)",
-                Condition("largest difference per largest modulus", Quantity.exact(error.max()), most=1e-10),
-            )
-        ],
-        "Eq. (6) as printed gives shear half its energy: its d is twice that of eq. (10), which the paper's r and root "
-        "use",
+        "rotations suppressed, as in eq. (5)",
+        Condition("largest difference per largest modulus", Quantity.exact(error.max()), most=1e-10),
+        remark="Eq. (6) as printed gives shear half its energy: its d is twice that of eq. (10), which the paper's r "
+        "and root use",
     )

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.paper.groups.theory.parameters import Parameters
+from granular_response.store.result import variable
 from granular_response.theory import crossover, half_plane, lattice, rays
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
@@ -43,10 +44,6 @@ def simulate(parameters: Parameters, *, workers: int | None = None, progress: An
     }
 
 
-def _variable(dims: Any, values: Any, long_name: str) -> xr.Variable:
-    return xr.Variable(dims, values, {"long_name": long_name, "units": "1"})
-
-
 def _predictions(values: Parameters) -> xr.Dataset:
     x = np.linspace(-values.half_width, values.half_width, values.points)
     poisson_ratio = lattice.poisson_ratio(1.0, values.stiffness_ratio)
@@ -64,23 +61,23 @@ def _predictions(values: Parameters) -> xr.Dataset:
     ]
     return xr.Dataset(
         {
-            "slab_rough": _variable("x", Slab(1.0, solid, "rough").floor_pressure(x), f"{pressure}, rough floor"),
-            "slab_smooth": _variable("x", Slab(1.0, solid, "smooth").floor_pressure(x), f"{pressure}, smooth floor"),
-            "half_plane": _variable(
+            "slab_rough": variable("x", Slab(1.0, solid, "rough").floor_pressure(x), f"{pressure}, rough floor"),
+            "slab_smooth": variable("x", Slab(1.0, solid, "smooth").floor_pressure(x), f"{pressure}, smooth floor"),
+            "half_plane": variable(
                 "x",
                 half_plane.pressure(x, 1.0, solid),
                 "pressure times depth / force in a half plane, same depth",
             ),
-            "rays": _variable(("depth", "x"), np.stack(hyperbolic), f"{pressure}, two diffusing rays"),
-            "poisson_ratio": _variable((), poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"),
-            "ray_angle": _variable((), values.ray_angle, "angle of the rays to the vertical in degrees"),
-            "diffusion_length": _variable(
+            "rays": variable(("depth", "x"), np.stack(hyperbolic), f"{pressure}, two diffusing rays"),
+            "poisson_ratio": variable((), poisson_ratio, "two-dimensional Poisson ratio of the elastic slab"),
+            "ray_angle": variable((), values.ray_angle, "angle of the rays to the vertical in degrees"),
+            "diffusion_length": variable(
                 (), values.diffusion_length, "squared width of a ray over depth, in mean disk radii"
             ),
         },
         coords={
-            "x": _variable("x", x, "distance from the force in slab heights"),
-            "depth": _variable("depth", np.array(values.depths), "slab height in mean disk radii"),
+            "x": variable("x", x, "distance from the force in slab heights"),
+            "depth": variable("depth", np.array(values.depths), "slab height in mean disk radii"),
         },
     )
 
@@ -91,21 +88,21 @@ def _peak_criterion() -> xr.Dataset:
     ratio = [[crossover.stiffness_ratio(body, rotations) for body in BODIES] for rotations in ROTATIONS]
     return xr.Dataset(
         {
-            "criterion": _variable(names, criterion, "r of the lattice without horizontal springs; two peaks if < 0"),
-            "root": _variable(
+            "criterion": variable(names, criterion, "r of the lattice without horizontal springs; two peaks if < 0"),
+            "root": variable(
                 "rotations", [lattice.peak_criterion_root(r) for r in ROTATIONS], "k_2t/k_2n at which r = 0"
             ),
-            "root_closed_form": _variable("rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"),
-            "crossover": _variable(
+            "root_closed_form": variable("rotations", [2.0 * np.sqrt(7.0) - 5.0, 3.0 / 11.0], "the same, closed form"),
+            "crossover": variable(
                 ("rotations", "body"),
                 ratio,
                 "k_2t/k_2n at which the pressure below the force turns into a minimum",
             ),
         },
         coords={
-            "beta": _variable("beta", _BETA, "k_2t/k_2n"),
-            "rotations": _variable("rotations", list(ROTATIONS), "whether the disks turn"),
-            "body": _variable("body", list(BODIES), "elastic body that carries the force"),
+            "beta": variable("beta", _BETA, "k_2t/k_2n"),
+            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
+            "body": variable("body", list(BODIES), "elastic body that carries the force"),
         },
     )
 
@@ -118,19 +115,19 @@ def _moduli() -> xr.Dataset:
     dims = ("rotations", "case", "stress", "strain")
     return xr.Dataset(
         {
-            "formula": _variable(dims, formula, "modulus of eqs. (7)-(10), or with free rotations"),
-            "measured": _variable(dims, measured, "modulus of the strained periodic lattice, relaxed"),
-            "error": _variable(dims[:2], error, "largest difference of the two / largest modulus"),
-            "springs": _variable(
+            "formula": variable(dims, formula, "modulus of eqs. (7)-(10), or with free rotations"),
+            "measured": variable(dims, measured, "modulus of the strained periodic lattice, relaxed"),
+            "error": variable(dims[:2], error, "largest difference of the two / largest modulus"),
+            "springs": variable(
                 ("case", "spring"),
                 [[s.k1n, s.k2n, s.k1t, s.k2t] for s in SPRINGS],
                 "stiffness of the lattice's springs",
             ),
         },
         coords={
-            "rotations": _variable("rotations", list(ROTATIONS), "whether the disks turn"),
-            "spring": _variable("spring", ["k1n", "k2n", "k1t", "k2t"], "spring of Fig. 11"),
-            "stress": _variable("stress", component, "stress component"),
-            "strain": _variable("strain", component, "strain component (tensor)"),
+            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
+            "spring": variable("spring", ["k1n", "k2n", "k1t", "k2t"], "spring of Fig. 11"),
+            "stress": variable("stress", component, "stress component"),
+            "strain": variable("strain", component, "strain component (tensor)"),
         },
     )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...claims.claim import Claims, Data, Finding, NotMeasured, Reading, at_least, at_most
+from ...claims import asked
+from ...claims.claim import Claims, Data, Finding, NotMeasured, Reading
 from ...claims.words import Bounds
 
 GROUP = "torque"
@@ -29,10 +30,11 @@ def chains(data: Data, words: Bounds) -> Finding:
         raise NotMeasured(f"data/{GROUP}.nc: reach holds no ring within {NEAR:g} radii")
     change = float(rings["force_change"].values[near].mean())
     torque = float(rings["torque"])
-    return Finding(
+    return asked.one_reading(
         f"torque {torque:g}: contact forces within {NEAR:g} radii change by {change:.0%}",
-        [Reading(f"torque {torque:g}", at_least("change of the contact forces", change, words, "marked", "%"))],
-        "One realization; additional torques can, says the paper, have quite a large effect",
+        f"torque {torque:g}",
+        asked.at_least("change of the contact forces", change, words, "marked", "%"),
+        remark="One realization; additional torques can, says the paper, have quite a large effect",
     )
 
 
@@ -83,7 +85,7 @@ def near_the_load(data: Data, words: Bounds) -> Finding:
         f"change beyond {FAR:g} radii per that within {NEAR:g}: "
         + ", ".join(f"{ratio:.3f} ({name})" for name, ratio in ratios.items()),
         [
-            Reading(name, at_most("change far from the load per that near it", ratio, words, "small"))
+            Reading(name, asked.at_most("change far from the load per that near it", ratio, words, "small"))
             for name, ratio in ratios.items()
         ],
         "The stress of the force alone falls with the distance too, so that its relative change reaches farther",

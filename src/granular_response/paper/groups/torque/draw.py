@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.paper.captions import letters
@@ -45,18 +44,14 @@ def _chains(data: xr.Dataset) -> Figure:
         point = network.pair_points(position, radius, *pairs)
         shown = (point[:, 0] >= left) & (point[:, 0] <= right) & (point[:, 1] >= low)
         network.draw_force_chains(axes, point[shown], added[index][shown], **scale)
-        network.draw_loaded_disk(axes, (float(position[disk, 0]), float(position[disk, 1])), float(radius[disk]))
-        _loads(axes, position[disk], data["applied_force"].values, float(torques[index]))
+        network.draw_loaded_disk(axes, position[disk], float(radius[disk]))
+        # the force as a straight arrow to the disk's centre, a clockwise torque as an arc over it
+        network.draw_load(axes, position[disk], data["applied_force"].values, length=4.6)
+        network.draw_torque(axes, position[disk], -float(torques[index]))
         network.draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
         axes.set(**limits)
         style.letter(axes, chr(ord("a") + index), place="above", text=_torque(float(torques[index])))
     return figure
-
-
-def _loads(axes: Axes, centre: np.ndarray, force: np.ndarray, torque: float) -> None:
-    """The force as a straight arrow to the disk's centre, a clockwise torque as an arc over it."""
-    network.draw_load(axes, (float(centre[0]), float(centre[1])), (float(force[0]), float(force[1])), length=4.6)
-    network.draw_torque(axes, (float(centre[0]), float(centre[1])), -torque)
 
 
 def _reach(data: xr.Dataset) -> Figure:

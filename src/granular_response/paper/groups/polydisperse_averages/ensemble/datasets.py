@@ -8,12 +8,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.paper.ensembles import NOT_REACHED, OUTCOMES
-from granular_response.paper.groups.polydisperse_averages.ensemble.realizations import (
-    ANGLE_BINS,
-    LOADED,
-    PACKING,
-    Realization,
-)
+from granular_response.paper.groups.polydisperse_averages.ensemble import realizations
 from granular_response.paper.groups.polydisperse_averages.parameters import Case
 from granular_response.store.result import FORCE, LENGTH, variable
 
@@ -30,7 +25,7 @@ def _case_coordinates(cases: Sequence[Case]) -> dict[str, xr.Variable]:
     }
 
 
-def ensembles_dataset(cases: Sequence[Case], found: Sequence[Realization]) -> xr.Dataset:
+def ensembles_dataset(cases: Sequence[Case], found: Sequence[realizations.Realization]) -> xr.Dataset:
     """Every realization of every case; what a case does not have is nan, or NOT_REACHED."""
     most = max(case.realizations for case in cases)
     steps = max(len(case.forces) for case in cases)
@@ -41,7 +36,7 @@ def ensembles_dataset(cases: Sequence[Case], found: Sequence[Realization]) -> xr
     rest_force = np.full_like(x, np.nan)
     response = np.full((*shape, slots), np.nan)
     outcome = np.full(shape, NOT_REACHED, np.int8)
-    loaded = {name: np.full(shape, np.nan) for name in LOADED}
+    loaded = {name: np.full(shape, np.nan) for name in realizations.LOADED}
     message = np.full((len(cases), most), "", dtype=object)
     left = iter(found)
     for c, case in enumerate(cases):
@@ -53,7 +48,7 @@ def ensembles_dataset(cases: Sequence[Case], found: Sequence[Realization]) -> xr
             response[c, r, :k, : one.x.size] = one.response
             outcome[c, r, :k] = one.outcome
             message[c, r] = one.message
-            for name in LOADED:
+            for name in realizations.LOADED:
                 loaded[name][c, r, :k] = one.loaded[name]
     dims = ("case", "realization", "step")
     data = {
@@ -75,27 +70,27 @@ def ensembles_dataset(cases: Sequence[Case], found: Sequence[Realization]) -> xr
             flag_meanings=" ".join(OUTCOMES),
         ),
         "message": variable(("case", "realization"), message.astype(str), "why a realization failed"),
-        **{name: variable(dims, loaded[name], text) for name, text in LOADED.items()},
+        **{name: variable(dims, loaded[name], text) for name, text in realizations.LOADED.items()},
     }
     return xr.Dataset(data, coords=_case_coordinates(cases))
 
 
-def packings_dataset(cases: Sequence[Case], found: Sequence[Realization]) -> xr.Dataset:
+def packings_dataset(cases: Sequence[Case], found: Sequence[realizations.Realization]) -> xr.Dataset:
     shape = (len(cases), max(case.realizations for case in cases))
-    numbers = {name: np.full(shape, np.nan) for name in PACKING}
-    density = np.full((*shape, ANGLE_BINS), np.nan)
+    numbers = {name: np.full(shape, np.nan) for name in realizations.PACKING}
+    density = np.full((*shape, realizations.ANGLE_BINS), np.nan)
     left = iter(found)
     for c, case in enumerate(cases):
         for r in range(case.realizations):
             one = next(left)
             density[c, r] = one.angle_density
-            for name in PACKING:
+            for name in realizations.PACKING:
                 numbers[name][c, r] = one.packing[name]
     dims = ("case", "realization")
-    angle = np.pi / ANGLE_BINS * np.arange(ANGLE_BINS)
+    angle = np.pi / realizations.ANGLE_BINS * np.arange(realizations.ANGLE_BINS)
     return xr.Dataset(
         {
-            **{name: variable(dims, numbers[name], text) for name, text in PACKING.items()},
+            **{name: variable(dims, numbers[name], text) for name, text in realizations.PACKING.items()},
             "contact_angle_density": variable(
                 (*dims, "angle"), density, "distribution of the directions of contacts at rest, per radian"
             ),

@@ -1,0 +1,70 @@
+"""What claims ask for again and again: a number against the bound of a word, and findings of one kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import xarray as xr
+
+from .claim import Condition, Finding, NotMeasured, Quantity, Reading
+from .words import Bounds
+
+
+def near(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "", of: float = 1.0) -> Condition:
+    """Off ``of`` by at most the word's part of it."""
+    return Condition(what, _known(found), (1.0 - words[word]) * of, (1.0 + words[word]) * of, (word,), unit)
+
+
+def at_most(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
+    return Condition(what, _known(found), most=words[word], words=(word,), unit=unit)
+
+
+def at_least(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
+    return Condition(what, _known(found), words[word], words=(word,), unit=unit)
+
+
+def lower(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Condition:
+    """The ratio is below 1 by the word's bound or more."""
+    return Condition(what, _known(ratio), most=1.0 - words[word], words=(word,))
+
+
+def higher(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Condition:
+    """The ratio is above 1 by the word's bound or more."""
+    return Condition(what, _known(ratio), 1.0 + words[word], words=(word,))
+
+
+def hardly_lower(what: str, ratio: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
+    """The ratio is below 1 by the word's bound at most."""
+    return Condition(what, _known(ratio), 1.0 - words[word], words=(word,), unit=unit)
+
+
+def _known(found: float | Quantity) -> Quantity:
+    return found if isinstance(found, Quantity) else Quantity.exact(found)
+
+
+def one_reading(summary: str, reading: str, *conditions: Condition, remark: str = "") -> Finding:
+    """What was measured in one reading alone."""
+    return Finding(summary, [Reading(reading, *conditions)], remark)
+
+
+def each(
+    what: str, found: Mapping[str, Quantity], condition: Callable[[Quantity], Condition], unit: str = ""
+) -> Finding:
+    """A number for each reading, by its name, and what is asked of each."""
+    texts = ", ".join(f"{quantity.text(unit)} ({name})" for name, quantity in found.items())
+    return Finding(what + texts, [Reading(name, condition(quantity)) for name, quantity in found.items()])
+
+
+def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:
+    """Where the response at x = 0 is more than ``tolerance`` off that to the smallest force, between stored forces.
+
+    Raises NotMeasured for a path without two forces.
+    """
+    value, force = path["response_at_centre"].values, path["force"].values
+    known = np.isfinite(value)
+    value, force = value[known], force[known]
+    if value.size < 2:
+        raise NotMeasured("a path of the linear range holds no forces")
+    off = np.flatnonzero(np.abs(value / value[0] - 1.0) > tolerance)
+    return Quantity.bracket(force[off[0] - 1], force[off[0]]) if off.size else Quantity.bracket(force[-1], np.nan)
