@@ -13,7 +13,10 @@ from .parameters import Parameters
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    most = max(case.realizations for case in parameters.cases)
+    counts = {case.count(h) for case in parameters.cases if case.polydispersity for h in range(len(case.heights))}
+    disorder = (
+        f"Disorder: of the mean profile of {' or '.join(map(str, sorted(counts)))} realizations. " if counts else ""
+    )
     low, high = parameters.fitted
     said = of_scene(
         parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=None, normal_stiffness=None,
@@ -36,7 +39,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "peaks, where there are two. (a) to (c) on lines inside the highest slab, (d) to (f) on the floors of "
             f"slabs of several heights. {edges}Grey lines: elastic slabs of the lattice's "
             "moduli, for the first case of a panel. Black lines have the slopes 1 (elastic) and 1/2 (diffusion). "
-            f"Disorder: of the mean profile of {most} realizations. {slabs}",
+            f"{disorder}{slabs}",
             "Six panels with double logarithmic axes: symbols along lines of slope 1 for lattices under small forces "
             "and for disorder with friction.",
             said,
