@@ -133,6 +133,20 @@ def test_increments_keep_the_tolerance(friction):
     assert record.comparisons > 0 and record.work.increments < 0.5 * short.work.increments
 
 
+def test_a_looser_tolerance_takes_longer_increments_and_is_kept():
+    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+    problem = Problem.from_scene(scene(8, 21, contact__friction=1.0, loads=load))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    strict, loose = PathRecord(), PathRecord()
+    bottom = np.arange(21)
+    near = floor_force(follow(problem, rest, [30.0], tolerance=1e-5, record=strict)[0], bottom)
+    state = follow(problem, rest, [30.0], tolerance=1e-4, record=loose)[0]
+    assert np.abs(floor_force(state, bottom) - near).max() < 1e-4 * 30.0
+    assert state.certificate.stable
+    assert loose.work.increments < 0.8 * strict.work.increments
+
+
 def test_a_smaller_tolerance_takes_shorter_increments_and_leaves_less(settled):
     problem, rest = settled
     fine = floor_force(follow(problem, rest, [4.0], longest_step=0.002)[0], FLOOR)

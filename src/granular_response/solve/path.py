@@ -39,6 +39,8 @@ FIRST_STEP = 0.0033
 LARGE_LOAD = 0.005
 #: Longest and shortest increment as parts of the first.
 LONGEST, SHORTEST = 5.0, 0.25
+#: By which the longest is longer for a looser tolerance, at most.
+LOOSE = 3.0
 #: Tolerance for which first increments are short enough without a look at their error.
 TRUSTED_FOR = 1e-5
 #: Factorisations that an easy increment takes at most.
@@ -145,7 +147,7 @@ class _Path:
         self.shortest = SHORTEST * self.least_first
         #: None where increments keep to the first length
         self.tolerance: float | None = tolerance if longest_step is None else None
-        self.stretch = 1.0 if self.tolerance is None else LONGEST
+        self.stretch = 1.0 if self.tolerance is None else LONGEST * min(max(self.tolerance / TRUSTED_FOR, 1.0), LOOSE)
         #: length of the increments that are trusted, as a part of the first; without friction all are exact
         looks = self.tolerance is not None and problem.rotations
         self.fineness = min(1.0, tolerance / TRUSTED_FOR) if looks else np.inf
