@@ -107,7 +107,8 @@ def main(path: str, most: int, threads: int, only: tuple[str, int] | None) -> No
     earlier = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
     earlier = [{"threads": 1, **row} for row in earlier]
     for method, settings in METHODS.items():  # compiles
-        measure(8, 25, method, settings["friction"], 1.0, 1)
+        for layers, per_row in ((8, 25),) if method == "dynamics" else ((8, 25), (45, 181)):  # bands and fronts
+            measure(layers, per_row, method, settings["friction"], 1.0, 1)
     rows: list[dict] = []
     for layers, per_row in SLABS:
         for method, settings in METHODS.items():
