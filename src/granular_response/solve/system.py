@@ -17,7 +17,7 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 from ..kernels import statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
-from .linear import Factor, Nearby, elimination
+from .linear import REMEMBERED, Factor, Nearby, elimination
 from .linear.band import Band
 from .linear.two_sided import FREEDOMS, TwoSided
 from .problem import Problem
@@ -27,7 +27,7 @@ REGULARISATION = 1e-10
 
 #: Disks from which on a step is sought with the last factorisation, whatever has changed since, before a new one is
 #: made; and the part of the force out of balance that such a step leaves (2-norms).
-LARGE, LEFT_OVER = 40_000, 1e-6
+LARGE, LEFT_OVER = 80_000, 1e-6
 
 #: Relative accuracy of eigenvalues of which the sign is asked, where increments are as rough.
 ROUGH = 1e-3
@@ -191,7 +191,7 @@ class StaticSystem:
         """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
         n, d = self.problem.n, self.problem.freedoms
         # one order of elimination for all states of a large lattice
-        as_built = n > LARGE and self.problem.packing.ordered
+        as_built = n > REMEMBERED and self.problem.packing.ordered
         position = self.problem.packing.position if as_built else self.reference
         chosen = elimination(position, self.first, self.second, d)
         self._order = chosen.order

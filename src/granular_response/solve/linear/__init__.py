@@ -5,6 +5,6 @@
 
 from .factor import Factor, Storage
 from .nearby import Nearby
-from .ordering import Elimination, elimination
+from .ordering import REMEMBERED, Elimination, elimination
 
-__all__ = ["Elimination", "Factor", "Nearby", "Storage", "elimination"]
+__all__ = ["REMEMBERED", "Elimination", "Factor", "Nearby", "Storage", "elimination"]

@@ -17,7 +17,7 @@ from .multifrontal import Multifrontal
 #: Half-bandwidth (in unknowns) up to which the banded factorisations are the faster ones.
 WIDEST_BAND = 120
 #: Disks from which on a dissection is remembered: it takes as long as a factorisation.
-LARGE = 40_000
+REMEMBERED = 40_000
 
 #: What the last dissection of a large packing was asked for, and that dissection.
 _last: list = []
@@ -51,7 +51,7 @@ def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, fre
     if (_width(order, first, second) + 1) * freedoms - 1 <= WIDEST_BAND:
         return Elimination(order, freedoms, None)
     dissection = Dissection(position, first, second)
-    if len(position) > LARGE:
+    if len(position) > REMEMBERED:
         _last[:] = [asked, dissection]
     return Elimination(dissection.order, freedoms, dissection)
 
