@@ -31,7 +31,7 @@ FRICTIONS, FORCES = (0.05, 0.2, 1.0), (4.0, 15.0, 50.0)
 #: Errors of the nine points, which are tolerances of the paths too, and ramp times of the dynamics.
 ERRORS, RAMPS = (1e-2, 1e-3, 1e-4, 1e-5), (1.0, 5.0, 20.0, 100.0)
 #: Seconds of a path after which it is not run again, and with which no finer one is tried.
-LONG = 5.0
+LONG = 3.0
 SCENES = {"friction": (0.2, 15.0), "frictionless": (0.0, 4.0)}
 FINEST = 0.05
 #: Runs of every method, LAMMPS included, of which the least time counts; the longest dynamics here runs once.
