@@ -11,6 +11,7 @@ from granular_response.paper import ensembles
 from granular_response.paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED
 from granular_response.paper.groups.polydisperse_averages import draw as figures
 from granular_response.paper.groups.polydisperse_averages import simulate as study
+from granular_response.paper.groups.polydisperse_averages.ensemble import realizations
 from granular_response.plot import style
 from granular_response.store import files as store
 
@@ -92,14 +93,14 @@ def test_collapse_and_failure_are_reported() -> None:
     parameters = study.Parameters(**PARAMETERS)
     case = study.Case(0.25, 0.2, "touching-largest", (5.0, 60.0, 80.0), 1)
     # so shallow that every load collapses the packing, but the one that moves nothing
-    task = replace(study.ensemble_task(parameters, case, 0), forces=(0.01, 5.0, 10.0), collapse_depth=1e-3)
-    found = study.realize(task)
+    task = replace(realizations.ensemble_task(parameters, case, 0), forces=(0.01, 5.0, 10.0), collapse_depth=1e-3)
+    found = realizations.realize(task)
     assert found.outcome.tolist() == [AT_REST, COLLAPSED, NOT_REACHED]
     assert np.isfinite(found.response[0]).all()
     assert np.isnan(found.response[1:]).all()
 
     scene = task.scene.updated({"protocol.maximum_steps": 100})
-    failed = study.realize(replace(task, scene=scene, forces=(1.0, 2.0)))
+    failed = realizations.realize(replace(task, scene=scene, forces=(1.0, 2.0)))
     assert failed.outcome.tolist() == [FAILED, NOT_REACHED]
     assert failed.message.startswith("gravity: ")
 
