@@ -14,7 +14,7 @@ PARAMETERS = reduced.parameters("contact_law")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("contact_law") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "contact_law"})
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "contact_law"})
     return store.read(path)
 
 

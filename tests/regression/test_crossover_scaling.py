@@ -30,7 +30,7 @@ def parameters():
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory, parameters):
     path = tmp_path_factory.mktemp("crossover_scaling") / "group.nc"
-    store.write(path, simulate.simulate(parameters, workers=1), {"group": "crossover_scaling"})
+    store.write(path, simulate.simulate(parameters), {"group": "crossover_scaling"})
     return store.read(path)
 
 

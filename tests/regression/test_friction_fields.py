@@ -16,7 +16,7 @@ SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "a
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "friction_fields.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
     return store.read(path)
 
 

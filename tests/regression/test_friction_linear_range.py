@@ -15,7 +15,7 @@ PARAMETERS = reduced.parameters("friction_linear_range")
 
 @pytest.fixture(scope="module")
 def datasets():
-    return study.simulate(study.Parameters(**PARAMETERS), workers=1)
+    return study.simulate(study.Parameters(**PARAMETERS))
 
 
 def bracket(datasets, name, friction):

@@ -23,7 +23,7 @@ TOLERANCE = {"rtol": 1e-8, "atol": 1e-10}
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "frictionless_crossover.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
     return store.read(path)
 
 

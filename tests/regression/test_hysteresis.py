@@ -23,7 +23,7 @@ SMOOTH, ROUGH, DISORDERED = 0, 1, 2
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("hysteresis") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "hysteresis"})
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "hysteresis"})
     return store.read(path)
 
 

@@ -19,7 +19,7 @@ PARAMETERS = reduced.parameters("influence")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("influence") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "influence"})
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "influence"})
     return store.read(path)
 
 

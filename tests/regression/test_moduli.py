@@ -22,7 +22,7 @@ PARAMETERS = reduced.parameters("moduli")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("moduli") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "moduli"})
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "moduli"})
     return store.read(path)
 
 

@@ -19,7 +19,7 @@ SMALL, LARGE, DISORDERED = 0, 1, 2
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("peak_width") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS), workers=1), {"group": "peak_width"})
+    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "peak_width"})
     return store.read(path)
 
 

@@ -15,7 +15,7 @@ PARAMETERS = reduced.parameters("pile_dip")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "pile_dip.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
     return store.read(path)
 
 

@@ -14,13 +14,14 @@ from granular_response.paper.groups.polydisperse_averages import simulate as stu
 from granular_response.paper.groups.polydisperse_averages.ensemble import realizations
 from granular_response.plot import style
 from granular_response.store import files as store
+from granular_response.sweeps.resources import using
 
 PARAMETERS = reduced.parameters("polydisperse_averages")
 
 
 @pytest.fixture(scope="module")
 def simulated():
-    return study.simulate(study.Parameters(**PARAMETERS), workers=1)
+    return study.simulate(study.Parameters(**PARAMETERS))
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +84,8 @@ def test_packings_differ_and_are_the_same_for_every_friction(datasets) -> None:
 
 
 def test_two_workers_give_the_same_bits(simulated) -> None:
-    again = study.simulate(study.Parameters(**PARAMETERS), workers=2)
+    with using(workers=2):
+        again = study.simulate(study.Parameters(**PARAMETERS))
     assert again.keys() == simulated.keys()
     for name, dataset in simulated.items():
         xr.testing.assert_identical(dataset, again[name])

@@ -17,7 +17,7 @@ WAYS = PARAMETERS["ways"]
 
 @pytest.fixture(scope="module")
 def datasets():
-    return study.simulate(Parameters(**PARAMETERS), workers=1)
+    return study.simulate(Parameters(**PARAMETERS))
 
 
 def test_every_slab_carries_every_force(datasets):

@@ -20,7 +20,7 @@ PARAMETERS = reduced.parameters("slab_comparison")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "slab_comparison.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
     return store.read(path)
 
 

@@ -16,7 +16,7 @@ PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "stiffness_ratio_crossover.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
     return store.read(path)
 
 

@@ -18,7 +18,7 @@ CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "superposition.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS), workers=1))
+    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
     return store.read(path)
 
 

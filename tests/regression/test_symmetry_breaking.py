@@ -14,7 +14,7 @@ PARAMETERS = reduced.parameters("symmetry_breaking")
 
 @pytest.fixture(scope="module")
 def datasets():
-    return study.simulate(study.Parameters(**PARAMETERS), workers=1)
+    return study.simulate(study.Parameters(**PARAMETERS))
 
 
 def test_symmetry_is_lost_between_symmetric_and_asymmetric_runs(datasets):

@@ -286,10 +286,10 @@ class Study:
         method: str
 
     @staticmethod
-    def simulate(parameters, *, workers=None, progress=None):
+    def simulate(parameters):
         from granular_response.sweeps.tasks import map_tasks
 
-        squares = map_tasks(square, range(parameters.count), workers=workers, progress=progress)
+        squares = map_tasks(square, range(parameters.count))
         return {"squares": xr.Dataset({"square": ("item", np.array(squares), LABEL)})}
 
     @staticmethod

@@ -8,13 +8,15 @@ from granular_response.observe.floor import smoothed_response
 from granular_response.paper.groups.explorer import simulate as study
 from granular_response.paper.groups.explorer.numbers import numbers
 from granular_response.paper.groups.explorer.parameters import Parameters
+from granular_response.sweeps.resources import using
 
 SECTION = reduced.parameters("explorer")
 
 
 @pytest.fixture(scope="module")
 def slabs():
-    found = study.simulate(Parameters.model_validate(SECTION), workers=1)
+    with using(workers=1):
+        found = study.simulate(Parameters.model_validate(SECTION))
     return [found["slab_0"], found["slab_1"]]
 
 

@@ -324,7 +324,7 @@ def parameters(stored, **changes) -> Parameters:
 
 def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     found = simulate(parameters(stored))
-    again = simulate(parameters(stored), workers=2)
+    again = simulate(parameters(stored))
     for name, dataset in found.items():
         xr.testing.assert_identical(dataset, again[name])
     data = found["crossovers"]

@@ -15,6 +15,7 @@ from granular_response.paper.survey import larger, packings
 from granular_response.paper.survey import simulate as survey
 from granular_response.scene import SceneError
 from granular_response.store import files as store
+from granular_response.sweeps.resources import using
 
 ROOT = Path(__file__).parents[2]
 
@@ -178,7 +179,8 @@ PARTS = {
 
 def simulate(group, section):
     parameters = group_member(group, "parameters", "Parameters")(**section)
-    return group_member(group, "simulate", "simulate")(parameters, workers=1)
+    with using(workers=1):
+        return group_member(group, "simulate", "simulate")(parameters)
 
 
 @pytest.mark.parametrize("group", larger.GROUPS)

@@ -16,6 +16,7 @@ from granular_response.paper.trials.time_steps import SETTLES, StepTrial, scene_
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
 from granular_response.state import Reached
+from granular_response.sweeps.resources import using
 
 PARAMETERS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["stability"]
 SEED = PARAMETERS["seed"]
@@ -269,7 +270,8 @@ REDUCED = reduced.parameters("stability")
 
 
 def test_the_study_and_its_figures():
-    datasets = stability.simulate(stability.Parameters(**REDUCED), workers=1)
+    with using(workers=1):
+        datasets = stability.simulate(stability.Parameters(**REDUCED))
     assert set(datasets) == {f"time_step_{name}" for name in stability.AXES} | {
         "drift", "collisions", "rolling", "rounding", "random_scenes",
     }  # fmt: skip

@@ -19,9 +19,10 @@ REDUCED = Path("notebooks") / "reduced.yaml"
 
 _PACKAGE = "granular_response.paper.groups"
 _RUN = """\
-# own has the sizes of the paper and takes up to minutes; workers=None uses all cores
+# own has the sizes of the paper and takes up to minutes; without workers all cores are used
 parameters = Parameters(**reduced)
-datasets = simulate(parameters, workers=1)
+with using(workers=1):
+    datasets = simulate(parameters)
 for name, dataset in datasets.items():
     print(name, dict(dataset.sizes))"""
 _DRAW = """\
@@ -96,7 +97,8 @@ from {_PACKAGE}.{group}.captions import captions
 from {_PACKAGE}.{group}.draw import draw
 from {_PACKAGE}.{group}.parameters import Parameters
 from {_PACKAGE}.{group}.simulate import simulate
-from granular_response.plot import style"""
+from granular_response.plot import style
+from granular_response.sweeps.resources import using"""
 
 
 def _surveyed(section: dict[str, Any], folder: Path) -> str:

@@ -1,8 +1,8 @@
-"""What a computation may use beside its arguments: a scheduler, and folders that remember.
+"""What a computation may use beside its arguments: processes, a scheduler, and folders that remember.
 
 Studies call ``map_tasks`` and ``rest_state`` deep inside; who starts a study says once what these find:
 
-    with using(checkpoint="kept/study", rest_states="kept/rest"):
+    with using(workers=4, checkpoint="kept/study", rest_states="kept/rest"):
         study()
 
 It holds within the block, in this thread, and for rest states in the worker processes of its sweeps.
@@ -15,14 +15,22 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
+
+
+class Progress(Protocol):
+    """Anything that wants to know how far a computation is: ``progress(done, total, "load paths")``."""
+
+    def __call__(self, done: float, total: float, what: str = "", /) -> None: ...
 
 
 @dataclass(frozen=True)
 class Resources:
     """What is there to be used; None: nothing of the kind."""
 
+    workers: int | None = None  #: number of local processes; None: all cores
     scheduler: str | None = None  #: address of a Dask scheduler
+    progress: Progress | None = None  #: who is told how far each sweep is
     checkpoint: Path | None = None  #: folder for the results of finished tasks
     rest_states: Path | None = None  #: folder for states at rest
 

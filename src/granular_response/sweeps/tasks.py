@@ -25,19 +25,14 @@ from .digest import Indistinct, digest, sources
 from .errors import SweepError, raised
 from .memory import MISSING, Memory, warn
 from .processes import over_processes
-from .resources import current, using
+from .resources import Progress as Progress
+from .resources import Resources, current, using
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 #: Environment variable with the address of a running Dask scheduler, the one that Dask itself reads.
 SCHEDULER_VARIABLE = "DASK_SCHEDULER_ADDRESS"
-
-
-class Progress(Protocol):
-    """Anything that wants to know how far a computation is: ``progress(done, total, "load paths")``."""
-
-    def __call__(self, done: float, total: float, what: str = "", /) -> None: ...
 
 
 def map_tasks(
@@ -58,12 +53,12 @@ def map_tasks(
     function, items
         The task and its arguments.
     workers
-        Number of local processes; all cores if None, this process if 1.
+        Number of local processes; this process if 1. If None, that of the :mod:`.resources` in use, else all cores.
     scheduler
-        Address of a Dask scheduler (``tcp://host:8786``). If None, the :mod:`.resources` in use and
+        Address of a Dask scheduler (``tcp://host:8786``). If None, the resources in use and
         ``DASK_SCHEDULER_ADDRESS`` are asked.
     progress
-        Called as ``progress(done, total, what)`` at the start and after each task.
+        Called as ``progress(done, total, what)`` at the start and after each task; if None, that of the resources.
     checkpoint
         Folder in which the result of each finished task is kept until the caller removes it. A later call
         finds it there if function, item and the sources of this package are the same (see :mod:`.digest`). If None,
@@ -79,11 +74,13 @@ def map_tasks(
         If a task raises (the message names its item), if workers keep dying at one task, if something cannot be sent
         to a worker or back, or if the cluster cannot be reached or is lost.
     """
+    given = current()
+    workers, progress = given.workers if workers is None else workers, progress or given.progress
     if workers is not None and workers < 1:
         raise SweepError(f"workers = {workers}: must be 1 or more")
     items = list(items)
-    scheduler = scheduler or current().scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
-    folder = checkpoint or current().checkpoint
+    scheduler = scheduler or given.scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
+    folder = checkpoint or given.checkpoint
     kept = _Checkpoint(folder, function, items, parts) if folder and items else None
 
     results: list[Any] = [kept.load(index) if kept else MISSING for index in range(len(items))]
@@ -95,7 +92,7 @@ def map_tasks(
         return results
     count = min(workers or threads.cores(), len(todo))
     # the nodes of a cluster may not share the folder
-    task = _Task(function, None if scheduler else current().rest_states)
+    task = _Task(function, None if scheduler else given.rest_states)
     if scheduler:
         finished = over_dask(task, items, todo, scheduler)
     elif count == 1 and workers in (1, None):
@@ -119,11 +116,9 @@ class Task(Protocol):
     def run(self) -> Any: ...
 
 
-def run_tasks(
-    tasks: Iterable[Task], *, workers: int | None = None, progress: Progress | None = None, what: str = "tasks"
-) -> list[Any]:
+def run_tasks(tasks: Iterable[Task], *, what: str = "tasks") -> list[Any]:
     """What each task hands back, as :func:`map_tasks` has it."""
-    return map_tasks(_run, tasks, workers=workers, progress=progress, what=what)
+    return map_tasks(_run, tasks, what=what)
 
 
 def _run(task: Task) -> Any:
@@ -138,7 +133,7 @@ class _Task:
     rest_states: Path | None
 
     def __call__(self, item: Any) -> Any:
-        with using(scheduler=None, checkpoint=None, rest_states=self.rest_states):
+        with using(**vars(Resources(rest_states=self.rest_states))):
             return self.function(item)
 
 

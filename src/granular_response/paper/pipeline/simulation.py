@@ -15,8 +15,7 @@ from granular_response.paper.pipeline import GroupError, data_path, group_member
 from granular_response.scene import SceneError, text
 from granular_response.scene.base import Description
 from granular_response.store import files as store
-from granular_response.sweeps.resources import using
-from granular_response.sweeps.tasks import Progress
+from granular_response.sweeps.resources import Progress, Resources, using
 
 PARAMETERS = Path("params.yaml")
 
@@ -90,9 +89,10 @@ def simulate(
     store.check_writable(output, [parameter_file])
     kept = output.parent / f".{output.stem}.checkpoint"
     rest_states = output.parent.absolute() / REST_STATES
-    with _alone(kept, output), using(scheduler=scheduler, checkpoint=kept, rest_states=rest_states):
+    resources = Resources(workers, scheduler, progress, checkpoint=kept, rest_states=rest_states)
+    with _alone(kept, output), using(**vars(resources)):
         try:
-            datasets = function(described, workers=workers, progress=progress)
+            datasets = function(described)
         except SceneError as error:
             raise SceneError(f"{parameter_file}: section {group}: {error}") from error
         store.write(output, datasets, {"group": group, "parameters": text.write(given)})

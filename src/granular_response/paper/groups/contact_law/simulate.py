@@ -18,7 +18,7 @@ from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import Scene
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -80,14 +80,12 @@ def typical_force(rest: State) -> float:
     return float(rest.pairs.normal_force[rest.pairs.touching].mean())
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``responses``."""
     scenes = [parameters.base.updated({"contact.friction": mu}) for mu in parameters.friction]
     # the longest first
     tasks = [Task(scene, law, parameters.forces) for law in reversed(LAWS) for scene in reversed(scenes)]
-    solved = map_tasks(compute, tasks, workers=workers, progress=progress)[::-1]
+    solved = map_tasks(compute, tasks)[::-1]
     linear = solved[: len(scenes)]
     outcomes = list(zip(linear, solved[len(scenes) :], strict=True))
     response = np.stack([[o.response for o in laws] for laws in outcomes])

@@ -35,7 +35,7 @@ from granular_response.scene import Scene
 from granular_response.solve.path import follow
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -284,9 +284,7 @@ class Power:
         return np.array([values[0], min(ends), max(ends)]) if values else np.full(3, np.nan)
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``slabs`` (slab), ``paths`` (slab, step) and ``powers`` (series).
 
     Raises
@@ -299,7 +297,7 @@ def simulate(
     # the longest first, so that no worker is left with one at the end
     order = sorted({slab for _, slab in found if slab not in stored}, key=_work, reverse=True)
     tasks = [_task(slab, parameters) for slab in order]
-    done = dict(zip(order, map_tasks(compute, tasks, workers=workers, progress=progress, what="slabs"), strict=True))
+    done = dict(zip(order, map_tasks(compute, tasks, what="slabs"), strict=True))
     keys = [slab.key for slab in stored]
     done |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
     outcomes = [done[slab] for _, slab in found]

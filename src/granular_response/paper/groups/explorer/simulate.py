@@ -20,7 +20,7 @@ from granular_response.scene import Scene
 from granular_response.solve import SOLVE_ERRORS
 from granular_response.state import State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,9 @@ class Task:
     width: float  #: of the smoothing Gaussian; 0 for a lattice, whose response is not smoothed
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """One dataset for each slab."""
-    found = map_tasks(states, _tasks(parameters), workers=workers, progress=progress, what="slabs")
+    found = map_tasks(states, _tasks(parameters), what="slabs")
     return labelled({f"slab_{k}": dataset for k, dataset in enumerate(found)}, parameters.base)
 
 

@@ -36,7 +36,7 @@ from granular_response.store.result import (
     common_candidates,
     variable,
 )
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -91,9 +91,7 @@ def load(task: Friction) -> Loaded:
     return Loaded(path.rest, loaded, profile, int(path.problem.load_disk[0]))
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``forces``, ``stress`` and ``profiles``."""
     base, frictions, force = parameters.base, parameters.frictions, parameters.force
     of_profiles, profile_force = parameters.profiles.frictions, parameters.profiles.force
@@ -105,7 +103,7 @@ def simulate(
         )
         for mu in frictions
     ]
-    results: list[Loaded] = map_tasks(load, tasks, workers=workers, progress=progress, what="frictions")
+    results: list[Loaded] = map_tasks(load, tasks, what="frictions")
 
     packing = base.packing.build()
     listed = common_candidates([s for one in results for s in (one.rest, one.loaded)], packing.radius)

@@ -23,7 +23,7 @@ from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.state import Crossing, State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import Progress, run_tasks
+from granular_response.sweeps.tasks import run_tasks
 
 
 @dataclass(frozen=True)
@@ -110,9 +110,7 @@ class FrictionTask:
         return _friction_crossover(self.force, found.low, found.high, self.tolerance, found.evaluations)
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets of Figs. 6 to 9, 12 and 16.
 
     Returns
@@ -123,7 +121,7 @@ def simulate(
     base, frictions, axis = parameters.base, parameters.frictions, parameters.friction_axis
     axis_frictions, axis_force = sorted(axis.frictions), axis.force
     tasks = _path_tasks(parameters, base, axis_frictions)
-    results: list[PathResult] = run_tasks(tasks, workers=workers, progress=progress, what="load paths")
+    results: list[PathResult] = run_tasks(tasks, what="load paths")
     paths = {result.friction: result for result in results}
 
     on_axis = {mu: _at_force(paths[mu], axis_force) for mu in axis_frictions}
@@ -133,7 +131,7 @@ def simulate(
     if not (double[0] and np.isfinite(high)):
         refine = []
     dynamics = _dynamics_tasks(parameters.dynamics, base, paths)
-    done = run_tasks([*refine, *dynamics], workers=workers, progress=progress, what="large forces")
+    done = run_tasks([*refine, *dynamics], what="large forces")
     crossover = done[0] if refine else _friction_crossover(axis_force, low, high, axis.tolerance, 0)
     shaken: list[tuple[State, slab.Measured]] = done[len(refine) :]
 

@@ -31,7 +31,7 @@ from granular_response.solve.equilibrium import Rearranged
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -153,16 +153,14 @@ def new_neighbours(position: FloatArray, rest: State) -> int:
     return int(np.count_nonzero(distance > 1.5 * distance.min())) if distance.size else 0
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``widths`` and ``stiffness``.
 
     SweepError
         If a slab cannot be solved.
     """
     main, sizes, widths, stiff = slabs(parameters)
-    solved = map_tasks(solve, tasks(parameters), workers=workers, progress=progress, what="slabs")
+    solved = map_tasks(solve, tasks(parameters), what="slabs")
     outcomes = {outcome.slab: outcome for outcome in solved}
     first = outcomes[main]
     return {

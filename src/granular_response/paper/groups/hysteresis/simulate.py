@@ -32,7 +32,7 @@ from granular_response.solve import Problem, loaded_states
 from granular_response.solve.work import slid, stored, work
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -303,16 +303,14 @@ def compute(task: Task) -> Outcome:
     )
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``loops`` (case, realization, turn), ``events`` (case, realization, event), ``curves`` and ``floor``."""
     cases = parameters.cases
     places = [(c, r) for c, case in enumerate(cases) for r in range(case.realizations)]
     tasks = {place: _task(parameters, *place) for place in places}
     # the longest ones first, so that no worker is left with one at the end
     order = sorted(places, key=lambda place: -_work(tasks[place]))
-    done = map_tasks(compute, [tasks[place] for place in order], workers=workers, progress=progress, what="packings")
+    done = map_tasks(compute, [tasks[place] for place in order], what="packings")
     outcomes = dict(zip(order, done, strict=True))
     stored = _surveyed(parameters)
     keys = [key(parameters, *place) for place in stored]

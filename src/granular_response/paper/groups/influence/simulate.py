@@ -24,7 +24,7 @@ from granular_response.solve.small_loads import at_limit
 from granular_response.state import State
 from granular_response.store.result import LENGTH, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -114,9 +114,7 @@ def decay(height: FloatArray, difference: FloatArray, apart: float, fitted: tupl
     return np.array([-np.polyfit(x[rows], y[rows], 1)[0] for rows in (use, use[1:], use[:-1])])
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``saint_venant`` and ``packings``."""
     cases, most = parameters.cases, max(case.realizations for case in parameters.cases)
     places = [(c, r) for c, case in enumerate(cases) for r in range(case.realizations)]
@@ -126,7 +124,7 @@ def simulate(
         changes = {"contact.friction": friction, "wall.friction": friction, "packing.realization": r}
         scene = parameters.base.updated({**changes, "packing.polydispersity": cases[c].polydispersity})
         tasks.append(Task(scene, parameters.separations, parameters.margin, parameters.fitted))
-    outcomes = map_tasks(compute, tasks, workers=workers, progress=progress, what="packings")
+    outcomes = map_tasks(compute, tasks, what="packings")
     first = outcomes[0]
     shape = (len(cases), most)
 

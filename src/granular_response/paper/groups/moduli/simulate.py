@@ -30,7 +30,7 @@ from granular_response.solve.strain import FOLLOWING
 from granular_response.state import State
 from granular_response.store.result import LENGTH, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import crossover, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Rotations, Springs
@@ -270,17 +270,15 @@ def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, d
     return np.stack([size[:, 0], low, high], axis=1)
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``packings`` and ``lattice``."""
     places, stored = slabs(parameters, surveyed=False), slabs(parameters, surveyed=True)
     # the largest first: two workers then end together
     order = sorted(places, key=lambda place: -parameters.cases[place[0]].layers[place[1]])
     ideal = _lattice_tasks(parameters)
     tasks = [_task(parameters, *place) for place in order]
-    found = map_tasks(compute, tasks, workers=workers, progress=progress, what="packings")
-    answers = map_tasks(lattice_answer, ideal, workers=workers, progress=progress, what="lattices")
+    found = map_tasks(compute, tasks, what="packings")
+    answers = map_tasks(lattice_answer, ideal, what="lattices")
     outcomes = dict(zip(order, found, strict=True))
     keys = [_key(parameters, *place) for place in stored]
     outcomes |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)

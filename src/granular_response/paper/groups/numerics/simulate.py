@@ -26,7 +26,7 @@ from granular_response.solve.timestep import resolve_time_step, stability_limit
 from granular_response.state import State
 from granular_response.store.result import FORCE, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, Task, run_tasks
+from granular_response.sweeps.tasks import Task, run_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -188,9 +188,7 @@ def _by_dynamics(scene: Scene) -> tuple[Problem, State, State]:
     return problem, rest, loaded
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``stop_energy``, ``restart``, ``at_rest``, ``swing``, ``time_step``, ``integrators``, ``damping`` and
     ``disorder``.
     """
@@ -250,7 +248,7 @@ def simulate(
         ],
     }
     every = [task for several in tasks.values() for task in several]
-    results = iter(run_tasks(every, workers=workers, progress=progress, what="runs"))
+    results = iter(run_tasks(every, what="runs"))
     found = {name: [next(results) for _ in several] for name, several in tasks.items()}
 
     packing = base.packing.build()

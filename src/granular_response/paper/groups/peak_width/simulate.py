@@ -31,7 +31,7 @@ from granular_response.solve import Problem, contact_answers, loaded_states
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Slab
@@ -150,13 +150,11 @@ def scaled(forces: ContactForces, x: float, height: float, depth: float, t: Floa
     return folded(line_stress(forces, height, x + depth * both, width)) * depth
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``inside`` and ``floors``."""
     own, stored = slabs(parameters, surveyed=False), slabs(parameters, surveyed=True)
     tasks = [task(parameters, *one) for one in own]
-    found = map_tasks(compute, tasks, workers=workers, progress=progress, what="slabs")
+    found = map_tasks(compute, tasks, what="slabs")
     outcomes = dict(zip(own, found, strict=True))
     keys = [key(parameters, *one) for one in stored]
     outcomes |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)

@@ -31,14 +31,12 @@ from granular_response.paper.survey.crossover import (
     weights,
 )
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import Progress
+from granular_response.sweeps.resources import current
 
 FloatArray = NDArray[np.float64]
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """What the survey says of every case.
 
     Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances; ``shapes``, the
@@ -79,7 +77,7 @@ def simulate(
                 )
             )
             single[-1].append(singles(ensemble, x, width, draws=draws, seed=seed, tolerance=tolerance))
-            if progress is not None:
+            if progress := current().progress:
                 progress(row * cases + case + 1, len(widths) * cases, "crossovers")
     found = _datasets(source, parameters, table, single)
     packings = stored["packings"]

@@ -28,7 +28,7 @@ from granular_response.solve import Problem, minimise
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, certificates_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -70,13 +70,11 @@ def mirrored(state: State, packing: Packing) -> State:
     return replace(state, position=position, angle=-state.angle[image])
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``piles`` (states and numbers of the three cases) and ``stress``."""
     frictional = parameters.base
     without = frictional.updated({"contact.friction": 0.0, "wall.friction": 0.0})
-    found = map_tasks(settle, [Pile(without), Pile(frictional)], workers=workers, progress=progress, what="piles")
+    found = map_tasks(settle, [Pile(without), Pile(frictional)], what="piles")
     packing = frictional.packing.build()
     states = common_candidates([state for states in found for state in states], packing.radius)
     stress = _stress_dataset(packing, states, parameters.stress_width, parameters.stress_spacing, parameters.dip_height)

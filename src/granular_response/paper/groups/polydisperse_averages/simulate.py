@@ -22,12 +22,10 @@ from granular_response.paper.groups.polydisperse_averages.parameters import Case
 from granular_response.scene import SceneError
 from granular_response.solve import Problem
 from granular_response.store.result import FORCE, LENGTH, common_candidates, states_dataset, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles``, ``averages``, ``individual``, ``packings``, ``linear_range`` and ``forces``."""
     cases, picture, linear = parameters.columns, parameters.forces_picture, parameters.linear_range
     tasks: list[realizations.Task] = []
@@ -46,7 +44,7 @@ def simulate(
         case = Case(delta, mu, parameters.lattice_constant, linear.forces, 1, wall_friction=0.0)
         tasks.append(replace(realizations.ensemble_task(parameters, case, 0), ramp_time=linear.ramp_time))
 
-    found = map_tasks(realizations.realize, tasks, workers=workers, progress=progress, what="realizations")
+    found = map_tasks(realizations.realize, tasks, what="realizations")
     ensemble, single = found[: len(found) - len(grid)], found[len(found) - len(grid) :]
     ensembles = datasets.ensembles_dataset(cases, ensemble)
     half = round(parameters.reach / parameters.spacing)

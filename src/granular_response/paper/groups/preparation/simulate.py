@@ -20,7 +20,7 @@ from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.preparation.parameters import Parameters, Part
 from granular_response.scene import Scene
 from granular_response.store.result import FORCE, variable
-from granular_response.sweeps.tasks import Progress, run_tasks
+from granular_response.sweeps.tasks import run_tasks
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,9 @@ def _scene(base: Scene, part: Part) -> Scene:
     return base.updated({"contact.friction": part.friction, "wall.friction": part.friction if rough else 0.0})
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response`` (case, force), nan above the last force of a case, and ``events``."""
-    outcomes = run_tasks(tasks(parameters), workers=workers, progress=progress, what="prepared slabs")
+    outcomes = run_tasks(tasks(parameters), what="prepared slabs")
     order = [way.name for way in parameters.ways]
     outcomes = sorted(outcomes, key=lambda o: (*_walls_and_friction(o), order.index(o.task.way)))
     return labelled({"response": _response(outcomes, parameters.forces), "events": _events(outcomes)}, parameters.base)

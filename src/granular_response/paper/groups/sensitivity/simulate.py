@@ -22,7 +22,7 @@ from granular_response.solve.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response.store.result import variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 REFERENCE = "reference"
 
@@ -120,9 +120,7 @@ def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
     )
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """One dataset for each coefficient of friction; see the module."""
     known = variants()
     laws = [
@@ -135,7 +133,7 @@ def simulate(
         scene = parameters.scene.updated({"contact.friction": friction, "loads": [load]})
         tasks += [Task(scene, variant) for variant in known]
         tasks += [Task(scene, law, parameters.literal_steps) for law in laws]
-    outcomes = map_tasks(compute, tasks, workers=workers, progress=progress)
+    outcomes = map_tasks(compute, tasks)
     attributes = {"force": parameters.force, "layers": int(parameters.scene.packing.build().row_count.size)}
     datasets = {}
     per = len(known) + len(laws)

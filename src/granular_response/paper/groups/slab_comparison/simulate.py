@@ -25,7 +25,7 @@ from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import Scene
 from granular_response.state import SLIDING, State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
@@ -80,15 +80,13 @@ def compute(task: Task) -> Outcome:
     )
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``slabs``."""
     base, force = parameters.base, parameters.force
     ratio = base.contact.stiffness_ratio
     slabs = [(case, layers) for case in parameters.cases for layers in case.layers]
     scenes = [_scene(case, layers, base) for case, layers in slabs]
-    outcomes = map_tasks(compute, [Task(scene, force) for scene in scenes], workers=workers, progress=progress)
+    outcomes = map_tasks(compute, [Task(scene, force) for scene in scenes])
     return labelled({"slabs": _dataset(slabs, outcomes, ratio, force)})
 
 

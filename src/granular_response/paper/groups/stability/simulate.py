@@ -31,7 +31,7 @@ from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve.timestep import stability_limit
 from granular_response.store.result import FORCE, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 #: Axes of the time-step maps: what each one changes in the scene, and what it is.
 AXES: dict[str, tuple[str, str]] = {
@@ -46,9 +46,7 @@ AXES: dict[str, tuple[str, str]] = {
 }
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``time_step_AXIS`` for each of ``time_steps.axes``, ``drift``, ``collisions``, ``rolling``, ``rounding``
     and ``random_scenes``.
     """
@@ -62,7 +60,7 @@ def simulate(
         "random_scenes": _random_scenes(parameters.random_scenes, seed),
     }
     tasks = [task for several, _ in groups.values() for task in several]
-    results = iter(map_tasks(_run, tasks, workers=workers, progress=progress, what="stability trials"))
+    results = iter(map_tasks(_run, tasks, what="stability trials"))
     datasets: dict[str, xr.Dataset] = {}
     for several, collect in groups.values():
         datasets |= collect([next(results) for _ in several])

@@ -28,7 +28,7 @@ from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.stiffness_ratio_crossover.parameters import Parameters
 from granular_response.scene import Scene
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
@@ -95,15 +95,13 @@ def narrow(search: Search) -> slab.Event:
     return _event(search.name, search.base, bracket.low, bracket.high, search.tolerance, bracket.evaluations)
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``elastic`` and ``events``."""
     base, force, tolerance = parameters.base, parameters.force, parameters.tolerance
     ratios = np.array(parameters.ratios)
 
     tasks = [Ratio(base, ratio, force) for ratio in ratios.tolist()]
-    results = map_tasks(measure, tasks, workers=workers, progress=progress, what="stiffness ratios")
+    results = map_tasks(measure, tasks, what="stiffness ratios")
     measured = [result for result, _ in results]
 
     found: list[slab.Event] = []
@@ -113,7 +111,7 @@ def simulate(
             searches.append(Search(name, base, force, low, high, tolerance))
         else:
             found.append(_event(name, base, low, high, tolerance, 0))
-    found += map_tasks(narrow, searches, workers=workers, progress=progress, what="crossovers")
+    found += map_tasks(narrow, searches, what="crossovers")
     found.sort(key=lambda event: list(EVENTS).index(event.name))
 
     response = slab.measured_along("stiffness_ratio", measured).assign_coords(stiffness_ratio=_ratio(ratios))

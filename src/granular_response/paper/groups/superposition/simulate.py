@@ -30,7 +30,7 @@ from granular_response.solve.stages import climb
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_of
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -166,9 +166,7 @@ def superposition_error(left: FloatArray, right: FloatArray, both: FloatArray) -
     return float(np.linalg.norm(rest) / np.linalg.norm(whole)), float(rest.max() / largest)
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``responses``, ``errors`` and ``linear_range``.
 
     SweepError
@@ -178,22 +176,12 @@ def simulate(
     packing = base.packing.build()
 
     scenes = [base.updated({"packing.realization": r}) for r in range(parameters.realizations)]
-    rests = map_tasks(rest_of, scenes, workers=workers, progress=progress, what="rest")
+    rests = map_tasks(rest_of, scenes, what="rest")
     settled = list(zip(scenes, rests, strict=True))
-    singles = map_tasks(
-        load_single,
-        [Task(scene, rest, 0, parameters.single_forces) for scene, rest in settled],
-        workers=workers,
-        progress=progress,
-        what="single loads",
-    )
-    pairs = map_tasks(
-        load_pair,
-        [Task(scene, rest, offset, parameters.forces) for scene, rest in settled[:with_pairs] for offset in offsets],
-        workers=workers,
-        progress=progress,
-        what="pairs of loads",
-    )
+    single = [Task(scene, rest, 0, parameters.single_forces) for scene, rest in settled]
+    singles = map_tasks(load_single, single, what="single loads")
+    both = [Task(scene, rest, offset, parameters.forces) for scene, rest in settled[:with_pairs] for offset in offsets]
+    pairs = map_tasks(load_pair, both, what="pairs of loads")
 
     disks = np.flatnonzero(packing.row == 0)
     x = np.array([rest.position[disks, 0] - one.load_x for rest, one in zip(rests, singles, strict=True)])

@@ -28,7 +28,7 @@ from granular_response.solve.timestep import resolve_time_step
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.rest import rest_of
-from granular_response.sweeps.tasks import Progress, map_tasks, run_tasks
+from granular_response.sweeps.tasks import map_tasks, run_tasks
 
 #: When a displaced equilibrium counts as settled, and how many steps it gets: growth from a small displacement
 #: shows long before.
@@ -131,9 +131,7 @@ class HeldTask:
         return replace(settled, reached=settled.reached.after(state.reached))
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets of the loss of symmetry; which method finds the symmetric branch is ``method``.
 
     Returns
@@ -143,14 +141,14 @@ def simulate(
     """
     base, protocols = parameters.scene, parameters.protocols
     first = protocols[0].scene(base)
-    (rest,) = map_tasks(rest_of, [first], workers=1, progress=progress, what="rest state")
+    (rest,) = map_tasks(rest_of, [first], workers=1, what="rest state")
 
     brackets = [BracketTask(base, rest, protocol, parameters.tolerance, parameters.asymmetry) for protocol in protocols]
     copies = _copy_tasks(parameters.copies, first)
     held = HeldTask(parameters.base, rest, parameters.held.forces, parameters.held.displacement)
     # long ones first, so that no core waits for them in the end
     longest = sorted(brackets, key=lambda t: -(100.0 + t.protocol.ramp_time) / t.protocol.time_step)
-    results = run_tasks([*longest, held, *copies], workers=workers, progress=progress, what="loss of symmetry")
+    results = run_tasks([*longest, held, *copies], what="loss of symmetry")
     found: list[BracketResult] = [results[longest.index(task)] for task in brackets]
 
     datasets = {

@@ -7,7 +7,7 @@ lattice that was strained.
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import get_args
 
 import numpy as np
 import xarray as xr
@@ -34,9 +34,8 @@ BODIES = get_args(crossover.Body)
 _BETA = np.linspace(0.0, 1.0, 101)
 
 
-def simulate(parameters: Parameters, *, workers: int | None = None, progress: Any = None) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``predictions``, ``peak_criterion`` and ``moduli``; fractions of a second."""
-    del workers, progress
     return {
         "predictions": _predictions(parameters),
         "peak_criterion": _peak_criterion(),

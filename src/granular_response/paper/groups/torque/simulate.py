@@ -28,7 +28,7 @@ from granular_response.solve import Problem, loaded_states
 from granular_response.state import State
 from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_of
-from granular_response.sweeps.tasks import Progress, map_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 FloatArray = NDArray[np.float64]
 
@@ -48,19 +48,15 @@ def load(task: Turned) -> tuple[State, int]:
     return states[0], int(problem.load_disk[0])
 
 
-def simulate(
-    parameters: Parameters, *, workers: int | None = None, progress: Progress | None = None
-) -> dict[str, xr.Dataset]:
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``torques``, ``stress`` and ``reach``."""
     base, force, angle = parameters.base, parameters.force, np.radians(parameters.angle)
     torques, edges = np.array(parameters.torques), np.array(parameters.distances)
     direction = np.array([np.cos(angle), -np.sin(angle)])
     scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in torques.tolist()]
 
-    (rest,) = map_tasks(rest_of, [scenes[0]], workers=1, progress=progress, what="rest")
-    results = map_tasks(
-        load, [Turned(scene, rest) for scene in scenes], workers=workers, progress=progress, what="torques"
-    )
+    (rest,) = map_tasks(rest_of, [scenes[0]], workers=1, what="rest")
+    results = map_tasks(load, [Turned(scene, rest) for scene in scenes], what="torques")
     packing = base.packing.build()
     rest, *loaded = common_candidates([rest, *(state for state, _ in results)], packing.radius)
     disk = results[0][1]
