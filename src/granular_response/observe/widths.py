@@ -22,9 +22,8 @@ as its root, in an anisotropic elastic body both grow as the depth.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ..state import FloatArray
 
 #: Two definitions of the width, then of two peaks.
 DEFINITIONS = ("half_maximum", "half_force", "peak_position", "peak_width")

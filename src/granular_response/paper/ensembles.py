@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe.floor import smoothed_response
-
-FloatArray = NDArray[np.float64]
+from granular_response.state import FloatArray
 
 #: What becomes of a realization under a load; see ``groups.polydisperse_averages``.
 AT_REST, COLLAPSED, FAILED, NOT_REACHED = 0, 1, 2, 3

@@ -19,7 +19,7 @@ from granular_response.observe.floor import floor_disks, floor_response, interio
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, loaded_states
-from granular_response.state import Crossing, State
+from granular_response.state import Crossing, FloatArray, State
 from granular_response.store.result import (
     FORCE,
     LENGTH,
@@ -29,8 +29,6 @@ from granular_response.store.result import (
     variable,
 )
 from granular_response.sweeps.rest import rest_state
-
-FloatArray = NDArray[np.float64]
 
 #: A contact is mobilised when its tangential force is within one of these fractions of the Coulomb limit.
 #: Whether it slides is lost in the last vibrations before rest, which take it off the limit by a little.

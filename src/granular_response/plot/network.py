@@ -15,13 +15,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from granular_response.plot import style
-from granular_response.state import FLOOR, OPEN, Box, foot_points
-
-FloatArray = NDArray[np.float64]
-
+from granular_response.state import FLOOR, OPEN, Box, FloatArray, foot_points
 
 #: Points; a thinner line is lost in print.
 THINNEST = 0.4

@@ -9,9 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..state import Box
+from ..state import Box, FloatArray
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...state import FloatArray
 from .claim import NotMeasured, Quantity
 
-FloatArray = NDArray[np.float64]
 Statistic = Callable[..., FloatArray]
 
 #: Draws, and the part of them that an interval leaves out on both sides together.

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ...state import FloatArray
+
 Datasets = Mapping[str, xr.Dataset]
 
 #: Parts of a work or a force that count as none.

@@ -17,11 +17,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.scene import Scene
-from granular_response.state import OPEN
+from granular_response.state import OPEN, FloatArray
 
 from .typeset import typeset
 
-FloatArray = NDArray[np.float64]
 Datasets = Mapping[str, xr.Dataset]
 
 FRICTIONS = (0.0, 0.2, 1.0)

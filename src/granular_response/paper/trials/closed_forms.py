@@ -8,14 +8,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from granular_response.kernels.statics import elastic_energies
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Dynamics, Problem
-from granular_response.state import State
-
-FloatArray = NDArray[np.float64]
+from granular_response.state import FloatArray, State
 
 #: Distance of the side walls from what happens.
 FAR = 500.0

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .table import FloatArray, FormatError, Table, heights, numbers
+from ...state import FloatArray
+from .table import FormatError, Table, heights, numbers
 
 _AXES = "xyz"
 

@@ -10,17 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.contact_law.parameters import Parameters
 from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import Scene
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 LAWS = ("linear", "hertz")
 

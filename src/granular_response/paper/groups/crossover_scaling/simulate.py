@@ -33,11 +33,9 @@ from granular_response.paper.slab_response import LoadPath, Measures, locate
 from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Scene
 from granular_response.solve.path import follow
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 #: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
 PAPERS_LAYERS = 15

@@ -27,7 +27,7 @@ from granular_response.paper.datasets import labelled, stress_components
 from granular_response.paper.groups.friction_fields.parameters import Parameters
 from granular_response.paper.slab_response import LoadPath
 from granular_response.scene import Packing, Scene
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, State
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, FloatArray, State
 from granular_response.store.result import (
     FORCE,
     LENGTH,
@@ -37,8 +37,6 @@ from granular_response.store.result import (
     variable,
 )
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 #: "Near the load" in the claims: within this distance (mean radii). It is left out of distances of fields, since
 #: there the discrete forces, not the medium, decide.

@@ -28,12 +28,10 @@ from granular_response.paper.groups.frictionless_crossover.parameters import Par
 from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve.equilibrium import Rearranged
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 #: What is not kept of the measurements: it is about friction.
 LEFT_OUT = ("third_peak", "third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")

@@ -30,11 +30,9 @@ from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states
 from granular_response.solve.work import slid, stored, work
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 #: The three ways of a loop, in turn.
 BRANCHES = ("loading", "unloading", "loading again")

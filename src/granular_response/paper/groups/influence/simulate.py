@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe.floor import floor_disks, interior_mask
 from granular_response.paper.datasets import labelled
@@ -21,12 +20,10 @@ from granular_response.paper.groups.influence.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, influence
 from granular_response.solve.small_loads import at_limit
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import LENGTH, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 #: Rows of loads of the fits.
 FITS = ("all", "without the lowest", "without the highest")

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe.floor import floor_disks, smoothed_response
 from granular_response.paper.datasets import labelled
@@ -27,7 +26,7 @@ from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.solve import Problem, influence, strained
 from granular_response.solve.small_loads import at_limit
 from granular_response.solve.strain import FOLLOWING
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import LENGTH, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import map_tasks
@@ -36,8 +35,6 @@ from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Rotations, Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, Slab
-
-FloatArray = NDArray[np.float64]
 
 #: Places at which responses are compared, in heights of the slab from the load.
 PLACES = np.linspace(-1.5, 1.5, 121)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....state import FloatArray
 from ...claims import asked
 from ...claims.bootstrap import over_realizations
 from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
 from ...claims.words import Bounds
-
-FloatArray = NDArray[np.float64]
 
 GROUP = "numerics"
 CLAIMS = Claims(GROUP)

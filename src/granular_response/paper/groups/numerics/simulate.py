@@ -23,12 +23,10 @@ from granular_response.paper.groups.numerics.parameters import Parameters
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
 from granular_response.solve.timestep import resolve_time_step, stability_limit
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import Task, run_tasks
-
-FloatArray = NDArray[np.float64]
 
 #: Steps between two readings of the kinetic energy of a restarted state.
 READ_EVERY = 100

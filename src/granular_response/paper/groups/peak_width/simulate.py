@@ -28,15 +28,13 @@ from granular_response.paper.survey.crossover import folded, weights
 from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, contact_answers, loaded_states
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Slab
-
-FloatArray = NDArray[np.float64]
 
 #: Height of the line that stands for the floor (radii): below all centres, above what the floor contacts rest on.
 FLOOR_LINE = 1e-6

@@ -10,12 +10,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from ....state import FloatArray
 from ...claims import asked
 from ...claims.bootstrap import over_realizations
 from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
 from ...claims.words import Bounds
-
-FloatArray = NDArray[np.float64]
 
 GROUP = "phase_diagram"
 CLAIMS = Claims(GROUP)

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from granular_response.plot import style
-
-FloatArray = NDArray[np.float64]
+from granular_response.state import FloatArray
 
 #: Kinds of a crossover, as stored.
 FOUND, BELOW, ABOVE = 0, 1, 2

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.paper.datasets import labelled
 from granular_response.paper.ensembles import COLLAPSED, smoothed
@@ -30,10 +29,9 @@ from granular_response.paper.survey.crossover import (
     singles,
     weights,
 )
+from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.resources import current
-
-FloatArray = NDArray[np.float64]
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe import stress as coarse
 from granular_response.observe.floor import floor_disks, floor_force
@@ -25,12 +24,10 @@ from granular_response.paper.datasets import labelled, stress_components
 from granular_response.paper.groups.pile_dip.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, minimise
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, certificates_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 CASES = ("frictionless", "mirrored", "frictional")
 

@@ -9,12 +9,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from granular_response.plot import network, style
-from granular_response.state import WALL_NORMAL, Box, contact_force
-
-FloatArray = NDArray[np.float64]
+from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 
 #: Fig. 21 is smoothed with this width, and shows at most so many forces of a case.
 FIG21_WIDTH, MOST_FORCES = 6.0, 4

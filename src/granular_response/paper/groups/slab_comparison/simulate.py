@@ -16,21 +16,18 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe import network
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.slab_comparison.parameters import Case, Parameters
 from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import Scene
-from granular_response.state import SLIDING, State
+from granular_response.state import SLIDING, FloatArray, State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
 from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
-
-FloatArray = NDArray[np.float64]
 
 FLOORS: tuple[Floor, ...] = ("smooth", "rough")
 

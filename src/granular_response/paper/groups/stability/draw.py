@@ -13,8 +13,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from granular_response.plot import style
-
-FloatArray = NDArray[np.float64]
+from granular_response.state import FloatArray
 
 #: Outcomes of a kick in the order of their codes.
 OUTCOMES = ("settles", "cycles", "blows up", "no rest state")

@@ -19,7 +19,6 @@ from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe.events import bisect_event
 from granular_response.observe.peaks import central_dip, is_double_peaked
@@ -27,14 +26,13 @@ from granular_response.paper import slab_response as slab
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.stiffness_ratio_crossover.parameters import Parameters
 from granular_response.scene import Scene
+from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
-
-FloatArray = NDArray[np.float64]
 
 BODIES: tuple[Body, ...] = get_args(Body)
 ROTATIONS: tuple[lattice.Rotations, ...] = get_args(lattice.Rotations)

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_disks
-
-FloatArray = NDArray[np.float64]
+from granular_response.state import FloatArray
 
 #: Disks are drawn smaller than they are, so that the springs have room between them; the bonds have length 2.
 _RADIUS = 0.36

@@ -9,12 +9,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from granular_response.paper.captions import letters
 from granular_response.plot import style
-
-FloatArray = NDArray[np.float64]
+from granular_response.state import FloatArray
 
 #: Forces of the two figures, and the realization that both show.
 FORCES = {"fig23_superposition": 0.2, "fig24_superposition": 1.0}

@@ -27,12 +27,11 @@ from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states
 from granular_response.solve.choice import load_method
 from granular_response.solve.stages import climb
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response.sweeps.tasks import map_tasks
 
-FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 #: Which forces act.

@@ -25,7 +25,7 @@ from granular_response.paper.groups.symmetry_breaking.parameters import Copies, 
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Dynamics, Problem, Stop, relax
 from granular_response.solve.timestep import resolve_time_step
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response.sweeps.tasks import map_tasks, run_tasks
@@ -99,7 +99,7 @@ class HeldResult:
 
     branch: slab.Measured
     displaced: slab.Measured
-    displacement: slab.FloatArray  #: (force,) largest distance of a disk from its place before
+    displacement: FloatArray  #: (force,) largest distance of a disk from its place before
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ def shuffled(packing: Packing, seed: int) -> Packing:
     )
 
 
-def displaced(packing: Packing, shift: slab.FloatArray, *, mirror_image: bool = False) -> Packing:
+def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
     """The packing with its disks moved by ``shift`` (n, 2), or by the mirror image of it."""
     if mirror_image:
         image = network.mirror_disks(packing.position, 0.5 * packing.width)
@@ -206,7 +206,7 @@ def displaced(packing: Packing, shift: slab.FloatArray, *, mirror_image: bool = 
     return replace(packing, position=packing.position + shift)
 
 
-def _random_shift(shape: tuple[int, ...], size: float, seed: int) -> slab.FloatArray:
+def _random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
     return np.random.default_rng(seed).uniform(-size, size, shape)
 
 

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe import stress as coarse
 from granular_response.observe.difference import pair_force_difference
@@ -25,12 +24,10 @@ from granular_response.paper.datasets import labelled, stress_components
 from granular_response.paper.groups.torque.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, loaded_states
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response.sweeps.tasks import map_tasks
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from granular_response.observe.floor import smoothed_response
 from granular_response.paper.ensembles import AT_REST, OUTCOMES, smoothed
 from granular_response.paper.groups.polydisperse_averages.ensemble.realizations import LOADED, Realization
 from granular_response.paper.groups.polydisperse_averages.parameters import Individual
+from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, variable
-
-FloatArray = NDArray[np.float64]
 
 
 def _at_rest(responses: FloatArray, step: int) -> FloatArray:

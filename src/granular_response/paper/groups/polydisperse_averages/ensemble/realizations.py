@@ -21,11 +21,9 @@ from granular_response.solve import SOLVE_ERRORS, Problem, loaded_states
 from granular_response.solve.choice import load_method
 from granular_response.solve.stages import Collapsed, climb
 from granular_response.solve.timestep import stability_limit
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH
 from granular_response.sweeps.rest import rest_state
-
-FloatArray = NDArray[np.float64]
 
 #: Bins of the contact angles over half a turn.
 ANGLE_BINS = 36
