@@ -10,7 +10,6 @@ from granular_response.observe.floor import floor_response
 from granular_response.paper.claims.claim import Data
 from granular_response.paper.claims.verdict import judge
 from granular_response.paper.groups.crossover_scaling import draw, simulate
-from granular_response.paper.groups.crossover_scaling.captions import captions
 from granular_response.paper.groups.crossover_scaling.claims import CLAIMS
 from granular_response.paper.groups.crossover_scaling.parameters import Parameters
 from granular_response.paper.groups.frictionless_crossover import simulate as frictionless
@@ -166,7 +165,7 @@ def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
 
 def test_figures_have_their_panels_and_captions(datasets, parameters):
     figures = draw.draw(datasets)
-    assert set(figures) == set(captions(datasets, parameters))
+    assert set(figures) == set(draw.captions(datasets, parameters))
     assert [len(figure.axes) for figure in figures.values()] == [4, 2, 3]
 
 

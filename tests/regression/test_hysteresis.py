@@ -6,7 +6,7 @@ import reduced
 
 from granular_response.paper.claims.claim import Data
 from granular_response.paper.claims.verdict import judge
-from granular_response.paper.groups.hysteresis import captions, draw, simulate
+from granular_response.paper.groups.hysteresis import draw, simulate
 from granular_response.paper.groups.hysteresis.claims import CLAIMS
 from granular_response.paper.groups.hysteresis.parameters import Parameters
 from granular_response.paper.report import beyond
@@ -118,7 +118,7 @@ def test_figures_have_their_panels_and_captions(datasets):
         "hysteresis_loops": 2,
         "hysteresis_ranges": 3,
     }
-    assert set(captions.captions(datasets, Parameters.model_validate(PARAMETERS))) == set(figures)
+    assert set(draw.captions(datasets, Parameters.model_validate(PARAMETERS))) == set(figures)
 
 
 def test_the_document_gets_a_line_for_each_packing_and_how_the_books_close(datasets):

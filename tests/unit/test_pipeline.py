@@ -34,10 +34,7 @@ STARTS = {
     "draw": [
         "granular_response.paper.pipeline.drawing",
         "granular_response.paper.pipeline.measuring",
-        *(
-            f"granular_response.paper.groups.{{}}.{module}"
-            for module in ("parameters", "draw", "captions", "claims", "numbers")
-        ),
+        *(f"granular_response.paper.groups.{{}}.{module}" for module in ("parameters", "draw", "claims", "numbers")),
     ],
     "claims": [
         "granular_response.paper.claims.table",
@@ -289,7 +286,7 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
     for file, block in re.findall(r"`(\w+\.py)`(?:(?!```).)*?```python\n(.*?)```", section, re.S):
         (folder / file).write_text(block)
     (folder / "__init__.py").touch()
-    assert {path.name for path in folder.iterdir()} >= {"parameters.py", "simulate.py", "draw.py", "captions.py"}
+    assert {path.name for path in folder.iterdir()} >= {"parameters.py", "simulate.py", "draw.py"}
     (tmp_path / "params.yaml").write_text("common: {method: auto}\n" + yaml_block)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(groups, "__path__", [*groups.__path__, str(tmp_path / "groups")])

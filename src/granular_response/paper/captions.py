@@ -1,7 +1,7 @@
 """Captions of the pictures, complete as the paper's are, made from the parameters that their dataset was made with.
 
-A group's ``captions.py`` has ``captions(datasets, parameters) -> dict[str, Caption]``: one for each picture by file
-stem, from the datasets that it is drawn from and the validated parameters that their file stores. The draw stage writes
+A group's ``draw.py`` has ``captions(datasets, parameters) -> dict[str, Caption]``: one for each picture by file stem,
+from the datasets that it is drawn from and the validated parameters that their file stores. The draw stage writes
 them as ``captions.json`` beside the pictures (:func:`document`); the page reads that file.
 
 Texts are plain, as ``report.typeset`` sets them: ``F_ext``, ``k_T/k_N``, ``1e-13``, ``sqrt(R/g)``. They cite the panels

@@ -93,8 +93,7 @@ def _imports(group: str) -> str:
     return f"""\
 from IPython.display import Image, Markdown, display
 
-from {_PACKAGE}.{group}.captions import captions
-from {_PACKAGE}.{group}.draw import draw
+from {_PACKAGE}.{group}.draw import captions, draw
 from {_PACKAGE}.{group}.parameters import Parameters
 from {_PACKAGE}.{group}.simulate import simulate
 from granular_response.plot import style

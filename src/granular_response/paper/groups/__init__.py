@@ -1,9 +1,9 @@
 """Figure groups, a folder for each; ``groups.json`` lists them, for the pipeline too.
 
 A folder holds ``parameters.py`` (the class ``Parameters``, the group's section of ``params.yaml``), ``simulate.py``
-(parameters to datasets), ``draw.py`` (datasets to figures), ``captions.py`` (what the pictures show) and, where the
-paper claims something, ``claims.py`` (what is judged from its datasets). What the list calls ``needs`` is what the
-simulations of a group read beside what those of every group do.
+(parameters to datasets), ``draw.py`` (datasets to figures, and what these show) and, where the paper claims something,
+``claims.py`` (what is judged from its datasets). What the list calls ``needs`` is what the simulations of a group read
+beside what those of every group do.
 """
 
 import json

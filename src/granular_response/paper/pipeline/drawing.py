@@ -31,7 +31,7 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     target = folder or figures_folder(group)
     figures = function(datasets)
     panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
-    said = captions.document(group_member(group, "captions", "captions")(datasets, described), panels)
+    said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
     paths: list[Path] = []
     for stem, figure in figures.items():
         paths += style.save(figure, stem, target, inputs=[path])

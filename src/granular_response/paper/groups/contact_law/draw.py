@@ -8,7 +8,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from granular_response.paper.captions import Caption, of_scene
 from granular_response.plot import style
+
+from .parameters import Parameters
 
 #: Part of the slab that is shown, to both sides of the load (radii).
 REACH = 40.0
@@ -41,3 +44,20 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), handlelength=3.0)
     panels[0].set_ylabel(style.RESPONSE)
     return {"contact_law": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    panels = ", ".join(f"({chr(ord('a') + k)}) µ = {mu:g}" for k, mu in enumerate(parameters.friction))
+    return {
+        "contact_law": Caption(
+            "Not in the paper: Sec. III.B says that measurements on its disks gave a force that grows as the overlap "
+            "to the power 3/2, and that a linear law describes it well. Floor response with the linear law (lines) "
+            "and with the 3/2 law (symbols), whose force is the same at the mean overlap of the slab at rest, and "
+            f"their largest difference per largest response: {panels}. Without friction the disks of a row of the 3/2 "
+            "slab bear almost nothing along x: it has several equilibria, and little decides which one is met.",
+            "Three panels on one scale. Without friction symbols and lines differ widely, with friction 1 they nearly "
+            "agree.",
+            of_scene(parameters.scene, force=parameters.forces, friction=parameters.friction),
+        )
+    }

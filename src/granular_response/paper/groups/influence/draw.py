@@ -11,7 +11,10 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from granular_response.paper.captions import Caption, of_scene
 from granular_response.plot import style
+
+from .parameters import Parameters
 
 #: Half the width of the maps (radii).
 REACH = 30.0
@@ -23,6 +26,39 @@ LEAST = 0.8
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``influence_map`` from the dataset ``packings``, ``influence_saint_venant`` from ``saint_venant``."""
     return {"influence_map": _maps(datasets["packings"]), "influence_saint_venant": _decay(datasets["saint_venant"])}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    most = max(case.realizations for case in parameters.cases)
+    maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
+    panels = ", ".join(
+        f"({chr(ord('a') + k)}) δ = {case.polydispersity:g}, µ = {case.friction:g}" for k, case in enumerate(maps)
+    )
+    said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
+    low, high = parameters.fitted
+    return {
+        "influence_map": Caption(
+            "Not in the paper: how much force every disk sets in motion on the floor. A small vertical force on a disk "
+            "changes the forces on the floor; the colour is the sum of their absolute changes per force, 1 where no "
+            "floor disk is relieved. Exact in the limit of small forces, at rest under gravity, contacts at the limit "
+            "of Coulomb sticking; the walls have the friction of the disks. Disks that bear nothing are white. "
+            f"{panels}.",
+            "The same slab with and without friction, its disks coloured by the force that each sets in motion: all "
+            "alike with friction, in bright wedges without.",
+            said,
+        ),
+        "influence_saint_venant": Caption(
+            "Saint-Venant's principle, by which Sec. VI explains that superposition holds. (a) Changes of the floor "
+            "forces by a small force on a disk, and by two halves of it on its neighbours in the row: their absolute "
+            "difference summed over the floor disks, against the height of the disk over the distance of the halves; "
+            f"mean and standard deviation over {most} realizations. (b) The power with which it falls between {low:g} "
+            f"and {high:g} distances, with 95 % intervals of the mean; of a lattice the range over the rows fitted.",
+            "Falling lines in a double logarithmic panel, steepest for the lattices, flat for disorder without "
+            "friction; beside it the powers as symbols with error bars, two for the frictionless lattice.",
+            said,
+        ),
+    }
 
 
 def _name(data: xr.Dataset, case: int) -> str:

@@ -10,7 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
+from granular_response.paper.captions import Caption, of_scene
 from granular_response.plot import style
+
+from .parameters import Parameters
 
 #: Events in the order of the panels, with what they are called there.
 PANELS = {
@@ -47,6 +50,25 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)))
     return {"preparation": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    return {
+        "preparation": Caption(
+            "Not in the paper: the same slab prepared in several ways. (a) to (f) Forces between which each event "
+            "comes, against friction, a symbol for each way; an arrow: not up to there. Rough: the walls have the "
+            "friction of the disks; all others are smooth.",
+            "Six panels on one scale, an event in each, with the forces at which it comes side by side for every "
+            "preparation.",
+            of_scene(
+                parameters.scene,
+                force=parameters.forces,
+                friction=sorted({part.friction for part in parameters.parts}),
+                wall_friction=None,
+            ),
+        )
+    }
 
 
 def _event(panel: Axes, events: xr.Dataset, slabs: list[tuple[float, float]], ways: list[str]) -> None:

@@ -9,7 +9,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from granular_response.paper.captions import Caption, of_scene
 from granular_response.plot import style
+
+from .parameters import Parameters
 
 
 @style.context()
@@ -29,3 +32,15 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     axes.grid(axis="y", linewidth=0.3)
     axes.legend(loc="upper right", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
     return {"sensitivity": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    return {
+        "sensitivity": Caption(
+            "How much each reading of the paper changes the floor response, one changed at a time: largest difference "
+            "from the reference per applied force. The table of readings has the numbers.",
+            "Two marks for each reading on a logarithmic axis, over several powers of ten.",
+            of_scene(parameters.scene, force=parameters.force, friction=parameters.friction),
+        )
+    }
