@@ -64,7 +64,7 @@ def test_a_case_is_what_its_scene_says():
     task = next(t for t in study.tasks(Parameters(**PARAMETERS)) if t.way == "slow")
     path = LoadPath.of(task.scene)
     assert (task.scene.contact.friction, task.scene.wall.friction, task.scene.preparation.ramp_time) == (0.2, 0.0, 10.0)
-    assert task.run().measured.scalars["response_at_centre"][0] == Measures(path).centre(path.at(task.forces[0]))
+    assert task.run().measured["response_at_centre"][0] == Measures(path).centre(path.at(task.forces[0]))
 
 
 def test_the_figure_and_the_numbers_show_what_is_stored(datasets):

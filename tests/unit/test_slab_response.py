@@ -12,13 +12,13 @@ from granular_response.paper.slab_response import (
     SCALARS,
     Event,
     LoadPath,
-    Measured,
     Measures,
     asymmetry_sign,
     events_dataset,
     first_change,
     half_maximum_width,
     locate,
+    measured,
     measured_dataset,
     states_picture,
 )
@@ -157,13 +157,13 @@ def test_events_become_a_table():
 def test_measurements_are_spread_over_a_grid(path):
     measures = Measures(path)
     states = path.through([0.1, 0.2, 0.3])
-    both, one = Measured.of(measures, states[:2]), Measured.of(measures, states[2:])
+    both, one = measured(measures, states[:2]), measured(measures, states[2:])
     grid = measured_dataset(("a", "b"), [((0, [0, 2]), both), ((1, [1]), one)], (2, 3))
     centre = grid["response_at_centre"].values
     np.testing.assert_array_equal(np.isnan(centre), [[False, True, False], [True, False, True]])
     assert centre[0, 2] == measures.centre(states[1])
     np.testing.assert_array_equal(grid["floor_response"].values[1, 1], measures.response(states[2]))
-    np.testing.assert_array_equal(both.only(1).response[0], both.response[1])
+    np.testing.assert_array_equal(both.isel(state=[1])["floor_response"][0], both["floor_response"][1])
     assert grid["certificate_force_residual"].values[0, 0] < 1e-9
 
 

@@ -5,7 +5,7 @@ What the studies of Sec. V share. Forces are in mean disk weights, lengths in me
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -350,85 +350,44 @@ def states_picture(states: Sequence[State], problem: Problem, dimension: str = "
     return dataset
 
 
-#: Dimensions of the columns of :class:`Measured` that are no single numbers.
-_FURTHER = {"floor_response": ("floor_disk",), "mobilised_contacts": ("margin",)}
-
-
-@dataclass(frozen=True)
-class Measured:
-    """Measurements on k loaded states of one material."""
-
-    x: FloatArray  #: (floor_disk,)
-    interior: NDArray[np.bool_]  #: (floor_disk,)
-    disks: NDArray[np.intp]  #: (floor_disk,)
-    response: FloatArray  #: (k, floor_disk)
-    scalars: Mapping[str, FloatArray]  #: each (k,)
-    mobilised: FloatArray  #: (k, margin)
-    certificates: xr.Dataset  #: along ``state``, of length k
-
-    @classmethod
-    def of(cls, measures: Measures, states: Sequence[State]) -> Measured:
-        """Everything measured on ``states``."""
-        rows = [measures.scalars(state) for state in states]
-        return cls(
-            x=measures.x,
-            interior=measures.interior,
-            disks=measures.disks,
-            response=np.stack([measures.response(state) for state in states]),
-            scalars={name: np.array([float(row[name]) for row in rows]) for name in SCALARS},
-            mobilised=np.array([measures.mobilised(state) for state in states], dtype=float),
-            certificates=certificates_dataset(states),
-        )
-
-    @property
-    def columns(self) -> dict[str, tuple[NDArray, str]]:
-        """Everything measured, (k, ...), with long names."""
-        certified = self.certificates.data_vars.items()
-        return {
-            **{name: (self.scalars[name], text) for name, text in SCALARS.items()},
-            **{str(name): (found.values, found.attrs["long_name"]) for name, found in certified},
-            "floor_response": (self.response, "vertical floor force that the load adds, per applied force"),
-            "mobilised_contacts": (
-                self.mobilised,
-                "contacts of disks whose tangential force is within a fraction of the Coulomb limit",
-            ),
-        }
-
-    def only(self, k: int) -> Measured:
-        """The measurements on one of the states."""
-        one = slice(k, k + 1)
-        return Measured(
-            self.x,
-            self.interior,
-            self.disks,
-            self.response[one],
-            {name: values[one] for name, values in self.scalars.items()},
-            self.mobilised[one],
-            self.certificates.isel(state=one),
-        )
-
-
-def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, Measured]], shape: tuple) -> xr.Dataset:
-    """Measurements on a grid of ``dims``; nan where there are none.
-
-    ``parts`` are pairs of an index into the grid (for all of its dimensions, as numpy takes it) and the
-    measurements there, on slabs with the same floor disks.
-    """
-    first, columns = parts[0][1], [(index, measured.columns) for index, measured in parts]
-    data = {}
-    for name, (values, text) in first.columns.items():
-        grid = np.full((*shape, *values.shape[1:]), np.nan)
-        for index, one in columns:
-            grid[index] = one[name][0]
-        data[name] = variable((*dims, *_FURTHER.get(name, ())), grid, text)
+def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
+    """Everything measured on loaded states of one material, along ``state``."""
+    rows = [measures.scalars(state) for state in states]
+    data = {name: variable("state", [float(row[name]) for row in rows], text) for name, text in SCALARS.items()}
+    data |= {str(name): values.variable for name, values in certificates_dataset(states).items()}
+    data["floor_response"] = variable(
+        ("state", "floor_disk"),
+        np.stack([measures.response(state) for state in states]),
+        "vertical floor force that the load adds, per applied force",
+    )
+    data["mobilised_contacts"] = variable(
+        ("state", "margin"),
+        np.array([measures.mobilised(state) for state in states], dtype=float),
+        "contacts of disks whose tangential force is within a fraction of the Coulomb limit",
+    )
     return xr.Dataset(data).assign_coords(
-        floor_disk=variable("floor_disk", first.disks, "index of the floor disk"),
-        x=variable("floor_disk", first.x, f"rest position from the loaded disk {LENGTH}"),
-        interior=variable("floor_disk", first.interior.astype(np.int8), "1 for disks away from the side walls"),
+        floor_disk=variable("floor_disk", measures.disks, "index of the floor disk"),
+        x=variable("floor_disk", measures.x, f"rest position from the loaded disk {LENGTH}"),
+        interior=variable("floor_disk", measures.interior.astype(np.int8), "1 for disks away from the side walls"),
         margin=variable("margin", MARGINS, "fraction below the Coulomb limit"),
     )
 
 
-def measured_along(dimension: str, measured: Sequence[Measured]) -> xr.Dataset:
+def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Dataset]], shape: tuple) -> xr.Dataset:
+    """Measurements on a grid of ``dims``; nan where there are none.
+
+    ``parts`` are pairs of an index into the grid (for all of its dimensions, as numpy takes it) and what was
+    :func:`measured` there, on slabs with the same floor disks.
+    """
+    data = {}
+    for name, values in parts[0][1].items():
+        grid = np.full((*shape, *values.shape[1:]), np.nan)
+        for index, one in parts:
+            grid[index] = one[name].values
+        data[name] = variable((*dims, *values.dims[1:]), grid, values.attrs["long_name"])
+    return xr.Dataset(data).assign_coords(parts[0][1].coords)
+
+
+def measured_along(dimension: str, measured: Sequence[xr.Dataset]) -> xr.Dataset:
     """The measurements on one state each, along ``dimension``."""
     return measured_dataset((dimension,), [([k], one) for k, one in enumerate(measured)], (len(measured),))

@@ -32,7 +32,7 @@ class PathResult:
 
     friction: float
     forces: tuple[float, ...]
-    measured: slab.Measured
+    measured: xr.Dataset
     events: tuple[slab.Event, ...]
     crossings: tuple[Crossing, ...]  #: of the path, without its bisections
     method: str
@@ -58,7 +58,7 @@ class PathTask:
         return PathResult(
             self.scene.contact.friction,
             self.forces,
-            slab.Measured.of(measures, states),
+            slab.measured(measures, states),
             tuple(self._events(path, measures, self.tolerance)) if self.tolerance else (),
             crossings,
             path.method,
@@ -85,10 +85,10 @@ class DynamicsTask:
     rest: State
     force: float
 
-    def run(self) -> tuple[State, slab.Measured]:
+    def run(self) -> tuple[State, xr.Dataset]:
         path = slab.LoadPath.of(self.scene, self.rest)
         state = path.at(self.force)
-        return state, slab.Measured.of(slab.Measures(path), [state])
+        return state, slab.measured(slab.Measures(path), [state])
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     paths = {result.friction: result for result in results}
 
     on_axis = {mu: _at_force(paths[mu], axis_force) for mu in axis_frictions}
-    double = [bool(measured.scalars["double_peaked"][0]) for measured in on_axis.values()]
+    double = [bool(measured["double_peaked"][0]) for measured in on_axis.values()]
     low, high = slab.first_change(axis_frictions, [not two for two in double])
     refine = [FrictionTask(base, axis_force, low, high, axis.tolerance)]
     if not (double[0] and np.isfinite(high)):
@@ -133,7 +133,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     dynamics = _dynamics_tasks(parameters.dynamics, base, paths)
     done = run_tasks([*refine, *dynamics], what="large forces")
     crossover = done[0] if refine else _friction_crossover(axis_force, low, high, axis.tolerance, 0)
-    shaken: list[tuple[State, slab.Measured]] = done[len(refine) :]
+    shaken: list[tuple[State, xr.Dataset]] = done[len(refine) :]
 
     main = [paths[mu] for mu in frictions]
     found = [*(event for result in main for event in result.events), crossover]
@@ -189,8 +189,8 @@ def _dynamics_tasks(given: LargeForces, base: Scene, paths: Mapping[float, PathR
     return [DynamicsTask(scene, paths[given.friction].rest, force) for force in sorted(given.forces)]
 
 
-def _at_force(result: PathResult, force: float) -> slab.Measured:
-    return result.measured.only(result.forces.index(force))
+def _at_force(result: PathResult, force: float) -> xr.Dataset:
+    return result.measured.isel(state=[result.forces.index(force)])
 
 
 def _friction_crossover(force: float, low: float, high: float, tolerance: float, evaluations: int) -> slab.Event:
@@ -228,9 +228,7 @@ def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
     return dataset
 
 
-def _large_forces_dataset(
-    friction: float, tasks: Sequence[DynamicsTask], measured: Sequence[slab.Measured]
-) -> xr.Dataset:
+def _large_forces_dataset(friction: float, tasks: Sequence[DynamicsTask], measured: Sequence[xr.Dataset]) -> xr.Dataset:
     dataset = slab.measured_along("force", measured).assign_coords(force=_force([task.force for task in tasks]))
     protocol = tasks[0].scene.protocol
     dataset["friction"] = variable((), friction, "coefficient of friction between disks")

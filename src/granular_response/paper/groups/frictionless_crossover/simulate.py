@@ -78,7 +78,7 @@ class Outcome:
 
     slab: Slab
     forces: tuple[float, ...]
-    measured: slab_response.Measured
+    measured: xr.Dataset
     events: Mapping[str, slab_response.Event]
     rest_asymmetry: float
     new_neighbours: int
@@ -108,7 +108,7 @@ def solve(task: Task) -> Outcome:
     return Outcome(
         slab=task.slab,
         forces=task.forces,
-        measured=slab_response.Measured.of(measures, states),
+        measured=slab_response.measured(measures, states),
         events=found,
         rest_asymmetry=rest_asymmetry(packing.position, path.rest, packing.width),
         new_neighbours=new_neighbours(packing.position, path.rest),
@@ -241,12 +241,7 @@ def response(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
     """Measurements on one slab along ``force``."""
     data = table("slab", [outcome], forces).isel(slab=0)
     data = data.rename(floor_place="floor_disk").drop_vars([f"{name}_bracket" for name in EVENTS])
-    return data.assign_coords(
-        floor_disk=variable("floor_disk", outcome.measured.disks, "index of the floor disk"),
-        interior=variable(
-            "floor_disk", outcome.measured.interior.astype(np.int8), "1 for disks away from the side walls"
-        ),
-    )
+    return data.assign_coords({name: outcome.measured[name].variable for name in ("floor_disk", "interior")})
 
 
 def table(dimension: str, outcomes: Sequence[Outcome], forces: Sequence[float]) -> xr.Dataset:
@@ -255,23 +250,23 @@ def table(dimension: str, outcomes: Sequence[Outcome], forces: Sequence[float]) 
     Slabs have different numbers of floor disks: ``floor_response`` and ``x`` run over ``floor_place``, from
     left to right, and are nan beyond the last disk of a slab.
     """
-    places = max(len(o.measured.x) for o in outcomes)
+    places = max(o.measured.sizes["floor_disk"] for o in outcomes)
 
     def padded(values: FloatArray) -> FloatArray:
         full = np.full((*values.shape[:-1], places), np.nan)
         full[..., : values.shape[-1]] = values
         return full
 
-    def along_grid(name: str) -> NDArray:
-        columns = [o.measured.columns[name][0][np.searchsorted(o.forces, forces)] for o in outcomes]
-        return np.stack([padded(column) for column in columns] if name == "floor_response" else columns)
-
     grid = (dimension, "force")
-    data = {
-        name: variable((*grid, "floor_place") if name == "floor_response" else grid, along_grid(name), text)
-        for name, (_, text) in outcomes[0].measured.columns.items()
-        if name not in LEFT_OUT
-    }
+
+    def along_grid(name: str) -> xr.Variable:
+        columns = [o.measured[name].values[np.searchsorted(o.forces, forces)] for o in outcomes]
+        text = outcomes[0].measured[name].attrs["long_name"]
+        if name == "floor_response":
+            return variable((*grid, "floor_place"), np.stack([padded(column) for column in columns]), text)
+        return variable(grid, np.stack(columns), text)
+
+    data = {name: along_grid(name) for name in map(str, outcomes[0].measured) if name not in LEFT_OUT}
     for name, text in EVENTS.items():
         brackets = [(o.events[name].low, o.events[name].high) for o in outcomes]
         data[f"{name}_bracket"] = variable(
@@ -297,7 +292,7 @@ def table(dimension: str, outcomes: Sequence[Outcome], forces: Sequence[float]) 
     coordinates["force"] = variable("force", np.array(forces, float), f"applied force {FORCE}")
     coordinates["x"] = variable(
         (dimension, "floor_place"),
-        np.stack([padded(o.measured.x) for o in outcomes]),
+        np.stack([padded(o.measured["x"].values) for o in outcomes]),
         f"rest position from the loaded disk {LENGTH}",
     )
     dataset = xr.Dataset(data).assign_coords(coordinates)

@@ -42,7 +42,7 @@ class Task:
         level = pairs.touching & (network.lattice_direction(path.rest) == network.HORIZONTAL) & measures.near
         return Outcome(
             self,
-            slab.Measured.of(measures, states),
+            slab.measured(measures, states),
             [
                 slab.locate(name, path, self.forces, happened, math.inf, definition)
                 for name, (happened, definition) in asked.items()
@@ -55,7 +55,7 @@ class Task:
 @dataclass(frozen=True)
 class Outcome:
     task: Task
-    measured: slab.Measured
+    measured: xr.Dataset
     events: list[slab.Event]
     level_force: float  #: mean normal force of horizontal contacts at rest
     rest_mobilised: list[int]  #: contacts of disks near the Coulomb limit at rest, by margin

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.observe.events import bisect_event
-from granular_response.observe.peaks import central_dip, is_double_peaked
+from granular_response.observe.peaks import central_dip
 from granular_response.paper import slab_response as slab
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.stiffness_ratio_crossover.parameters import Parameters
@@ -63,11 +63,11 @@ class Ratio:
         return self.base.updated(changes)
 
 
-def measure(task: Ratio) -> tuple[slab.Measured, str]:
+def measure(task: Ratio) -> tuple[xr.Dataset, str]:
     """The measured response of a packing at one stiffness ratio, and the method that found it."""
     path = slab.LoadPath.of(task.scene())
     state = path.at(task.force)
-    return slab.Measured.of(slab.Measures(path), [state]), path.method
+    return slab.measured(slab.Measures(path), [state]), path.method
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     datasets = {
         "response": response,
         "elastic": elastic_bodies(
-            np.union1d(ratios, ELASTIC_RATIOS), measured[0].x, packing.row_count.size, packing.width
+            np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
         ),
         "events": slab.events_dataset(found).drop_vars("friction"),
     }
@@ -186,21 +186,21 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     )
 
 
-def _two_peaks_ended(measured: slab.Measured) -> bool:
-    return not is_double_peaked(measured.x, measured.response[0], interior=measured.interior)
+def _two_peaks_ended(measured: xr.Dataset) -> bool:
+    return not measured["double_peaked"][0]
 
 
-def _largest_at_centre(measured: slab.Measured) -> bool:
-    return central_dip(measured.x, measured.response[0], interior=measured.interior) < 0.0
+def _largest_at_centre(measured: xr.Dataset) -> bool:
+    return bool(measured["central_dip"][0] < 0.0)
 
 
-_HAPPENED: dict[str, Callable[[slab.Measured], bool]] = {
+_HAPPENED: dict[str, Callable[[xr.Dataset], bool]] = {
     "two_peaks_end": _two_peaks_ended,
     "central_maximum_begins": _largest_at_centre,
 }
 
 
-def _brackets(ratios: FloatArray, measured: Sequence[slab.Measured]) -> list[tuple[str, float, float]]:
+def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> list[tuple[str, float, float]]:
     """Where on the axis each event lies."""
     ended = [_two_peaks_ended(one) for one in measured]
     central = [_largest_at_centre(one) for one in measured]

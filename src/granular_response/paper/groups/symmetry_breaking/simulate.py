@@ -41,7 +41,7 @@ class BracketResult:
 
     event: slab.Event
     forces: tuple[float, ...]
-    measured: slab.Measured  #: at ``forces``
+    measured: xr.Dataset  #: at ``forces``
     states: tuple[State, ...]  #: the last symmetric and the first asymmetric one, if there are both
 
 
@@ -75,7 +75,7 @@ class BracketTask:
         )
         event = slab.Event("loss_of_symmetry", measures.friction, low, high, self.tolerance, len(forces), text)
         ends = tuple(path.known[force] for force in (low, high) if force in path.known)
-        measured = slab.Measured.of(measures, [path.known[force] for force in forces])
+        measured = slab.measured(measures, [path.known[force] for force in forces])
         return BracketResult(event, forces, measured, ends if len(ends) == 2 else ())
 
 
@@ -88,17 +88,17 @@ class CopyTask:
     packing: Packing
     force: float
 
-    def run(self) -> slab.Measured:
+    def run(self) -> xr.Dataset:
         path = slab.LoadPath.of(self.scene, packing=self.packing)
-        return slab.Measured.of(slab.Measures(path), [path.at(self.force)])
+        return slab.measured(slab.Measures(path), [path.at(self.force)])
 
 
 @dataclass(frozen=True)
 class HeldResult:
     """Equilibria of the load path, each before and after a small displacement under constant force."""
 
-    branch: slab.Measured
-    displaced: slab.Measured
+    branch: xr.Dataset
+    displaced: xr.Dataset
     displacement: FloatArray  #: (force,) largest distance of a disk from its place before
 
 
@@ -119,7 +119,7 @@ class HeldTask:
         moved = [
             float(np.abs(after.position - before.position).max()) for before, after in zip(states, settled, strict=True)
         ]
-        return HeldResult(slab.Measured.of(measures, states), slab.Measured.of(measures, settled), np.array(moved))
+        return HeldResult(slab.measured(measures, states), slab.measured(measures, settled), np.array(moved))
 
     def _displaced(self, problem: Problem, state: State) -> State:
         shift = _random_shift(state.position.shape, self.displacement, seed=0)
@@ -240,7 +240,7 @@ def _runs_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult])
     )
 
 
-def _copies_dataset(tasks: Sequence[CopyTask], measured: Sequence[slab.Measured]) -> xr.Dataset:
+def _copies_dataset(tasks: Sequence[CopyTask], measured: Sequence[xr.Dataset]) -> xr.Dataset:
     """The copies, and how far each is from the first one and from its mirror image."""
     dataset = slab.measured_along("copy", measured)
     response = dataset["floor_response"].values
