@@ -10,7 +10,7 @@ preparation, the case ``frictional``.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -32,16 +32,9 @@ from granular_response.sweeps.tasks import map_tasks
 CASES = ("frictionless", "mirrored", "frictional")
 
 
-@dataclass(frozen=True)
-class Pile:
-    """A pile to be settled under gravity."""
-
-    scene: Scene
-
-
-def settle(pile: Pile) -> tuple[State, ...]:
+def settle(scene: Scene) -> tuple[State, ...]:
     """The rest state of a frictional pile, or both minima of a frictionless one; raises what the solvers raise."""
-    problem = Problem.from_scene(pile.scene)
+    problem = Problem.from_scene(scene)
     state = rest_state(problem)
     if problem.rotations:
         return (state,)
@@ -71,7 +64,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``piles`` (states and numbers of the three cases) and ``stress``."""
     frictional = parameters.base
     without = frictional.updated({"contact.friction": 0.0, "wall.friction": 0.0})
-    found = map_tasks(settle, [Pile(without), Pile(frictional)], what="piles")
+    found = map_tasks(settle, [without, frictional], what="piles")
     packing = frictional.packing.build()
     states = common_candidates([state for states in found for state in states], packing.radius)
     stress = _stress_dataset(packing, states, parameters.stress_width, parameters.stress_spacing, parameters.dip_height)

@@ -12,6 +12,7 @@ and contacts that slide (gravity that grows slowly leaves some at the Coulomb li
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -36,14 +37,6 @@ COMPARED = 1.5
 
 
 @dataclass(frozen=True)
-class Task:
-    """One slab."""
-
-    scene: Scene  #: with one load, of unit force
-    force: float
-
-
-@dataclass(frozen=True)
 class Outcome:
     width: float  #: distance of the side walls
     x: FloatArray  #: (floor_disk,)
@@ -55,10 +48,13 @@ class Outcome:
     state: State
 
 
-def compute(task: Task) -> Outcome:
-    """The response to the force and to half of it; raises what the solvers raise."""
-    path = LoadPath.of(task.scene)
-    half, full = path.through([0.5 * task.force, task.force])
+def compute(scene: Scene, force: float) -> Outcome:
+    """The response to the force and to half of it, of a scene with one load of unit force.
+
+    Raises what the solvers raise.
+    """
+    path = LoadPath.of(scene)
+    half, full = path.through([0.5 * force, force])
     measures = Measures(path)
     response, at_half = measures.response(full), measures.response(half)
     pairs, position = path.rest.pairs, path.problem.packing.position
@@ -83,7 +79,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     ratio = base.contact.stiffness_ratio
     slabs = [(case, layers) for case in parameters.cases for layers in case.layers]
     scenes = [_scene(case, layers, base) for case, layers in slabs]
-    outcomes = map_tasks(compute, [Task(scene, force) for scene in scenes])
+    outcomes = map_tasks(partial(compute, force=force), scenes)
     return labelled({"slabs": _dataset(slabs, outcomes, ratio, force)})
 
 

@@ -10,7 +10,7 @@ paper's "25 x 13" is read as 13 rows of 25 and 24 disks.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -30,18 +30,10 @@ from granular_response.sweeps.rest import rest_of
 from granular_response.sweeps.tasks import map_tasks
 
 
-@dataclass(frozen=True)
-class Turned:
-    """A scene with force and torque on one disk, and its rest state."""
-
-    scene: Scene
-    rest: State
-
-
-def load(task: Turned) -> tuple[State, int]:
-    """The state under load, and the loaded disk; raises what the solvers raise."""
-    problem = Problem.from_scene(task.scene).with_loads(task.rest.position)
-    _, states = loaded_states(problem, task.rest, [1.0])
+def load(scene: Scene, rest: State) -> tuple[State, int]:
+    """The state under force and torque, and the loaded disk; raises what the solvers raise."""
+    problem = Problem.from_scene(scene).with_loads(rest.position)
+    _, states = loaded_states(problem, rest, [1.0])
     return states[0], int(problem.load_disk[0])
 
 
@@ -53,7 +45,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in torques.tolist()]
 
     (rest,) = map_tasks(rest_of, [scenes[0]], workers=1, what="rest")
-    results = map_tasks(load, [Turned(scene, rest) for scene in scenes], what="torques")
+    results = map_tasks(partial(load, rest=rest), scenes, what="torques")
     packing = base.packing.build()
     rest, *loaded = common_candidates([rest, *(state for state, _ in results)], packing.radius)
     disk = results[0][1]
