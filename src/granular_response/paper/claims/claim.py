@@ -8,6 +8,7 @@ verdict.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -214,17 +215,24 @@ class Claims(list[Claim]):
         place: str,
         measured: str,
         paper: str,
-        figures: int | tuple[int, ...] = (),
+        figures: int | tuple[int, ...] | None = None,
         *,
         derivation: bool = False,
     ) -> Callable[[Measure], Measure]:
-        shown = (figures,) if isinstance(figures, int) else figures
+        """``figures`` that show it; those that ``place`` names if None."""
+        shown = _figures(place) if figures is None else (figures,) if isinstance(figures, int) else figures
 
         def said(measure: Measure) -> Measure:
             self.append(Claim(id, place, measured, paper, measure, shown, self.group, derivation))
             return measure
 
         return said
+
+
+def _figures(place: str) -> tuple[int, ...]:
+    """The figures in a place of the paper such as "V.F, Fig. 17e, f"."""
+    named = "".join(re.findall(r"Figs?\. (.*)", place))
+    return tuple(int(number) for number in re.findall(r"\d+", named))
 
 
 class Data:

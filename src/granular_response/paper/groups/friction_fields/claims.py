@@ -20,7 +20,6 @@ NEAR, FAINT = 6.0, 0.1
     "V.D, Fig. 13",
     "F = 15 mg, no friction: mean angle of the added forces to the contact lines",
     "forces are aligned with the lattice directions",
-    13,
 )
 def along_lattice(data: Data, words: Bounds) -> Finding:
     tilt = float(at(data.get(GROUP, "stress", "misalignment", "friction"), friction=0.0)["misalignment"])
@@ -36,7 +35,6 @@ def along_lattice(data: Data, words: Bounds) -> Finding:
     "V.D, Fig. 13",
     "F = 15 mg, friction 1: angle to the vertical of the forces below the load and their share of the force",
     "a vertical chain is evident",
-    13,
 )
 def vertical_chain(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "axis_angle", "axis_share", "friction")
@@ -63,7 +61,6 @@ def vertical_chain(data: Data, words: Bounds) -> Finding:
     "V.D, Fig. 14",
     "F = 15 mg, friction 1: sigma_zz against that of a harmonic lattice",
     "quite similar to the isotropic one",
-    14,
 )
 def stress(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "distance_to_lattice", "friction")
@@ -145,7 +142,6 @@ def antisymmetric(data: Data, words: Bounds) -> Finding:
     "V.D, Fig. 15",
     "F = 150 mg: added contact forces below the load over the largest at the same depth",
     "friction changes force profiles with two maxima into ones with a maximum below the load",
-    15,
 )
 def profiles(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "profiles", "axis_magnitude", "friction", "row")

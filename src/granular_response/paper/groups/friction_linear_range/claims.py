@@ -101,7 +101,6 @@ def _by_end(
     "V.A, Fig. 6",
     "end of the linear range at x = 0, and first opening, at friction 0.2 and 1 over those without",
     "almost ten times larger",
-    6,
 )
 def linear_range(data: Data, words: Bounds) -> Finding:
     def wanted(without: Quantity, *ends: Quantity) -> list[Condition]:
@@ -134,7 +133,7 @@ def _up_to_50(data: Data, *names: str) -> xr.Dataset:
     return curve.isel(force=force <= 50.0)
 
 
-@CLAIMS.add("R2a", "V.A, Fig. 7", "friction 1: forces up to 50 mg with two peaks", "a single peak up to 50 mg", 7)
+@CLAIMS.add("R2a", "V.A, Fig. 7", "friction 1: forces up to 50 mg with two peaks", "a single peak up to 50 mg")
 def single_peak(data: Data, words: Bounds) -> Finding:
     curve = _up_to_50(data, "double_peaked")
     ways = {"gravity at once": (curve["force"].values, curve["double_peaked"].values)}
@@ -158,7 +157,6 @@ def single_peak(data: Data, words: Bounds) -> Finding:
     "V.B, Fig. 7",
     "friction 1: full width at half maximum at 50 mg over that at the smallest force",
     "its shape becomes sharper",
-    7,
 )
 def sharper(data: Data, words: Bounds) -> Finding:
     curve = _up_to_50(data, "half_maximum_width", "peak_height")
@@ -175,19 +173,18 @@ def sharper(data: Data, words: Bounds) -> Finding:
 CLAIMS.add("R3a", "V.E, Fig. 16a", "friction 0.2: force of the crossover to two peaks", "about 20 mg", (7, 16))(
     at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from")
 )
-CLAIMS.add(
-    "R3b", "V.E, Fig. 8", "friction 0.2: force at which the open region reaches the lowest row", "about 20 mg", 8
-)(at_force("reaches_floor", 0.2, 20.0, what="open region at the floor", text="open region at the floor from"))
+CLAIMS.add("R3b", "V.E, Fig. 8", "friction 0.2: force at which the open region reaches the lowest row", "about 20 mg")(
+    at_force("reaches_floor", 0.2, 20.0, what="open region at the floor", text="open region at the floor from")
+)
 CLAIMS.add(
     "R4a",
     "V.E, Fig. 16a",
     "friction 0.2: force from which the response with two peaks has a third one at x = 0, by bisection",
     "from about 40 mg",
-    16,
 )(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
 
 
-@CLAIMS.add("R4b", "V.E, Fig. 16a", "prominence of that peak at each stored force from 40 mg on", "small", 16)
+@CLAIMS.add("R4b", "V.E, Fig. 16a", "prominence of that peak at each stored force from 40 mg on", "small")
 def third_peak_small(data: Data, words: Bounds) -> Finding:
     curve = _curve(data, 0.2, "third_peak_prominence")
     force, size = curve["force"].values, curve["third_peak_prominence"].values
@@ -224,7 +221,6 @@ RAMP = "ramp of 20 sqrt(R/g)"
     "V.E, Fig. 16b",
     "change of the asymmetry between the two neighbouring forces around that event",
     "a sharp transition",
-    16,
 )
 def sharp(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
@@ -338,7 +334,7 @@ def floor_earlier(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add("R8b", "V.B, Fig. 9", "peaks beyond it at friction 1", "one peak remains", 9)
+@CLAIMS.add("R8b", "V.B, Fig. 9", "peaks beyond it at friction 1", "one peak remains")
 def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     floor = data.event(GROUP, "reaches_floor", 1.0)
     curve = _curve(data, 1.0, "double_peaked")
@@ -354,7 +350,7 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
 
 
 @CLAIMS.add(
-    "R9", "V.A, Fig. 7", "force of the crossover to two peaks against friction", "rapidly increases with friction", 7
+    "R9", "V.A, Fig. 7", "force of the crossover to two peaks against friction", "rapidly increases with friction"
 )
 def crossover_rises(data: Data, words: Bounds) -> Finding:
     frictions = np.sort(data.get(GROUP, "response", "double_peaked", "force", "friction")["friction"].values).tolist()
@@ -384,7 +380,6 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
     "V.B, Figs. 4, 8",
     "opened contacts at friction 0.2 over those without friction under the same force",
     "the region of open contacts is considerably smaller",
-    (4, 8),
 )
 def smaller_region(data: Data, words: Bounds) -> Finding:
     names = ("teardrop_depth", "teardrop_width", "reaches_floor", "opened_contacts")
@@ -409,7 +404,6 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     "V.B, Figs. 4, 8",
     "force at which the open region reaches the lowest row at friction 0.2 over that without friction",
     "it reaches the floor only for a much larger force",
-    (4, 8),
 )
 def floor_later(data: Data, words: Bounds) -> Finding:
     late, early = (data.event(GROUP, "reaches_floor", mu) for mu in (0.2, 0.0))
@@ -430,7 +424,6 @@ def floor_later(data: Data, words: Bounds) -> Finding:
     "V.A, Fig. 6",
     "without friction: change of the response at x = 0 over the forces at which no contact has opened",
     "a linear range even for frictionless particles",
-    6,
 )
 def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "first_opening", 0.0)
@@ -492,7 +485,6 @@ def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
     "F = 15 mg, k_T/k_N = 0.8: dip at x = 0 without and with much friction; friction at which two peaks turn into one, "
     "by bisection",
     "a crossover from two peaks to one",
-    12,
 )
 def friction_crossover(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "friction_crossover")

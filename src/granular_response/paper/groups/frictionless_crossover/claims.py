@@ -41,7 +41,6 @@ def crossover(data: Data, words: Bounds) -> Finding:
     "IV.A, Figs. 3, 4",
     "that force per the force at which the open region reaches the lowest row",
     "the crossover comes at slightly smaller forces than the open region's reaching the floor",
-    (3, 4),
 )
 def before_the_floor(data: Data, words: Bounds) -> Finding:
     event, floor = data.event(GROUP, "crossover"), data.event(GROUP, "teardrop_reaches_floor")
@@ -77,7 +76,6 @@ def _open_regions(data: Data) -> list[tuple[float, float, np.ndarray]]:
     "IV.A, Fig. 4",
     "without friction: directions of the opened contacts in their connected region below the load",
     "horizontal contacts are opened",
-    4,
 )
 def horizontal(data: Data, words: Bounds) -> Finding:
     regions = _open_regions(data)
@@ -133,7 +131,6 @@ def _slabs(data: Data, *names: str) -> xr.Dataset:
     "depth and width of the open region in deeper slabs over those in the thinnest, summed over the forces at "
     "which the latter has not reached its floor",
     "the size decreases only slightly as the depth of the slab increases",
-    5,
 )
 def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
     study = _slabs(data, "teardrop_depth", "teardrop_width", "reaches_floor")

@@ -91,7 +91,6 @@ def _at_15(data: Data, name: str, *variables: str) -> list[tuple[str, xr.Dataset
     "VI, Fig. 19",
     "delta = 0.01, 15 mg, w = 3: dip of the mean response at x = 0, made symmetric, at friction 0 and 0.2",
     "two distinct peaks without friction, one with 0.2",
-    19,
 )
 def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
@@ -209,7 +208,6 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
     "VI.A, Figs. 21, 22",
     "crossover force against friction at each polydispersity (0.01, 0.1, 0.25)",
     "the larger the friction, the larger the crossover force",
-    (21, 22),
 )
 def rises_with_friction(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "friction", "rises")
@@ -220,7 +218,6 @@ def rises_with_friction(data: Data, words: Bounds) -> Finding:
     "VI.A, Figs. 21, 22",
     "crossover force against polydispersity at each friction",
     "the crossover force decreases with increasing polydispersity",
-    (21, 22),
 )
 def falls_with_disorder(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "polydispersity", "falls")
@@ -273,7 +270,6 @@ def five_enough(data: Data, words: Bounds) -> Finding:
     "VIII, Fig. 22",
     "crossover force of disordered slabs over that of the lattice with the same friction",
     "in polydisperse systems the anisotropy becomes large at smaller forces",
-    22,
 )
 def below_lattice(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
@@ -458,7 +454,6 @@ def resembles(data: Data, words: Bounds) -> Finding:
     "VI, Fig. 19",
     "delta = 0.01, 15 mg, w = 3: standard deviation over realizations without friction over that with 0.2",
     "fluctuations are larger for the frictionless case",
-    19,
 )
 def fluctuations(data: Data, words: Bounds) -> Finding:
     ratios = {}
@@ -477,7 +472,6 @@ def fluctuations(data: Data, words: Bounds) -> Finding:
     "VI, Fig. 19",
     "delta = 0.01, 15 mg, w = 3: dip at x = 0 of each frictionless realization against each with friction 0.2",
     "the difference is quite evident even for individual realizations",
-    19,
 )
 def evident(data: Data, words: Bounds) -> Finding:
     what, apart = "pairs of realizations of which the frictionless has the deeper dip", {}

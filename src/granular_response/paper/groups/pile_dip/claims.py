@@ -34,13 +34,12 @@ def _dip(data: Data, case: str, *, least: float = float("-inf"), most: float = f
     "V.F, Fig. 17",
     "pile of 11 layers without friction: vertical stress on the axis below the lower maximum beside it",
     "a dip under the apex",
-    17,
 )
 def dip_without_friction(data: Data, words: Bounds) -> Finding:
     return _dip(data, "frictionless", least=words["visible"])
 
 
-@CLAIMS.add("P2", "V.F, Fig. 17", "the same with friction 0.94, walls 0.35, k_T/k_N = 0.5", "no dip", 17)
+@CLAIMS.add("P2", "V.F, Fig. 17", "the same with friction 0.94, walls 0.35, k_T/k_N = 0.5", "no dip")
 def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
     return _dip(data, "frictional", most=words["visible"])
 
@@ -50,7 +49,6 @@ def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
     "V.F, Fig. 17e, f",
     "size of the region of open contacts on the axis, with friction over without",
     "quite similar in size",
-    17,
 )
 def regions(data: Data, words: Bounds) -> Finding:
     names = {"central_open_contacts": "contacts", "central_height": "height", "central_width": "width"}

@@ -18,7 +18,6 @@ CLAIMS = Claims(GROUP)
     "delta = 0.01, one realization, w = 3: end of the linear range at x = 0 over that of the lattice with the same "
     "friction",
     "shorter than in the lattice",
-    20,
 )
 def shorter_range(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "linear_range", "response_at_centre", "force", "polydispersity", "friction")

@@ -30,7 +30,7 @@ def _ends(data: Data) -> dict[str, Quantity]:
 
 
 @CLAIMS.add(
-    "K1a", "V.B, Fig. 10", "friction 10, F = 15 mg: ratio k_T/k_N at which two peaks turn into one", "about 0.3", 10
+    "K1a", "V.B, Fig. 10", "friction 10, F = 15 mg: ratio k_T/k_N at which two peaks turn into one", "about 0.3"
 )
 def crossover(data: Data, words: Bounds) -> Finding:
     ends = _ends(data)
@@ -45,7 +45,6 @@ def crossover(data: Data, words: Bounds) -> Finding:
     "V.B, Fig. 10",
     "change of the floor response from that at k_T/k_N = 0.8, for larger ratios than the crossover up to 1",
     "nearly independent of k_T/k_N",
-    10,
 )
 def independent(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "response", "floor_response", "response_at_centre", "stiffness_ratio")

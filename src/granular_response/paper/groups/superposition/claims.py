@@ -47,7 +47,6 @@ CLAIMS.add(
     "delta = 0.01, start with the largest disks touching, friction 0.05, 0.2 mg: response to two loads against the "
     "sum of their single responses, force by force",
     "superposition holds even for individual forces",
-    23,
 )(superposition(0.2, "holds"))
 
 
@@ -70,9 +69,9 @@ def linear_range(data: Data, words: Bounds) -> Finding:
     )
 
 
-CLAIMS.add(
-    "U3", "VI.B, Fig. 24", "the same as U1 at 1 mg", "superposition holds quite well beyond the linear range", 24
-)(superposition(1.0, "quite well"))
+CLAIMS.add("U3", "VI.B, Fig. 24", "the same as U1 at 1 mg", "superposition holds quite well beyond the linear range")(
+    superposition(1.0, "quite well")
+)
 
 
 @CLAIMS.add(

@@ -15,7 +15,6 @@ CLAIMS = Claims(GROUP)
     "V.E, Fig. 16b",
     "friction 1: force at which the response to a ramp from rest loses its symmetry, for two ramps",
     "when it exceeds 91 mg",
-    16,
 )
 def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
     brackets = data.get(GROUP, "brackets", "low", "high", "ramp_time", "time_step")

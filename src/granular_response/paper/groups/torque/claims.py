@@ -21,7 +21,6 @@ NEAR, FAR = 6.0, 9.0
     "25 x 13 disks, delta = 0.001, start with lattice constant 2, F = 10 mg at 30 degrees: what the largest torque "
     "changes in the contact forces near the load",
     "quite a large effect on the force chains",
-    18,
 )
 def chains(data: Data, words: Bounds) -> Finding:
     rings = data.get(GROUP, "reach", "force_change", "ring_outer", "torque").sortby("torque").isel(torque=-1)
