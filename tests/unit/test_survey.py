@@ -142,11 +142,11 @@ def test_packings_are_read_as_they_were_stored(tmp_path):
         assert found[key].height == one.height
         np.testing.assert_allclose(found[key].depth, one.depth, rtol=1e-7)
         np.testing.assert_allclose(found[key].profile, one.profile, rtol=1e-7)
-    (only,) = packings.chosen(path, LAYOUT, [(0.2, 40)])
-    assert only.depth.size == 6
-    assert packings.chosen(tmp_path / "none.nc", LAYOUT, []) == []
+    (found,) = packings.chosen(str(path), LAYOUT, {"deep": (0.2, 40)}).items()
+    assert found[0] == "deep" and found[1].depth.size == 6
+    assert packings.chosen(None, LAYOUT, {}) == {}
     with pytest.raises(store.StoreError, match=r"has no packing of friction 0\.5, layers 20; make survey"):
-        packings.chosen(path, LAYOUT, [(0.2, 20), (0.5, 20)])
+        packings.chosen(str(path), LAYOUT, {"one": (0.2, 20), "other": (0.5, 20)})
     other = packings.Layout(Measured, LAYOUT.keys, {**LAYOUT.values, "single": ((), "another")})
     with pytest.raises(store.StoreError, match=r"is no file of packings of the survey, lacks single"):
         packings.read(path, other)

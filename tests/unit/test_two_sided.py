@@ -26,6 +26,15 @@ def resting():
     return problem.with_loads(rest.position), rest
 
 
+@pytest.fixture
+def begun(resting):
+    """A system that nothing has been factorised of, and the trial at rest."""
+    problem, rest = resting
+    system = StaticSystem(problem, rest, updated=True)
+    known = system.start(rest)
+    return system, system.trial(known, known.q)
+
+
 def whole(system, trial, right):
     return system.factorise(trial).solve(right)
 
@@ -38,11 +47,8 @@ def changed(trial, pairs=(), walls=()):
     return replace(trial, pair_tangent=pair, wall_tangent=wall)
 
 
-def test_solves_with_what_has_changed_since_brought_up_to_date(resting):
-    problem, rest = resting
-    system = StaticSystem(problem, rest, updated=True)
-    known = system.start(rest)
-    trial = system.trial(known, known.q)
+def test_solves_with_what_has_changed_since_brought_up_to_date(begun):
+    system, trial = begun
     rng = np.random.default_rng(1)
     m, w = len(system.first), len(system.wall_disk)
     for turn in range(25):
@@ -55,11 +61,8 @@ def test_solves_with_what_has_changed_since_brought_up_to_date(resting):
         trial = changed(trial, rng.integers(m, size=1 + turn % 2), walls)
 
 
-def test_little_changes_are_left_until_all_is_asked_for_anew(resting):
-    problem, rest = resting
-    system = StaticSystem(problem, rest, updated=True)
-    known = system.start(rest)
-    trial = system.trial(known, known.q)
+def test_little_changes_are_left_until_all_is_asked_for_anew(begun):
+    system, trial = begun
     right = np.ones(system.dof)
     before = system.updated_factor(trial, anew=False)[0].solve(right)
     little = replace(trial, pair_tangent=trial.pair_tangent * (1.0 + 1e-3))
@@ -71,11 +74,8 @@ def test_little_changes_are_left_until_all_is_asked_for_anew(resting):
     assert factor.solve(right) == pytest.approx(whole(system, little, right), rel=1e-9, abs=1e-12)
 
 
-def test_what_is_not_finite_is_forgotten(resting):
-    problem, rest = resting
-    system = StaticSystem(problem, rest, updated=True)
-    known = system.start(rest)
-    trial = system.trial(known, known.q)
+def test_what_is_not_finite_is_forgotten(begun):
+    system, trial = begun
     right = np.ones(system.dof)
     before = system.updated_factor(trial, anew=False)[0].solve(right)
     broken = trial.pair_tangent.copy()

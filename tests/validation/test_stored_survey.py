@@ -92,7 +92,7 @@ def test_a_packing_of_a_figure_group_is_found_again(group, key):
     simulate = import_module(f"granular_response.paper.groups.{group}.simulate")
     tasks = simulate.survey(OF_GROUPS[group])
     key = next(one for one in tasks if one[: len(key)] == key)
-    (kept,) = packings.chosen(FOLDER / "data" / f"{group}.nc", simulate.STORED, [key])
+    kept = packings.read(FOLDER / "data" / f"{group}.nc", simulate.STORED)[key]
     again = simulate.compute(tasks[key])
     for name in simulate.STORED.values:
         values = getattr(again, name)

@@ -197,10 +197,11 @@ class StaticSystem:
         self._order = chosen.order
         #: for each unknown in the order of the tangent where it is in ``[x | z | angle]``
         self._interleaved = (chosen.order[:, None] + n * np.arange(d)).ravel()
-        place_of = np.empty(n, np.int64)
-        place_of[self._order] = np.arange(n)
-        i, j = place_of[self.first], place_of[self.second]
-        wall_place = place_of[self.wall_disk]
+        #: for each disk its place in the order of the tangent
+        self._place = np.empty(n, np.int64)
+        self._place[self._order] = np.arange(n)
+        i, j = self._place[self.first], self._place[self.second]
+        wall_place = self._place[self.wall_disk]
         nodes = np.arange(n)
         row = np.concatenate([nodes, i, j])
         column = np.concatenate([nodes, j, i])
@@ -230,7 +231,7 @@ class StaticSystem:
         self._indices = block_rows[np.repeat(starts, lengths) + offset]
         self._diagonal = (base[:n, None] + np.arange(d) * (stride[:n, None] + 1)).ravel()
         if self.held.size:
-            held = place_of[self.held % n] * d + self.held // n
+            held = self._place[self.held % n] * d + self.held // n
             columns = [np.arange(self._indptr[k], self._indptr[k + 1]) for k in held]
             self._held_entries = np.concatenate([*columns, np.flatnonzero(np.isin(self._indices, held))])
             self._held_diagonal = self._diagonal[held]
@@ -335,14 +336,12 @@ class StaticSystem:
         """A factorisation that is brought up to date where contacts change; None where it is not the cheaper one."""
         if not isinstance(self._storage, Band) or self.held.size or self.problem.freedoms != FREEDOMS:
             return None
-        place_of = np.empty(self.problem.n, np.int64)
-        place_of[self._order] = np.arange(self.problem.n)
         loaded = self.problem.load_disk
-        centre = int(place_of[loaded].mean()) if len(loaded) else self.problem.n // 2
+        centre = int(self._place[loaded].mean()) if len(loaded) else self.problem.n // 2
         radius = self.problem.packing.radius[self._order]
         k = self.problem.stiffness
         return TwoSided(
-            np.stack([place_of[self.first], place_of[self.second]], axis=1), place_of[self.wall_disk], radius,
+            np.stack([self._place[self.first], self._place[self.second]], axis=1), self._place[self.wall_disk], radius,
             half_width=self._storage.half_width, centre=centre, diagonal=REGULARISATION * k, stiffness=k,
         )  # fmt: skip
 

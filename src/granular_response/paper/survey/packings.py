@@ -6,7 +6,7 @@ the group takes packings that it has simulated itself and stored ones alike.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -19,6 +19,8 @@ from granular_response.store import files as store
 from granular_response.store.result import variable
 
 Outcome = TypeVar("Outcome")
+#: What a group calls a packing by.
+Place = TypeVar("Place", bound=Hashable)
 #: What tells packings of a group apart, in the order of the names of :attr:`Layout.keys`.
 Key = tuple[float | int | str, ...]
 #: Name of the dataset in its file, and of its dimension.
@@ -89,8 +91,8 @@ def _own(value: NDArray[np.float32], dims: tuple[str, ...]) -> Any:
     return value.astype(float)
 
 
-def chosen(path: str | Path, layout: Layout[Outcome], keys: Sequence[Key]) -> list[Outcome]:
-    """The outcomes of some packings.
+def chosen(path: str | None, layout: Layout[Outcome], keys: Mapping[Place, Key]) -> dict[Place, Outcome]:
+    """The outcomes of some packings, by their places in a group; without any, no file is needed.
 
     Raises
     ------
@@ -98,10 +100,10 @@ def chosen(path: str | Path, layout: Layout[Outcome], keys: Sequence[Key]) -> li
         Also if one of them is not there: the message names the first.
     """
     if not keys:
-        return []
-    stored = read(path, layout)
-    for key in keys:
+        return {}
+    stored = read(path or "", layout)
+    for key in keys.values():
         if key not in stored:
             named = ", ".join(f"{name} {value}" for name, value in zip(layout.keys, key, strict=True))
             raise store.StoreError(f"{path}: has no packing of {named}; make survey simulates it")
-    return [stored[key] for key in keys]
+    return {place: stored[key] for place, key in keys.items()}

@@ -55,6 +55,20 @@ def _eliminate(a, n, b, k, first, last):
             _update(a, at + 1, pivot + 1, width, factor)
 
 
+@kernel(forceinline=True)
+def multiples_of_four(a, at, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23):
+    """By which four pivot rows are subtracted from the row whose first unknown of the four is at ``at``: L, kept there.
+
+    ``i0 ...`` : inverses of the pivots; ``u01 ...`` : what stands above the diagonal among the four.
+    """
+    f0 = a[at] * i0
+    f1 = (a[at + 1] - f0 * u01) * i1
+    f2 = ((a[at + 2] - f0 * u02) - f1 * u12) * i2
+    f3 = (((a[at + 3] - f0 * u03) - f1 * u13) - f2 * u23) * i3
+    a[at], a[at + 1], a[at + 2], a[at + 3] = f0, f1, f2, f3
+    return f0, f1, f2, f3
+
+
 @kernel
 def _eliminate_four(a, n, b, k):
     """Eliminate the unknowns ``k ... k + 3`` from all rows, each row in one pass, which spares memory traffic."""
@@ -70,11 +84,7 @@ def _eliminate_four(a, n, b, k):
     u01, u02, u03, u12, u13, u23 = a[d0 + 1], a[d0 + 2], a[d0 + 3], a[d1 + 1], a[d1 + 2], a[d2 + 1]
     for i in range(k + 4, reach + 1):
         at = stride * i + b - (i - k)
-        f0 = a[at] * i0
-        f1 = (a[at + 1] - f0 * u01) * i1
-        f2 = ((a[at + 2] - f0 * u02) - f1 * u12) * i2
-        f3 = (((a[at + 3] - f0 * u03) - f1 * u13) - f2 * u23) * i3
-        a[at], a[at + 1], a[at + 2], a[at + 3] = f0, f1, f2, f3
+        f0, f1, f2, f3 = multiples_of_four(a, at, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
         if f0 != 0.0 or f1 != 0.0 or f2 != 0.0 or f3 != 0.0:
             _update_by_four(a, at + 4, d0 + 4, d1 + 3, d2 + 2, d3 + 1, width, f0, f1, f2, f3)
         for column in range(reach + 1, min(k + 3 + b, last) + 1):

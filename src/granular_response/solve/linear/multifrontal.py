@@ -85,8 +85,12 @@ class Multifrontal:
     @property
     def price(self) -> float:
         """About how many solutions cost as much as an LU: by its multiplications for each number that it holds."""
+        return float(self._multiplications().sum() / (MULTIPLICATIONS * self._at[True][-1]))
+
+    def _multiplications(self) -> FloatArray:
+        """(f,) of an LU in each front."""
         own, outer = self.own.astype(float), self.outer.astype(float)
-        return float((own**3 / 3.0 + own * outer * (own + outer)).sum() / (MULTIPLICATIONS * self._at[True][-1]))
+        return own**3 / 3.0 + own * outer * (own + outer)
 
     @property
     def large(self) -> bool:
@@ -105,8 +109,7 @@ class Multifrontal:
             self.ranges = [_Range(0, fronts, int(start[-1]), np.zeros(0, np.int64))]
             self.above: list[int] = []
             return
-        own, outer = self.own.astype(float), self.outer.astype(float)
-        work = own**3 / 3.0 + own * outer * (own + outer)
+        work = self._multiplications()
         first = np.arange(fronts)
         for front, parent in enumerate(self._parent):
             if parent >= 0:
@@ -144,10 +147,7 @@ class Multifrontal:
 
     def factor(self, matrix: sp.csc_array) -> LU:
         """LU with row exchanges inside the fronts."""
-        fronts = self._factorised(matrix, whole=True)
-        if fronts.failed:
-            raise RuntimeError("Factor is exactly singular")
-        return LU(self, fronts)
+        return LU(self, self._factorised(matrix, whole=True))
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Symmetric, int]:
         """Cholesky factorisation, and L D L^T in fronts that are not positive definite.
@@ -155,16 +155,11 @@ class Multifrontal:
         Also returns the number of negative eigenvalues (Sylvester's law of inertia).
         """
         fronts = self._factorised(matrix)
-        if fronts.failed:
-            raise RuntimeError("Factor is exactly singular")
         return Symmetric(self, fronts), fronts.negative
 
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
         """Their number alone: the factorisation is not kept."""
-        fronts = self._factorised(matrix, keep=False)
-        if fronts.failed:
-            raise RuntimeError("Factor is exactly singular")
-        return fronts.negative
+        return self._factorised(matrix, keep=False).negative
 
     def definite_factor(self, matrix: sp.csc_array) -> Symmetric | None:
         """Cholesky factorisation; None when the matrix is not positive definite."""
@@ -180,7 +175,10 @@ class Multifrontal:
     def _factorised(
         self, matrix: sp.csc_array, *, whole: bool = False, definite: bool = False, keep: bool = True
     ) -> _Fronts:
-        """Fronts factorised: L U if ``whole``, else Cholesky, and L D L^T, or an end if ``definite``, where needed."""
+        """Fronts factorised: L U if ``whole``, else Cholesky, and L D L^T, or an end if ``definite``, where needed.
+
+        RuntimeError where a front is exactly singular, which has ``failed`` if ``definite``.
+        """
         by_rows = sp.csr_array(matrix).data if whole else np.zeros(0)
         at = self._at[whole]
         fronts = _Fronts(
@@ -191,6 +189,8 @@ class Multifrontal:
             definite=definite,
         )
         _Elimination(self, Matrix(matrix.indptr, matrix.indices, matrix.data, whole, by_rows), fronts, keep).run()
+        if fronts.failed and not definite:
+            raise RuntimeError("Factor is exactly singular")
         return fronts
 
 

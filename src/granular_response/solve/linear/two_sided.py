@@ -15,6 +15,7 @@ import numpy as np
 from ...machine.lanes import WIDTH, less_product, put, spread, take
 from ...machine.machine_code import kernel
 from ...state import FloatArray
+from .band_lu import multiples_of_four
 
 #: Change of a contact's tangent, as a part of the normal stiffness, that counts.
 STALE = 1e-2
@@ -271,11 +272,7 @@ def _eliminate_four(a, n, b, k):
     like = spread(0.0)
     for i in range(k + 4, last + 1, 2):
         x = stride * i + b - (i - k)
-        f0 = a[x] * i0
-        f1 = (a[x + 1] - f0 * u01) * i1
-        f2 = ((a[x + 2] - f0 * u02) - f1 * u12) * i2
-        f3 = (((a[x + 3] - f0 * u03) - f1 * u13) - f2 * u23) * i3
-        a[x], a[x + 1], a[x + 2], a[x + 3] = f0, f1, f2, f3
+        f0, f1, f2, f3 = multiples_of_four(a, x, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
         if i == last:
             for c in range(0, b, WIDTH):
                 _four_from_two(
@@ -283,11 +280,7 @@ def _eliminate_four(a, n, b, k):
                 )  # fmt: skip
             break
         y = x + stride - 1
-        g0 = a[y] * i0
-        g1 = (a[y + 1] - g0 * u01) * i1
-        g2 = ((a[y + 2] - g0 * u02) - g1 * u12) * i2
-        g3 = (((a[y + 3] - g0 * u03) - g1 * u13) - g2 * u23) * i3
-        a[y], a[y + 1], a[y + 2], a[y + 3] = g0, g1, g2, g3
+        g0, g1, g2, g3 = multiples_of_four(a, y, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
         for c in range(0, b, WIDTH):
             _four_from_two(
                 a, like, x + 4 + c, y + 4 + c, p0 + c, p1 + c, p2 + c, p3 + c, f0, f1, f2, f3, g0, g1, g2, g3

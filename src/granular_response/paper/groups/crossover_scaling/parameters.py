@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Growing, Path, SceneGroup, growing, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, growing, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive, Ratio, Sides, allowed
 from granular_response.scene.errors import Problem
@@ -82,7 +82,7 @@ def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
     return series
 
 
-class Parameters(SceneGroup):
+class Parameters(SurveyedGroup):
     """Section ``crossover_scaling``."""
 
     scene: Annotated[
@@ -103,7 +103,6 @@ class Parameters(SceneGroup):
     series: Annotated[tuple[Series, ...], AfterValidator(some), AfterValidator(_different_names)] = Field(
         description="Slabs that are compared."
     )
-    survey_file: Path | None = Field(None, description="Stored slabs of the survey.")
     visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
     first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
     factor: Annotated[float, Field(strict=True, gt=1, le=2), allowed("must be a number above 1, at most 2")] = Field(
@@ -118,8 +117,6 @@ class Parameters(SceneGroup):
     tolerance: Positive = Field(description="Width of brackets, per force.")
     extrapolated: Positive = Field(description="Layers to which crossovers are extrapolated.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
-        if self.survey_file is None and any(one.surveyed for one in self.series):
-            raise Problem("is missing, must name the slabs of the survey", key=("survey_file",), value=None)
-        return self
+    @property
+    def surveyed(self) -> bool:
+        return any(one.surveyed for one in self.series)

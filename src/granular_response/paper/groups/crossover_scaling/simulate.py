@@ -296,8 +296,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     order = sorted({slab for _, slab in found if slab not in stored}, key=_work, reverse=True)
     tasks = [_task(slab, parameters) for slab in order]
     done = dict(zip(order, map_tasks(compute, tasks, what="slabs"), strict=True))
-    keys = [slab.key for slab in stored]
-    done |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
+    done |= chosen(parameters.survey_file, STORED, {slab: slab.key for slab in stored})
     outcomes = [done[slab] for _, slab in found]
     table = slab_table(found, outcomes, stored)
     table.attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
-from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, Path, SceneGroup, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, SurveyedGroup, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
-from granular_response.scene.errors import Problem
 
 #: Keys of the scenes that cases decide.
 OF_CASES = ("packing.polydispersity", "packing.realization", "contact.friction", "loads")
@@ -28,13 +27,12 @@ class Case(Description):
     increments: Count = Field(description="States from each of these forces to the next one.")
 
 
-class Parameters(SceneGroup):
+class Parameters(SurveyedGroup):
     """Section ``hysteresis``."""
 
     scene: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of the lattices.")
     disordered: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of all others.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
-    survey_file: Path | None = Field(None, description="Stored packings of the survey.")
     left: Part = Field(
         description="A loop is reversible if it leaves no floor force changed by more than this part of the largest "
         "change under the load."
@@ -42,11 +40,9 @@ class Parameters(SceneGroup):
     width: Positive = Field(description="w of the Gaussian at x = 0 under disordered packings, in radii.")
     tolerance: Part = Field(description="Widths of the brackets of events, as a part of the force.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
-        if self.survey_file is None and any(case.surveyed for case in self.cases):
-            raise Problem("is missing, must name the packings of the survey", key=("survey_file",), value=None)
-        return self
+    @property
+    def surveyed(self) -> bool:
+        return any(case.surveyed for case in self.cases)
 
     def of(self, case: Case, realization: int) -> Scene:
         """The scene of one packing."""

@@ -310,9 +310,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     order = sorted(places, key=lambda place: -_work(tasks[place]))
     done = map_tasks(compute, [tasks[place] for place in order], what="packings")
     outcomes = dict(zip(order, done, strict=True))
-    stored = _surveyed(parameters)
-    keys = [key(parameters, *place) for place in stored]
-    outcomes |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
+    keys = {place: key(parameters, *place) for place in _surveyed(parameters)}
+    outcomes |= chosen(parameters.survey_file, STORED, keys)
 
     realizations = max(case.realizations + case.surveyed for case in cases)
     turns = max(len(case.forces) for case in cases)

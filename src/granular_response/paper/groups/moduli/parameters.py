@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, Path, Positives, SceneGroup, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, Positives, SurveyedGroup, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio, allowed
 from granular_response.scene.errors import Problem
@@ -60,7 +60,7 @@ class Lattice(Description):
         return self
 
 
-class Parameters(SceneGroup):
+class Parameters(SurveyedGroup):
     """Section ``moduli``."""
 
     scene: Annotated[
@@ -83,14 +83,11 @@ class Parameters(SceneGroup):
     width: Positive = Field(description="w of the Gaussian over the response, in radii.")
     wide: Part = Field(description="w of a second one, as a part of the height.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Disordered packings.")
-    survey_file: Path | None = Field(None, description="Where the packings of the survey are; null: there are none.")
     tolerances: Positives = Field(description="Differences to the elastic slab for which a size is looked for.")
     draws: Count = Field(description="Of the bootstrap over realizations that gives these sizes an interval.")
     seed: Index = Field(description="Of these draws.")
     lattice: Lattice = Field(description="Packings with moduli in closed form.")
 
-    @model_validator(mode="after")
-    def _check_survey(self) -> Parameters:
-        if self.survey_file is None and any(any(case.surveyed) for case in self.cases):
-            raise Problem("must be named where cases have surveyed realizations", key=("survey_file",), value=None)
-        return self
+    @property
+    def surveyed(self) -> bool:
+        return any(any(case.surveyed) for case in self.cases)

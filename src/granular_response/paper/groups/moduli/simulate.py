@@ -277,8 +277,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found = map_tasks(compute, tasks, what="packings")
     answers = map_tasks(lattice_answer, ideal, what="lattices")
     outcomes = dict(zip(order, found, strict=True))
-    keys = [_key(parameters, *place) for place in stored]
-    outcomes |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
+    outcomes |= chosen(parameters.survey_file, STORED, {place: _key(parameters, *place) for place in stored})
     datasets = {"packings": _packings(parameters, outcomes), "lattice": _lattice(parameters, answers)}
     return labelled(datasets, parameters.base)
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Counts, Part, Path, SceneGroup, growing, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Counts, Part, SurveyedGroup, growing, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
 from granular_response.scene.errors import Problem
@@ -66,7 +66,7 @@ class Fall(Description):
     inertia: Literal["disks", "rings"] = Field(description="protocol.inertia.")
 
 
-class Parameters(SceneGroup):
+class Parameters(SurveyedGroup):
     """Section ``peak_width``."""
 
     scene: Annotated[
@@ -89,7 +89,6 @@ class Parameters(SceneGroup):
     )
     disks_per_layer: Count = Field(description="Disks of a row over number of rows, and one more.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and loads.")
-    survey_file: Path | None = Field(None, description="Where the packings of the survey are; null: there are none.")
     survey_fall: Fall | None = Field(None, description="Null: as the others.")
     loads: Count = Field(description="Small loads on a disordered packing, one after another; one on a lattice.")
     margin: Positive = Field(description="Of these loads from the side walls, in heights.")
@@ -106,10 +105,12 @@ class Parameters(SceneGroup):
     draws: Count = Field(description="Of the bootstrap over realizations.")
     seed: Index = Field(description="Of the draws.")
 
+    @property
+    def surveyed(self) -> bool:
+        return any(case.surveyed for case in self.cases)
+
     @model_validator(mode="after")
     def _check(self) -> Parameters:
-        if self.survey_file is None and any(case.surveyed for case in self.cases):
-            raise Problem("must be named where cases have surveyed layers", key=("survey_file",), value=None)
         if self.spacing >= 0.1 * self.reach:
             raise Problem("must be below a tenth of reach", key=("spacing",), value=self.spacing)
         return self

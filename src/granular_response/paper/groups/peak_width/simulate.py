@@ -154,8 +154,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks = [task(parameters, *one) for one in own]
     found = map_tasks(compute, tasks, what="slabs")
     outcomes = dict(zip(own, found, strict=True))
-    keys = [key(parameters, *one) for one in stored]
-    outcomes |= zip(stored, chosen(parameters.survey_file or "", STORED, keys), strict=True)
+    outcomes |= chosen(parameters.survey_file, STORED, {one: key(parameters, *one) for one in stored})
     datasets = {"inside": _inside(parameters, outcomes), "floors": _floors(parameters, outcomes)}
     for dataset in datasets.values():
         dataset.attrs.update({"fitted": list(parameters.fitted), "width": parameters.width})
