@@ -30,7 +30,7 @@ from .problem import Problem
 from .settle import CROSSING as CROSSING_OVER
 from .settle import CROSSING_STOP, NotSettled, nudged, settle
 from .system import Configuration, StaticSystem, Trial
-from .timestep import resolve_time_step
+from .timestep import stability_limit
 
 #: First load increment in mean disk weights, times the square root of the number of disks: the deeper a packing, the
 #: more load it takes to change as many contacts.
@@ -60,6 +60,8 @@ BALANCED, ROUNDING = 1e-8, 16.0
 LEFT = 2e-5
 #: Least time of such a trial, in sqrt(R/g): it starts at rest, so that nothing moves at first on any slope.
 TRIAL_TIME = 20.0
+#: Its integrator and part of the longest stable step: nothing is asked but whether the packing leaves.
+TRIAL_INTEGRATOR, TRIAL_STEP = "leapfrog", 0.9
 
 
 class PathError(RuntimeError):
@@ -351,12 +353,11 @@ class _Path:
     def _leaves(self) -> bool:
         """Whether the present equilibrium, slightly displaced, moves away for good."""
         state = self._state()
-        options = self.dynamics
-        time_step = resolve_time_step(self.problem) if options.time_step is None else options.time_step
         beside = nudged(self.problem, state, self.system, self.trial)
-        dynamics = Dynamics(self.problem, beside, options.integrator, time_step)
+        time_step = TRIAL_STEP * stability_limit(self.problem, TRIAL_INTEGRATOR, smallest=True)
+        dynamics = Dynamics(self.problem, beside, TRIAL_INTEGRATOR, time_step)
         self.record.stability_trials += 1
-        stop = Stop(1e-11, maximum_steps=min(200_000, options.maximum_steps), least_time=TRIAL_TIME)
+        stop = Stop(1e-11, maximum_steps=min(200_000, self.dynamics.maximum_steps), least_time=TRIAL_TIME)
         settled = relax(dynamics, stop, load=(self.factor, self.factor, 0.0))
         return bool(np.abs(settled.position - state.position).max() > LEFT)
 
