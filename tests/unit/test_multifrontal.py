@@ -8,9 +8,7 @@ from small_scenes import scene
 
 from granular_response.machine import threads
 from granular_response.solve import Problem, follow, rest_state
-from granular_response.solve import system as equations
-from granular_response.solve.linear import Nearby, multifrontal, ordering
-from granular_response.solve.linear.band import Band
+from granular_response.solve.linear import Nearby, multifrontal, nearby, ordering
 from granular_response.solve.linear.dissection import Dissection
 from granular_response.solve.linear.multifrontal import Multifrontal
 from granular_response.solve.system import StaticSystem
@@ -151,26 +149,78 @@ def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
     assert solutions[1] == pytest.approx(solutions[0], rel=1e-9, abs=1e-12)
 
 
-def test_a_factor_serves_matrices_nearby_as_long_as_it_pays():
+@pytest.fixture
+def factorised(monkeypatch):
+    """A pattern that is split into subtrees, a matrix of it with its LU, and a copy with changes in one place."""
+    monkeypatch.setattr(multifrontal, "LARGE", 0)
     position, first, second = lattice(23, 31)
     dissection = Dissection(position, first, second)
     matrix = shifted(pattern(dissection, first, second, 3), 12.0)
     fronts = Multifrontal(dissection, 3)
-    right = np.random.default_rng(2).normal(size=matrix.shape[0])
+    assert len(fronts.ranges) > 8 and len(fronts.above) > 4
     changed = matrix.copy()
     changed.data[500:504] += 3.0
-    near = Nearby(fronts.factor(matrix), 7.0)
-    found = near.solve(changed, right, 1e-9)
-    assert np.linalg.norm(changed @ found - right) <= 1.1e-9 * np.linalg.norm(right)
-    assert np.linalg.norm(fronts.factor(matrix).solve(right) - found) > 1e-6 * np.linalg.norm(found)
-    assert near.solve(changed, np.zeros_like(right), 1e-9) == pytest.approx(np.zeros_like(right), abs=0.0)
-    assert near.solve(shifted(matrix, -30.0), right, 1e-9) is None  # too much has changed
-    dear = Nearby(fronts.factor(matrix), 0.0)
-    assert dear.solve(changed, right, 1e-9) is not None
-    assert dear.solve(changed, right, 1e-9) is None  # a new one is cheaper
+    return fronts, matrix, fronts.factor(matrix), changed
 
 
-def test_a_path_with_kept_factors_is_the_path(monkeypatch):
+RIGHT = np.random.default_rng(2).normal(size=23 * 31 * 3)
+
+
+def test_an_lu_is_renewed_where_entries_have_changed_to_the_bits_of_a_new_one(factorised, monkeypatch):
+    fronts, matrix, factor, changed = factorised
+    eliminated = []
+    subtree = multifrontal._Elimination._subtree
+    monkeypatch.setattr(
+        multifrontal._Elimination, "_subtree", lambda self, span: eliminated.append(span) or subtree(self, span)
+    )
+    for now in (changed, matrix, changed):
+        eliminated.clear()
+        assert factor.renew(now, 1e-9, 0.9)
+        assert 0 < len(eliminated) < 3
+        assert np.array_equal(factor.solve(RIGHT), fronts.factor(now).solve(RIGHT))
+    # entries across the border of a subtree belong to it from both sides
+    for entry in range(0, len(matrix.data), 97):
+        now = changed.copy()
+        now.data[entry] += 1.0
+        assert factor.renew(now, 1e-9, 1.0)
+        assert np.array_equal(factor.solve(RIGHT), fronts.factor(now).solve(RIGHT))
+
+
+def test_an_lu_is_left_where_little_or_too_much_has_changed(factorised):
+    _, matrix, factor, changed = factorised
+    before = factor.solve(RIGHT)
+    assert factor.renew(changed, 4.0, 0.9)
+    assert np.array_equal(factor.solve(RIGHT), before)
+    assert not factor.renew(changed, 1.0, 1e-9)
+    assert not factor.renew(shifted(matrix, 5.0), 1.0, 0.9)
+    assert np.array_equal(factor.solve(RIGHT), before)
+    empty = changed.copy()
+    for column in range(3):  # of one disk, with its rows
+        empty.data[empty.indptr[column] : empty.indptr[column + 1]] = 0.0
+        empty.data[empty.indices == column] = 0.0
+    with pytest.raises(RuntimeError, match="singular"):
+        factor.renew(empty, 1e-9, 1.0)
+
+
+def test_a_factor_serves_matrices_nearby_as_long_as_it_pays(factorised, monkeypatch):
+    fronts, matrix, factor, changed = factorised
+    near = Nearby(factor)
+    largest = np.abs(matrix.data).max()
+    for size in (0.9 * nearby.CHANGE * largest, 3.0):  # by GMRES alone, and where an entry's subtree is renewed
+        now = changed.copy()
+        now.data[:200] += size
+        found = near.solve(now, RIGHT, 1e-9)
+        assert np.linalg.norm(now @ found - RIGHT) <= 1.1e-9 * np.linalg.norm(RIGHT)
+        assert np.linalg.norm(fronts.factor(matrix).solve(RIGHT) - found) > 1e-6 * np.linalg.norm(found)
+    assert near.solve(changed, np.zeros_like(RIGHT), 1e-9) == pytest.approx(np.zeros_like(RIGHT), abs=0.0)
+    assert near.solve(shifted(matrix, -30.0), RIGHT, 1e-9) is None  # all has changed
+    monkeypatch.setattr(multifrontal, "MULTIPLICATIONS", 1e9)
+    dear = Nearby(fronts.factor(matrix))
+    assert dear.solve(changed, RIGHT, 1e-9) is not None
+    assert dear.solve(changed, RIGHT, 1e-9) is None  # a new one is cheaper
+
+
+def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
     problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
     rest = rest_state(problem)
@@ -179,8 +229,8 @@ def test_a_path_with_kept_factors_is_the_path(monkeypatch):
     monkeypatch.setattr(StaticSystem, "factorise", lambda *given: made.append(1) or factorise(*given))
     alone = follow(problem, rest, [1.0])[0]
     before = len(made)
-    monkeypatch.setattr(equations, "LARGE", 0)
-    monkeypatch.setattr(Band, "price", 30.0)
+    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
+    monkeypatch.setattr(multifrontal, "LARGE", 0)
     kept = follow(problem, rest, [1.0])[0]
     assert 0 < len(made) - before < 0.5 * before
     # where Newton's method takes other steps, so do increments

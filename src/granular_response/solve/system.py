@@ -19,15 +19,15 @@ from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .linear import REMEMBERED, Factor, Nearby, elimination
 from .linear.band import Band
+from .linear.multifrontal import LU
 from .linear.two_sided import FREEDOMS, TwoSided
 from .problem import Problem
 
 #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
 REGULARISATION = 1e-10
 
-#: Disks from which on a step is sought with the last factorisation, whatever has changed since, before a new one is
-#: made; and the part of the force out of balance that such a step leaves (2-norms).
-LARGE, LEFT_OVER = 80_000, 1e-6
+#: Part of the force out of balance that a step by the factorisation of another tangent leaves (2-norms).
+LEFT_OVER = 1e-6
 
 #: Relative accuracy of eigenvalues of which the sign is asked, where increments are as rough.
 ROUGH = 1e-3
@@ -307,8 +307,8 @@ class StaticSystem:
         matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
         self._kept = self._near = None  # two need not be in memory
         factor = self._storage.factor(matrix)
-        if self.problem.n > LARGE:
-            self._near = Nearby(factor, self._storage.price)
+        if isinstance(factor, LU) and factor.large:
+            self._near = Nearby(factor)
         if np.ndim(shift) == 0 and shift == 0.0:
             self._kept = trial.sense, factor
         return factor
@@ -316,14 +316,20 @@ class StaticSystem:
     def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
         """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
 
-        In a large packing the last factorisation may be corrected for what has changed since; RuntimeError where
-        the tangent is exactly singular.
+        In a large packing the last factorisation may be brought up to date for what has changed since; RuntimeError
+        where the tangent is exactly singular.
         """
         right = self.interleave(force)
         if self._near is not None:
             matrix = self.tangent(trial, shift + REGULARISATION * self.problem.stiffness)
-            found = self._near.solve(matrix, right, LEFT_OVER)
+            try:
+                found = self._near.solve(matrix, right, LEFT_OVER)
+            except RuntimeError:
+                self._kept = self._near = None
+                raise
             if found is not None:
+                if self._kept is not None:
+                    self._kept = trial.sense, self._near.factor
                 return self.deinterleave(found)
         return self.deinterleave(self.factorise(trial, shift).solve(right))
 

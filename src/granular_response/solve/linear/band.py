@@ -35,11 +35,6 @@ class Band:
         self._lower = np.flatnonzero(below >= 0)
         self._lower_place = (column * (self.half_width + 1) + below)[self._lower]
 
-    @property
-    def price(self) -> float:
-        """About how many solutions cost as much as an LU."""
-        return self.half_width / 2.0
-
     def factor(self, matrix: sp.csc_array) -> BandLU:
         """LU without row exchanges; they are made up for where a residual asks for them."""
         rows = np.zeros((self.n, 2 * self.half_width + 1))

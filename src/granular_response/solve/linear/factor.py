@@ -23,11 +23,6 @@ class Storage(Protocol):
     Of a symmetric matrix both triangles are given.
     """
 
-    @property
-    def price(self) -> float:
-        """About how many solutions cost as much as an LU."""
-        ...
-
     def factor(self, matrix: sp.csc_array) -> Factor:
         """LU of a matrix close to a symmetric one; RuntimeError where it is exactly singular and that is seen."""
         ...

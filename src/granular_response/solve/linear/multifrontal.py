@@ -6,12 +6,15 @@ are installed, and every front counts its negative eigenvalues.
 
 The fronts of a large packing are split into subtrees, on which several threads work side by side, and the few fronts
 above them, whose matrix products are split into blocks of columns. Neither split looks at the number of threads, and
-what subtrees leave is added in the order of the tree: the bits are those of a single thread.
+what subtrees leave is added in the order of the tree: the bits are those of a single thread. An LU keeps what subtrees
+leave, so that for a matrix which differs in few places only the subtrees that have them are eliminated anew, and the
+fronts above those.
 """
 
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -75,6 +78,7 @@ class Multifrontal:
             np.array([child for below in dissection.children for child in below], np.int64),
         )  # fmt: skip
         self.own, self.outer = np.diff(start), sizes
+        self._front_of_entries: np.ndarray | None = None
         self._split()
         self._lay_out()
 
@@ -82,12 +86,7 @@ class Multifrontal:
     def unknowns(self) -> int:
         return int(self.tree.start[-1])
 
-    @property
-    def price(self) -> float:
-        """About how many solutions cost as much as an LU: by its multiplications for each number that it holds."""
-        return float(self._multiplications().sum() / (MULTIPLICATIONS * self._at[True][-1]))
-
-    def _multiplications(self) -> FloatArray:
+    def multiplications(self) -> FloatArray:
         """(f,) of an LU in each front."""
         own, outer = self.own.astype(float), self.outer.astype(float)
         return own**3 / 3.0 + own * outer * (own + outer)
@@ -109,7 +108,7 @@ class Multifrontal:
             self.ranges = [_Range(0, fronts, int(start[-1]), np.zeros(0, np.int64))]
             self.above: list[int] = []
             return
-        work = self._multiplications()
+        work = self.multiplications()
         first = np.arange(fronts)
         for front, parent in enumerate(self._parent):
             if parent >= 0:
@@ -145,9 +144,18 @@ class Multifrontal:
         self._room[second == 1] += highest[0]
         self._most = sum(highest)
 
+    def front_of_entries(self, matrix: sp.csc_array) -> np.ndarray:
+        """(e,) the front in which each entry of a matrix is eliminated."""
+        if self._front_of_entries is None:
+            columns = np.repeat(np.arange(self.unknowns, dtype=matrix.indices.dtype), np.diff(matrix.indptr))
+            first = np.minimum(matrix.indices, columns)
+            self._front_of_entries = np.repeat(np.arange(len(self.own), dtype=np.int32), self.own)[first]
+        return self._front_of_entries
+
     def factor(self, matrix: sp.csc_array) -> LU:
         """LU with row exchanges inside the fronts."""
-        return LU(self, self._factorised(matrix, whole=True))
+        left: dict[int, FloatArray] = {}
+        return LU(self, self._factorised(matrix, whole=True, left=left if self.large else None), matrix.data, left)
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Symmetric, int]:
         """Cholesky factorisation, and L D L^T in fronts that are not positive definite.
@@ -173,13 +181,19 @@ class Multifrontal:
         return {whole: np.concatenate([[0], np.cumsum(size)]) for whole, size in sizes.items()}
 
     def _factorised(
-        self, matrix: sp.csc_array, *, whole: bool = False, definite: bool = False, keep: bool = True
+        self,
+        matrix: sp.csc_array,
+        *,
+        whole: bool = False,
+        definite: bool = False,
+        keep: bool = True,
+        left: dict[int, FloatArray] | None = None,
     ) -> _Fronts:
         """Fronts factorised: L U if ``whole``, else Cholesky, and L D L^T, or an end if ``definite``, where needed.
 
-        RuntimeError where a front is exactly singular, which has ``failed`` if ``definite``.
+        ``left`` : takes up what subtrees, and fronts above them, leave. RuntimeError where a front is exactly singular,
+        which has ``failed`` if ``definite``.
         """
-        by_rows = sp.csr_array(matrix).data if whole else np.zeros(0)
         at = self._at[whole]
         fronts = _Fronts(
             at=at[:-1] if keep else np.zeros(len(self.own), np.int64),
@@ -188,7 +202,7 @@ class Multifrontal:
             exchanged=np.zeros(len(self.own), np.bool_),
             definite=definite,
         )
-        _Elimination(self, Matrix(matrix.indptr, matrix.indices, matrix.data, whole, by_rows), fronts, keep).run()
+        _Elimination(self, matrix, fronts, whole=whole, keep=keep, left=left).run(self.ranges, self.above)
         if fronts.failed and not definite:
             raise RuntimeError("Factor is exactly singular")
         return fronts
@@ -210,20 +224,32 @@ class _Fronts:
 class _Elimination:
     """One factorisation on its way."""
 
-    def __init__(self, pattern: Multifrontal, matrix: Matrix, fronts: _Fronts, keep: bool):
-        self.pattern, self.matrix, self.fronts, self.keep = pattern, matrix, fronts, keep
-        self.whole = matrix.whole
+    def __init__(
+        self,
+        pattern: Multifrontal,
+        matrix: sp.csc_array,
+        fronts: _Fronts,
+        *,
+        whole: bool,
+        keep: bool = True,
+        left: dict[int, FloatArray] | None = None,
+    ):
+        self.pattern, self.fronts, self.whole, self.keep = pattern, fronts, whole, keep
+        by_rows = sp.csr_array(matrix).data if whole else np.zeros(0)
+        self.matrix = Matrix(matrix.indptr, matrix.indices, matrix.data, whole, by_rows)
         self.lapack = addresses()
-        #: updates for fronts above the subtrees
-        self.left: dict[int, FloatArray] = {}
+        #: what subtrees and fronts above them leave for the fronts above these; given away once it has been added
+        #: unless it is asked for
+        self.left: dict[int, FloatArray] = {} if left is None else left
+        self.spent = left is None
         self.free: SimpleQueue[Store] = SimpleQueue()
 
-    def run(self) -> None:
-        pattern = self.pattern
-        with threads.mapping(pattern.large) as spread:
-            for negative in spread(self._subtree, pattern.ranges):
+    def run(self, ranges: Sequence[_Range], above: Sequence[int]) -> None:
+        """Eliminate subtrees and fronts above them, with what others have left already."""
+        with threads.mapping(self.pattern.large) as spread:
+            for negative in spread(self._subtree, ranges):
                 self.fronts.negative += negative
-            for front in pattern.above:
+            for front in above:
                 if self.fronts.failed:
                     return
                 self._above(front, spread)
@@ -292,7 +318,8 @@ class _Elimination:
         update = np.zeros(outer * outer)
         frontal.gather(tree, front, self.matrix, store.place, values, f11)
         for child in pattern.children(front):
-            frontal.add_child(tree, front, child, self.left.pop(child), 0, self.whole, values, f11, update, 0)
+            of_child = self.left.pop(child) if self.spent else self.left[child]
+            frontal.add_child(tree, front, child, of_child, 0, self.whole, values, f11, update, 0)
         info = np.zeros(1, np.int32)
         before = None if self.whole or fronts.definite else values[f11 : f11 + own * own].copy()
         frontal.factorise_own(self.lapack, own, values, f11, fronts.pivots, start, self.whole, info)
@@ -365,6 +392,51 @@ class LU(_Factor):
     """A factorised matrix."""
 
     whole = True
+
+    def __init__(self, pattern: Multifrontal, fronts: _Fronts, entries: FloatArray, left: dict[int, FloatArray]):
+        """``entries`` : of the matrix; ``left`` : what subtrees and fronts above them have left."""
+        super().__init__(pattern, fronts)
+        self._entries, self._left = entries, left
+
+    @property
+    def large(self) -> bool:
+        """Whether parts of it can be made anew."""
+        return self._pattern.large
+
+    @property
+    def price(self) -> float:
+        """About how many solutions cost as much as it: by its multiplications for each number that it holds."""
+        return float(self._pattern.multiplications().sum() / (MULTIPLICATIONS * self._fronts.values.size))
+
+    def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
+        """Bring it up to date in the subtrees where any entry has changed by more than ``change``, and above them.
+
+        Everywhere else it stays that of the matrix before. False, and nothing is done, where that would take more than
+        the part ``most`` of the work of all.
+
+        Raises
+        ------
+        RuntimeError
+            Where a front is exactly singular; the factorisation is lost then.
+        """
+        pattern = self._pattern
+        front_of = pattern.front_of_entries(matrix)
+        anew = np.zeros(len(pattern.own), np.bool_)
+        anew[front_of[np.abs(matrix.data - self._entries) > change]] = True
+        ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
+        for span in ranges:
+            anew[span.first : span.last] = True
+        for front in pattern.above:
+            anew[front] |= anew[pattern.children(front)].any()
+        work = pattern.multiplications()
+        if work[anew].sum() > most * work.sum():
+            return False
+        above = [front for front in pattern.above if anew[front]]
+        _Elimination(pattern, matrix, self._fronts, whole=True, left=self._left).run(ranges, above)
+        if self._fronts.failed:
+            raise RuntimeError("Factor is exactly singular")
+        self._entries = np.where(anew[front_of], matrix.data, self._entries)
+        return True
 
 
 class Symmetric(_Factor):

@@ -1,8 +1,8 @@
 """Solutions with the factorisation of another matrix: GMRES, preconditioned by it.
 
-Where few contacts have changed since a tangent was factorised, the product of the new one with the inverse of the old
-differs from one in few directions, so few products are needed, each with one solution by the old factorisation. In a
-large packing that is far cheaper than to factorise anew.
+Where contacts have changed since a tangent was factorised, the subtrees of fronts that have them are eliminated anew;
+everywhere else tangents differ by the little that contacts have turned, which a few products make up for. In a large
+packing that is far cheaper than to factorise all of it.
 """
 
 from __future__ import annotations
@@ -12,29 +12,36 @@ import scipy.sparse as sp
 
 from ...state import FloatArray
 from .factor import Factor
+from .multifrontal import LU
 
 #: Most products of a solution, and the number from which on it is seen whether so many will do.
 MOST, SEEN = 24, 6
+#: Change of an entry, as a part of the largest, from which on its subtree is eliminated anew.
+CHANGE = 5e-2
+#: Part of the work of a factorisation that this may take.
+MOST_ANEW = 0.7
 
 
 class Nearby:
     """A factorisation that serves other matrices as long as that pays."""
 
-    def __init__(self, factor: Factor, price: float):
-        """``price`` : solutions that cost as much as the factorisation."""
-        self._factor = factor
+    def __init__(self, factor: LU):
+        self.factor = factor
         #: what solutions have cost so far, the first one with the factorisation, and the last one
-        self._spent, self._solutions, self._last = price, 1, 0
+        self._spent, self._solutions, self._last = factor.price, 1, 0
 
     def solve(self, matrix: sp.csc_array, right: FloatArray, tolerance: float) -> FloatArray | None:
         """(n,) x with ``|matrix x - right| <= tolerance |right|`` (2-norms).
 
-        None where ``MOST`` products do not lead there, as soon as that is to be expected, and once a solution costs
-        more than the average with a new factorisation so far.
+        None where most of the factorisation would have to be made anew, where ``MOST`` products do not lead there, as
+        soon as that is to be expected, and once a solution takes more of them than the average with a new
+        factorisation so far. RuntimeError where a front is exactly singular.
         """
         if self._last > self._spent / self._solutions:
             return None
-        found, self._last = _gmres(matrix, self._factor, right, tolerance)
+        if not self.factor.renew(matrix, CHANGE * float(np.abs(matrix.data).max()), MOST_ANEW):
+            return None
+        found, self._last = _gmres(matrix, self.factor, right, tolerance)
         self._spent += self._last
         self._solutions += 1
         return found
