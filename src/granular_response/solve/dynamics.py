@@ -23,8 +23,8 @@ from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls
 from ..kernels.neighbours import count_closed, mark_closed
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
-from ..state import FLOOR, Contacts, FloatArray, Reached, State, wall_normals
-from .problem import Candidates, Problem, carry_springs
+from ..state import FLOOR, FloatArray, Reached, State, wall_normals
+from .problem import Candidates, Problem, carry_springs, spring_contacts
 
 #: Steps between two looks at the stopping criteria.
 CHECK_EVERY = 100
@@ -230,25 +230,15 @@ class Dynamics:
     def state(self) -> State:
         """The present state, with spring forces only (what remains at rest)."""
         problem, c, n = self.problem, self.candidates, self.problem.n
-        zero_pairs, zero_walls = np.zeros(len(c.slot)), np.zeros(len(c.wall_disk))
-        none = zero_pairs.astype(np.int8)
-        spring = self.spring[c.slot] if self.spring is not None else zero_pairs
-        wall_spring = self.wall_spring.copy() if self.wall_spring is not None else zero_walls
+        spring = None if self.spring is None else self.spring[c.slot]
+        wall_spring = None if self.wall_spring is None else self.wall_spring.copy()
         bare = State(
             position=self.position,
             angle=self.angle.copy(),
             velocity=self.v[: 2 * n].reshape(2, n).T.copy(),
             angular_velocity=self.v[2 * n :].copy() if problem.rotations else np.zeros(n),
-            pairs=Contacts(c.first, c.second, zero_pairs, zero_pairs, zero_pairs, spring, none),
-            walls=Contacts(
-                c.wall_disk.astype(np.int32),
-                c.wall.astype(np.int32),
-                zero_walls,
-                zero_walls,
-                zero_walls,
-                wall_spring,
-                zero_walls.astype(np.int8),
-            ),
+            pairs=spring_contacts(c.first, c.second, spring),
+            walls=spring_contacts(c.wall_disk, c.wall, wall_spring),
             box=problem.packing.box,
             load_factor=self._now(self.load),
             reached=Reached(

@@ -38,11 +38,6 @@ class Rearranged(EquilibriumError):
     """Disks have met that were not neighbours: equilibrium is not near the start."""
 
 
-def residual(system: StaticSystem, trial: Trial, external: FloatArray) -> FloatArray:
-    """(dof,) unbalanced force and torque on each disk."""
-    return trial.contact_force + external
-
-
 def external_force(problem: Problem, load_factor: float) -> FloatArray:
     """(dof,) gravity and the scene's loads times ``load_factor``; nothing on what is held."""
     force = problem.weight_vector() + load_factor * problem.load_vector()
@@ -88,7 +83,7 @@ def newton(
     n = system.problem.n
     q = (known.q if start is None else start).copy()
     trial = system.trial(known, q)
-    r = residual(system, trial, external)
+    r = trial.contact_force + external  # (dof,) unbalanced force and torque on each disk
     size = float(np.abs(r).max(initial=0.0))
     best = size
     stalled = iterations = 0
@@ -124,7 +119,7 @@ def newton(
         scale = min(1.0, LONGEST_STEP / length) if length > 0 else 1.0
         for _ in range(6):
             new = system.trial(known, q + scale * step)
-            r_new = residual(system, new, external)
+            r_new = new.contact_force + external
             size_new = float(np.abs(r_new).max())
             if size_new < 10.0 * size or size_new < tolerance:
                 break
@@ -133,7 +128,7 @@ def newton(
             there_and_back = np.array_equal(new.sense, before) and not np.array_equal(new.sense, sense)
             if there_and_back and scale == 1.0 and (slope := float(r @ step)) > 0.0:
                 step, new = shortened(system, known, external, q, step, slope, full=new, until=FLAT)
-                r_new = residual(system, new, external)
+                r_new = new.contact_force + external
                 size_new = float(np.abs(r_new).max())
             before, sense = sense, new.sense
         slow = reused and size_new > 0.1 * size

@@ -244,8 +244,8 @@ class Problem:
         position = np.array(self.packing.position, float)
         candidates = self.list_candidates(position)
         n = self.n
-        pairs = _empty_contacts(candidates.first, candidates.second)
-        walls = _empty_contacts(candidates.wall_disk, candidates.wall)
+        pairs = spring_contacts(candidates.first, candidates.second)
+        walls = spring_contacts(candidates.wall_disk, candidates.wall)
         state = State(position, np.zeros(n), np.zeros((n, 2)), np.zeros(n), pairs, walls, self.packing.box)
         return self.with_static_forces(state)
 
@@ -258,19 +258,9 @@ class Problem:
             When a contact that carries a spring is not among the new candidates.
         """
         c = self.list_candidates(state.position)
-        return self.with_static_forces(
-            replace(
-                state,
-                pairs=replace(
-                    _empty_contacts(c.first, c.second),
-                    spring=carry_springs(self.n, state.pairs, c.first, c.second),
-                ),
-                walls=replace(
-                    _empty_contacts(c.wall_disk, c.wall),
-                    spring=carry_springs(self.n, state.walls, c.wall_disk, c.wall),
-                ),
-            )
-        )
+        pairs = spring_contacts(c.first, c.second, carry_springs(self.n, state.pairs, c.first, c.second))
+        walls = spring_contacts(c.wall_disk, c.wall, carry_springs(self.n, state.walls, c.wall_disk, c.wall))
+        return self.with_static_forces(replace(state, pairs=pairs, walls=walls))
 
     def with_static_forces(self, state: State) -> State:
         """The state with overlaps, spring forces and statuses made from its positions and springs."""
@@ -320,14 +310,10 @@ def static_contacts(first, second, overlap, spring, shape, law: Law) -> Contacts
     )  # fmt: skip
 
 
-def _empty_contacts(first, second) -> Contacts:
+def spring_contacts(first, second, spring: FloatArray | None = None) -> Contacts:
+    """Contacts of which no more is known than their springs, or not even these; zero stands for it."""
     zero = np.zeros(len(first))
     return Contacts(
-        np.asarray(first, np.int32),
-        np.asarray(second, np.int32),
-        zero,
-        zero,
-        zero,
-        zero,
-        zero.astype(np.int8),
-    )
+        np.asarray(first, np.int32), np.asarray(second, np.int32),
+        zero, zero, zero, zero if spring is None else spring, zero.astype(np.int8),
+    )  # fmt: skip

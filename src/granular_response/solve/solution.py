@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -178,15 +179,14 @@ def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
         if found.certificate.stable or not finishes_statically(problem):
             return found
         # contacts that touch without bearing may open in the last digit, and what they held turns away
-        still = (1.0, 1.0, 0.0)
-        return _relaxed(problem, start, "gravity", progress, gravity=still, load=(0.0, 0.0, 0.0))
+        return _relaxed(problem, start, "gravity", progress)
     choice = rest_method(problem)
     if choice.method == "minimise":
         return minimise(problem, rest_start(problem))
     preparation = problem.scene.preparation
     slow = preparation.gravity == "slow"
     gravity = (0.0, 1.0, preparation.ramp_time) if slow else (1.0, 1.0, 0.0)
-    return _relaxed(problem, problem.bare_state(), "gravity", progress, gravity=gravity, load=(0.0, 0.0, 0.0))
+    return _relaxed(problem, problem.bare_state(), "gravity", progress, gravity=gravity)
 
 
 def loaded_states(
@@ -208,41 +208,31 @@ def loaded_states(
     factors = [float(f) for f in load_factors]
     if choice.method == "path":
         return choice, _on_path(problem, [rest, *before][-1], factors, progress)
-    step = {"dynamics": _by_dynamics, "minimise": _by_minimisation, "stages": _by_stages}[choice.method]
-    states = list(before)
+    states = [rest, *before]
     for done, factor in enumerate(factors, 1):
-        states.append(step(problem, rest, states, factor, progress))
-        if progress is not None and choice.method != "dynamics":
+        if choice.method == "dynamics":
+            so_far = [*(state.load_factor for state in states), factor]
+            turned = len({after > here for here, after in pairwise(so_far)}) > 1
+            states.append(_by_dynamics(problem, states[-1] if turned else rest, factor, progress))
+            continue
+        if choice.method == "minimise":
+            states.append(_by_minimisation(problem, states[-1], factor, progress))
+        else:
+            states.append(climb(problem, states[-1], factor)[0])
+        if progress is not None:
             progress(done, len(factors), "load")
-    return choice, states[len(before) :]
+    return choice, states[1 + len(before) :]
 
 
-def _by_dynamics(
-    problem: Problem, rest: State, states: Sequence[State], factor: float, progress: Progress | None
-) -> State:
-    so_far = [rest.load_factor, *(state.load_factor for state in states), factor]
-    turned = len({after > here for here, after in pairwise(so_far)}) > 1
-    return _loaded_by_dynamics(problem, states[-1] if turned else rest, factor, progress)
-
-
-def _by_minimisation(
-    problem: Problem, rest: State, states: Sequence[State], factor: float, progress: Progress | None
-) -> State:
-    before = [rest, *states][-1]
+def _by_minimisation(problem: Problem, before: State, factor: float, progress: Progress | None) -> State:
     try:
         return minimise(problem, before, load_factor=factor)
     except EquilibriumError:
         # the packing collapses or rearranges here: its motion decides where it comes to rest
-        state = _loaded_by_dynamics(problem, before, factor, progress)
+        state = _by_dynamics(problem, before, factor, progress)
         moved = float(np.hypot(*(state.position - before.position).T).max())
         crossing = Crossing(before.load_factor, factor, "no equilibrium nearby", moved)
         return replace(state, reached=replace(state.reached, crossings=(crossing,)))
-
-
-def _by_stages(
-    problem: Problem, rest: State, states: Sequence[State], factor: float, progress: Progress | None
-) -> State:
-    return climb(problem, [rest, *states][-1], factor)[0]
 
 
 def _on_path(problem: Problem, start: State, factors: Sequence[float], progress: Progress | None) -> list[State]:
@@ -264,13 +254,13 @@ def _on_path(problem: Problem, start: State, factors: Sequence[float], progress:
     )  # fmt: skip
 
 
-def _loaded_by_dynamics(problem: Problem, start: State, factor: float, progress: Progress | None) -> State:
+def _by_dynamics(problem: Problem, start: State, factor: float, progress: Progress | None) -> State:
     load = (start.load_factor, factor, problem.scene.protocol.ramp_time)
-    return _relaxed(problem, start, "load", progress, gravity=(1.0, 1.0, 0.0), load=load)
+    return _relaxed(problem, start, "load", progress, load=load)
 
 
-def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | None, *, gravity, load) -> State:
-    """Dynamics to rest as the protocol says, and the static finish."""
+def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | None, **ramps: Any) -> State:
+    """Dynamics to rest as the protocol says, and the static finish; ``ramps`` of gravity and load."""
     protocol = problem.scene.protocol
     stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps, _crossing_time(problem))
     report = None
@@ -285,9 +275,9 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
             progress(highest[1], 1.0, stage)
 
     if finishes_statically(problem):
-        return settle(problem, start, PROTOCOL, stop, what=stage, gravity=gravity, load=load, progress=report)
+        return settle(problem, start, PROTOCOL, stop, what=stage, progress=report, **ramps)
     dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
-    settled = relax(dynamics, stop, gravity=gravity, load=load, progress=report)
+    settled = relax(dynamics, stop, progress=report, **ramps)
     if protocol.static_finish and not settled.reached.settled:
         raise NotSettled(not_settled(problem, settled, stage))
     return replace(settled, reached=replace(settled.reached, certificate=certify(problem, settled)))
