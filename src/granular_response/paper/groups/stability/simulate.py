@@ -7,7 +7,7 @@ digits. ``random_scenes``: what became of random scenes, each result checked fro
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -51,19 +51,19 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     and ``random_scenes``.
     """
     seed = parameters.seed
-    groups: dict[str, tuple[list[Task], Callable[[list[Any]], dict[str, xr.Dataset]]]] = {
-        "time_steps": _time_steps(parameters.time_steps, seed),
-        "drift": _drift(parameters.drift, seed),
-        "collisions": _collisions(parameters.collisions),
-        "rolling": _rolling(parameters.rolling),
-        "rounding": _rounding(parameters.rounding, seed),
-        "random_scenes": _random_scenes(parameters.random_scenes, seed),
-    }
-    tasks = [task for several, _ in groups.values() for task in several]
-    results = iter(map_tasks(_run, tasks, what="stability trials"))
+    plans = [
+        _time_steps(parameters.time_steps, seed),
+        _drift(parameters.drift, seed),
+        _collisions(parameters.collisions),
+        _rolling(parameters.rolling),
+        _rounding(parameters.rounding, seed),
+        _random_scenes(parameters.random_scenes, seed),
+    ]
+    tasks: list[list[Task]] = [next(plan) for plan in plans]
+    results = iter(map_tasks(_run, [task for several in tasks for task in several], what="stability trials"))
     datasets: dict[str, xr.Dataset] = {}
-    for several, collect in groups.values():
-        datasets |= collect([next(results) for _ in several])
+    for plan, several in zip(plans, tasks, strict=True):
+        datasets |= plan.send([next(results) for _ in several])
     return labelled(datasets)
 
 
@@ -74,7 +74,8 @@ def _run(task: Task) -> Any:
     return task()
 
 
-Plan = tuple[list[Task], Callable[[list[Any]], dict[str, xr.Dataset]]]
+#: Yields its tasks, is sent what they hand back, and yields its datasets.
+Plan = Generator[Any, list[Any], None]
 
 
 def _time_steps(parameters: TimeSteps, seed: int) -> Plan:
@@ -92,35 +93,33 @@ def _time_steps(parameters: TimeSteps, seed: int) -> Plan:
                 scene = time_steps.scene_of(base, changes)
                 tasks.append(time_steps.StepTrial(scene, ratios, steps, seed).run)
 
-    def collect(found: list[tuple[float, list[int]]]) -> dict[str, xr.Dataset]:
-        datasets = {}
-        rest = iter(found)
-        for name, values in axes.items():
-            shape = (len(integrators), len(values))
-            several = [next(rest) for _ in range(len(integrators) * len(values))]
-            datasets[f"time_step_{name}"] = xr.Dataset(
-                {
-                    "limit": variable(
-                        ("integrator", name),
-                        np.array([limit for limit, _ in several]).reshape(shape),
-                        "predicted largest stable time step in sqrt(radius/g)",
-                    ),
-                    "outcome": variable(
-                        ("integrator", name, "ratio"),
-                        np.array([outcomes for _, outcomes in several], np.int8).reshape(*shape, len(ratios)),
-                        "what becomes of a kick: "
-                        + ", ".join(f"{code} {text}" for code, text in enumerate(time_steps.OUTCOMES)),
-                    ),
-                },
-                coords={
-                    "integrator": variable("integrator", integrators, "integrator"),
-                    name: variable(name, values, AXES[name][1]),
-                    "ratio": variable("ratio", ratios, "time step over the predicted limit"),
-                },
-            )
-        return datasets
-
-    return tasks, collect
+    found: list[tuple[float, list[int]]] = yield tasks
+    datasets = {}
+    rest = iter(found)
+    for name, values in axes.items():
+        shape = (len(integrators), len(values))
+        several = [next(rest) for _ in range(len(integrators) * len(values))]
+        datasets[f"time_step_{name}"] = xr.Dataset(
+            {
+                "limit": variable(
+                    ("integrator", name),
+                    np.array([limit for limit, _ in several]).reshape(shape),
+                    "predicted largest stable time step in sqrt(radius/g)",
+                ),
+                "outcome": variable(
+                    ("integrator", name, "ratio"),
+                    np.array([outcomes for _, outcomes in several], np.int8).reshape(*shape, len(ratios)),
+                    "what becomes of a kick: "
+                    + ", ".join(f"{code} {text}" for code, text in enumerate(time_steps.OUTCOMES)),
+                ),
+            },
+            coords={
+                "integrator": variable("integrator", integrators, "integrator"),
+                name: variable(name, values, AXES[name][1]),
+                "ratio": variable("ratio", ratios, "time step over the predicted limit"),
+            },
+        )
+    yield datasets
 
 
 @dataclass(frozen=True)
@@ -166,26 +165,24 @@ def _drift(parameters: Drift, seed: int) -> Plan:
         for name in integrators
     ]
 
-    def collect(found: list[tuple[np.ndarray, np.ndarray]]) -> dict[str, xr.Dataset]:
-        shape = (len(systems), len(integrators), -1)
-        dims = ("system", "integrator", "reading")
-        dataset = xr.Dataset(
-            {
-                "time": variable(dims, np.array([t for t, _ in found]).reshape(shape), "time in sqrt(radius/g)"),
-                "energy_change": variable(
-                    dims,
-                    np.array([e for _, e in found]).reshape(shape),
-                    "change of the total energy of an undamped system, per energy that it moves with",
-                ),
-            },
-            coords={
-                "system": variable("system", list(systems), "what moves"),
-                "integrator": variable("integrator", integrators, "integrator"),
-            },
-        )
-        return {"drift": dataset}
-
-    return tasks, collect
+    found: list[tuple[np.ndarray, np.ndarray]] = yield tasks
+    shape = (len(systems), len(integrators), -1)
+    dims = ("system", "integrator", "reading")
+    dataset = xr.Dataset(
+        {
+            "time": variable(dims, np.array([t for t, _ in found]).reshape(shape), "time in sqrt(radius/g)"),
+            "energy_change": variable(
+                dims,
+                np.array([e for _, e in found]).reshape(shape),
+                "change of the total energy of an undamped system, per energy that it moves with",
+            ),
+        },
+        coords={
+            "system": variable("system", list(systems), "what moves"),
+            "integrator": variable("integrator", integrators, "integrator"),
+        },
+    )
+    yield {"drift": dataset}
 
 
 def _collisions(parameters: Collisions) -> Plan:
@@ -201,27 +198,25 @@ def _collisions(parameters: Collisions) -> Plan:
                     scene = Scene().updated({**changes, "protocol.friction_law": law, "loads": []})
                     tasks.append(CollisionTask(scene, angles, spins, step, body == "disk").run)
 
-    def collect(found: list[list[list[float]]]) -> dict[str, xr.Dataset]:
-        shape = (len(bodies), len(laws), len(damping), len(frictions), len(angles), len(spins))
-        dims = ("body", "friction_law", "damping_ratio", "friction", "angle", "spin")
-        dataset = xr.Dataset(
-            {
-                "energy_ratio": variable(
-                    dims, np.array(found).reshape(shape), "kinetic energy after a collision over that before"
-                )
-            },
-            coords={
-                "body": variable("body", bodies, "what the disk hits"),
-                "friction_law": variable("friction_law", laws, "protocol.friction_law"),
-                "damping_ratio": variable("damping_ratio", damping, AXES["damping_ratio"][1]),
-                "friction": variable("friction", frictions, "coefficient of friction"),
-                "angle": variable("angle", angles, "angle of incidence from grazing in degrees"),
-                "spin": variable("spin", spins, "spin of the hitting disk, rim speed over speed"),
-            },
-        )
-        return {"collisions": dataset}
-
-    return tasks, collect
+    found: list[list[list[float]]] = yield tasks
+    shape = (len(bodies), len(laws), len(damping), len(frictions), len(angles), len(spins))
+    dims = ("body", "friction_law", "damping_ratio", "friction", "angle", "spin")
+    dataset = xr.Dataset(
+        {
+            "energy_ratio": variable(
+                dims, np.array(found).reshape(shape), "kinetic energy after a collision over that before"
+            )
+        },
+        coords={
+            "body": variable("body", bodies, "what the disk hits"),
+            "friction_law": variable("friction_law", laws, "protocol.friction_law"),
+            "damping_ratio": variable("damping_ratio", damping, AXES["damping_ratio"][1]),
+            "friction": variable("friction", frictions, "coefficient of friction"),
+            "angle": variable("angle", angles, "angle of incidence from grazing in degrees"),
+            "spin": variable("spin", spins, "spin of the hitting disk, rim speed over speed"),
+        },
+    )
+    yield {"collisions": dataset}
 
 
 @dataclass(frozen=True)
@@ -250,30 +245,24 @@ def _rolling(parameters: Rolling) -> Plan:
         for (speed, spin), time in zip(starts, times, strict=True)
     ]
 
-    def collect(found: list[tuple[np.ndarray, ...]]) -> dict[str, xr.Dataset]:
-        exact = [
-            closed_forms.rolling_speed(t, friction, *start) for (t, _, _), start in zip(found, starts, strict=True)
-        ]
-        dims = ("start", "reading")
-        dataset = xr.Dataset(
-            {
-                "time": variable(dims, np.stack([t for t, _, _ in found]), "time in sqrt(radius/g)"),
-                "velocity": variable(dims, np.stack([v for _, v, _ in found]), "velocity of the disk, x"),
-                "rim_speed": variable(
-                    dims, np.stack([r for _, _, r in found]), "rim speed, positive for rolling along x"
-                ),
-                "exact_velocity": variable(dims, np.stack([v for v, _ in exact]), "velocity in closed form"),
-                "exact_rim_speed": variable(dims, np.stack([r for _, r in exact]), "rim speed in closed form"),
-            },
-            coords={
-                "speed": variable("start", [v for v, _ in starts], "velocity at first"),
-                "spin": variable("start", [w for _, w in starts], "spin at first, counter-clockwise"),
-            },
-        )
-        dataset["friction"] = variable((), friction, "coefficient of friction of the floor")
-        return {"rolling": dataset}
-
-    return tasks, collect
+    found: list[tuple[np.ndarray, ...]] = yield tasks
+    exact = [closed_forms.rolling_speed(t, friction, *start) for (t, _, _), start in zip(found, starts, strict=True)]
+    dims = ("start", "reading")
+    dataset = xr.Dataset(
+        {
+            "time": variable(dims, np.stack([t for t, _, _ in found]), "time in sqrt(radius/g)"),
+            "velocity": variable(dims, np.stack([v for _, v, _ in found]), "velocity of the disk, x"),
+            "rim_speed": variable(dims, np.stack([r for _, _, r in found]), "rim speed, positive for rolling along x"),
+            "exact_velocity": variable(dims, np.stack([v for v, _ in exact]), "velocity in closed form"),
+            "exact_rim_speed": variable(dims, np.stack([r for _, r in exact]), "rim speed in closed form"),
+        },
+        coords={
+            "speed": variable("start", [v for v, _ in starts], "velocity at first"),
+            "spin": variable("start", [w for _, w in starts], "spin at first, counter-clockwise"),
+        },
+    )
+    dataset["friction"] = variable((), friction, "coefficient of friction of the floor")
+    yield {"rolling": dataset}
 
 
 def _rounding(parameters: Rounding, seed: int) -> Plan:
@@ -288,21 +277,19 @@ def _rounding(parameters: Rounding, seed: int) -> Plan:
         "crossings": "stretches of load that dynamics crossed",
     }
 
-    def collect(several: list[list[Disturbed]]) -> dict[str, xr.Dataset]:
-        found = [one for ones in several for one in ones]
-        dataset = xr.Dataset(
-            {
-                name: variable(
-                    ("case", "kick"), np.array([getattr(f, name) for f in found]).reshape(len(cases), kicks), text
-                )
-                for name, text in texts.items()
-            },
-            coords={"case": variable("case", list(cases), "packing and load")},
-        )
-        dataset["displacement"] = variable((), size, "largest displacement of the rest state, in mean radii")
-        return {"rounding": dataset}
-
-    return tasks, collect
+    several: list[list[Disturbed]] = yield tasks
+    found = [one for ones in several for one in ones]
+    dataset = xr.Dataset(
+        {
+            name: variable(
+                ("case", "kick"), np.array([getattr(f, name) for f in found]).reshape(len(cases), kicks), text
+            )
+            for name, text in texts.items()
+        },
+        coords={"case": variable("case", list(cases), "packing and load")},
+    )
+    dataset["displacement"] = variable((), size, "largest displacement of the rest state, in mean radii")
+    yield {"rounding": dataset}
 
 
 def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
@@ -310,36 +297,34 @@ def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
     starts = range(0, number, chunk)
     tasks: list[Task] = [partial(_random_chunk, steps, seed, begin, min(begin + chunk, number)) for begin in starts]
 
-    def collect(found: list[list[random_scenes.Trial]]) -> dict[str, xr.Dataset]:
-        trials = [trial for several in found for trial in several]
-        texts = {
-            "friction": "coefficient of friction between disks",
-            "disks": "number of disks, 0 after an error",
-            "states": "states that were checked",
-            "force_residual": "largest unbalanced force, summed anew from positions, in mean disk weights",
-            "torque_residual": "largest unbalanced torque",
-            "coulomb_excess": "largest friction force beyond Coulomb's limit",
-            "twin_difference": "largest difference of floor responses to the mirrored twin, over the load",
-        }
-        dataset = xr.Dataset(
-            {key: variable("scene", [getattr(t, key) for t in trials], text) for key, text in texts.items()}
-        )
-        words = {
-            "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
-            "kind": (("slab", "pile", "file"), "packing"),
-            "method": (random_scenes.METHODS, "method asked for"),
-            "integrator": (("beeman", "verlet", "gear"), "integrator"),
-        }
-        for name, (values, text) in words.items():
-            codes = np.array([values.index(getattr(t, name)) for t in trials], np.int8)
-            legend = ", ".join(f"{code} {value}" for code, value in enumerate(values))
-            dataset[name] = variable("scene", codes, f"{text}: {legend}")
-        # what a wrong result was, for whoever has to look at it
-        wrong = [f"{k}: {t.message}" for k, t in enumerate(trials) if t.outcome == "wrong"]
-        dataset.attrs["wrong"] = "; ".join(wrong)
-        return {"random_scenes": dataset}
-
-    return tasks, collect
+    found: list[list[random_scenes.Trial]] = yield tasks
+    trials = [trial for several in found for trial in several]
+    texts = {
+        "friction": "coefficient of friction between disks",
+        "disks": "number of disks, 0 after an error",
+        "states": "states that were checked",
+        "force_residual": "largest unbalanced force, summed anew from positions, in mean disk weights",
+        "torque_residual": "largest unbalanced torque",
+        "coulomb_excess": "largest friction force beyond Coulomb's limit",
+        "twin_difference": "largest difference of floor responses to the mirrored twin, over the load",
+    }
+    dataset = xr.Dataset(
+        {key: variable("scene", [getattr(t, key) for t in trials], text) for key, text in texts.items()}
+    )
+    words = {
+        "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
+        "kind": (("slab", "pile", "file"), "packing"),
+        "method": (random_scenes.METHODS, "method asked for"),
+        "integrator": (("beeman", "verlet", "gear"), "integrator"),
+    }
+    for name, (values, text) in words.items():
+        codes = np.array([values.index(getattr(t, name)) for t in trials], np.int8)
+        legend = ", ".join(f"{code} {value}" for code, value in enumerate(values))
+        dataset[name] = variable("scene", codes, f"{text}: {legend}")
+    # what a wrong result was, for whoever has to look at it
+    wrong = [f"{k}: {t.message}" for k, t in enumerate(trials) if t.outcome == "wrong"]
+    dataset.attrs["wrong"] = "; ".join(wrong)
+    yield {"random_scenes": dataset}
 
 
 def _random_chunk(steps: int, seed: int, begin: int, end: int) -> list[random_scenes.Trial]:
