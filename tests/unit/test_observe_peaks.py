@@ -8,9 +8,9 @@ from granular_response.observe.peaks import (
     asymmetry,
     central_dip,
     find_peaks,
-    has_third_peak,
     is_double_peaked,
     peak_count,
+    third_peak,
 )
 
 X = np.arange(-10.0, 11.0, 2.0)
@@ -180,11 +180,11 @@ def test_double_peak_on_samples_that_avoid_the_axis():
 
 
 def test_third_peak_is_one_between_two():
-    assert has_third_peak(X, THREE)
+    assert third_peak(X, THREE) > 0.0
     assert is_double_peaked(X, THREE)
-    assert not has_third_peak(X, TWO)
-    assert not has_third_peak(X, ONE)
-    assert not has_third_peak(X, profile(1.0, 0.2, 0.6))
+    assert third_peak(X, TWO) == 0.0
+    assert third_peak(X, ONE) == 0.0
+    assert third_peak(X, profile(1.0, 0.2, 0.6)) == 0.0
 
 
 def test_central_dip_measures_the_crossover_continuously():

@@ -98,13 +98,11 @@ def rattlers(state: State, minimum_contacts: int = 2) -> BoolArray:
     A disk whose partners are rattlers loses those contacts too. Under gravity two contacts hold a disk
     (Sec. III.C asks for at least two), so what is left out by default are disks that lie loose.
     """
-    n = state.position.shape[0]
-    pairs, walls = state.pairs, state.walls
-    loose = np.zeros(n, dtype=bool)
+    pairs = state.pairs
+    loose = np.zeros(len(state.position), dtype=bool)
     while True:
         live = pairs.touching & ~loose[pairs.first] & ~loose[pairs.second]
-        count = _count(n, pairs.first[live], pairs.second[live], walls.first[walls.touching])
-        found = (count < minimum_contacts) & ~loose
+        found = (state.contact_count(live) < minimum_contacts) & ~loose
         if not found.any():
             return loose
         loose |= found
@@ -116,7 +114,6 @@ def coordination_number(
     *,
     walls: bool = False,
     without_rattlers: bool = False,
-    minimum_contacts: int = 2,
 ) -> float:
     """Mean number of contacts of a disk (Sec. VII), over ``disks`` ((n,) mask; all of them by default).
 
@@ -124,20 +121,15 @@ def coordination_number(
     contacts. ``without_rattlers`` leaves out the disks found by :func:`rattlers` together with
     all contacts they take part in. Raises ``ValueError`` if no disk is left.
     """
-    n = state.position.shape[0]
-    chosen = np.ones(n, dtype=bool) if disks is None else np.asarray(disks, dtype=bool).copy()
-    pairs, at_wall = state.pairs, state.walls
-    live = pairs.touching
+    chosen = np.ones(len(state.position), bool) if disks is None else np.asarray(disks, dtype=bool).copy()
+    pairs, live = state.pairs, state.pairs.touching
     if without_rattlers:
-        loose = rattlers(state, minimum_contacts)
+        loose = rattlers(state)
         chosen &= ~loose
         live = live & ~loose[pairs.first] & ~loose[pairs.second]
     if not chosen.any():
         raise ValueError("disks: none left to average over")
-    count = _count(n, pairs.first[live], pairs.second[live])
-    if walls:
-        count += _count(n, at_wall.first[at_wall.touching])
-    return float(count[chosen].mean())
+    return float(state.contact_count(live, walls=walls)[chosen].mean())
 
 
 def contact_angle_histogram(
@@ -207,7 +199,3 @@ def network_asymmetry(contacts: Contacts, mirror: NDArray[np.intp], *, sliding: 
     if total == 0:
         return 0.0
     return float(np.count_nonzero(unmatched_contacts(contacts, mirror, sliding=sliding)) / total)
-
-
-def _count(n: int, *disks: NDArray) -> NDArray[np.intp]:
-    return np.bincount(np.concatenate(disks), minlength=n)

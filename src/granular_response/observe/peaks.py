@@ -29,6 +29,9 @@ RELATIVE_PROMINENCE = 1e-3
 #: certified to residuals of 1e-9, differ between left and right by up to a few 1e-6.
 ROUNDING = 1e-5
 
+#: A third peak is not farther than this from x = 0 (mean radii).
+CENTRE = 1.0
+
 
 @dataclass(frozen=True)
 class Peaks:
@@ -160,17 +163,13 @@ def is_double_peaked(
     return _outer_peaks(x, response, interior, relative_prominence) is not None
 
 
-def has_third_peak(
-    x: ArrayLike,
-    response: ArrayLike,
-    *,
-    interior: NDArray[np.bool_] | None = None,
-    relative_prominence: float = RELATIVE_PROMINENCE,
-    centre: float = 1.0,
-) -> bool:
-    """Whether a double-peaked response has a further peak within ``centre`` of x = 0 (Sec. V.E, Fig. 16a)."""
-    peaks = _outer_peaks(x, response, interior, relative_prominence)
-    return peaks is not None and bool(np.any(np.abs(peaks.position) <= centre))
+def third_peak(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:
+    """Prominence of the further peak of a double-peaked response within ``CENTRE`` of x = 0 (Sec. V.E, Fig. 16a).
+
+    0 without one.
+    """
+    peaks = _outer_peaks(x, response, interior, RELATIVE_PROMINENCE)
+    return 0.0 if peaks is None else float(peaks.prominence[np.abs(peaks.position) <= CENTRE].max(initial=0.0))
 
 
 def asymmetry(x: ArrayLike, response: ArrayLike, *, interior: NDArray[np.bool_] | None = None) -> float:

@@ -167,9 +167,9 @@ class Measures:
         """Whether the response has two peaks in the sense of the paper's crossover."""
         return peaks.is_double_peaked(self.x, self.response(state), interior=self.interior)
 
-    def third_peak(self, state: State) -> bool:
-        """Whether a double-peaked response has a further peak at x = 0."""
-        return peaks.has_third_peak(self.x, self.response(state), interior=self.interior)
+    def third_peak(self, state: State) -> float:
+        """Prominence of the further peak of a double-peaked response at x = 0; 0 without it."""
+        return peaks.third_peak(self.x, self.response(state), interior=self.interior)
 
     def asymmetry(self, state: State) -> float:
         """Largest difference of the response and its mirror image, per largest response."""
@@ -193,8 +193,8 @@ class Measures:
             "central_dip": self.dip(state),
             "peak_count": peaks.peak_count(x, response, interior=self.interior),
             "double_peaked": self.double_peaked(state),
-            "third_peak": self.third_peak(state),
-            "third_peak_prominence": self._third_prominence(state) / largest,
+            "third_peak": self.third_peak(state) > 0.0,
+            "third_peak_prominence": self.third_peak(state) / largest,
             "asymmetry": self.asymmetry(state),
             "asymmetry_sign": asymmetry_sign(x, response),
             "peak_height": largest,
@@ -206,12 +206,6 @@ class Measures:
             "reaches_floor": region.reaches_floor,
             "network_asymmetry": network.network_asymmetry(state.pairs, self.mirror),
         }
-
-    def _third_prominence(self, state: State) -> float:
-        if not self.third_peak(state):
-            return 0.0
-        found = peaks.find_peaks(self.x, self.response(state), interior=self.interior)
-        return float(found.prominence[np.abs(found.position) <= 1.0].max())
 
 
 def asymmetry_sign(x: FloatArray, response: FloatArray) -> int:
@@ -305,7 +299,7 @@ def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[st
             "the region of opened contacts below the load contains a contact of the bottom row",
         ),
         "third_peak": (
-            measures.third_peak,
+            lambda state: measures.third_peak(state) > 0.0,
             "the double-peaked floor response has a further peak at x = 0",
         ),
         "loss_of_symmetry_path": (

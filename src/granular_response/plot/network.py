@@ -283,14 +283,7 @@ def draw_force_key(
         )
 
 
-def draw_load(
-    axes: Axes,
-    at: ArrayLike,
-    direction: ArrayLike = (0.0, -1.0),
-    *,
-    length: float = 4.0,
-    colour: Any = style.VERMILION,
-) -> None:
+def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, length: float = 4.0) -> None:
     """An arrow of ``length`` radii that ends at ``at`` and shows where, and which way, a force is applied."""
     tip, along = np.asarray(at, dtype=float), np.asarray(direction, dtype=float)
     tail = tip - length * (along / np.linalg.norm(along))
@@ -298,7 +291,7 @@ def draw_load(
         "",
         xy=tuple(tip.tolist()),
         xytext=tuple(tail.tolist()),
-        arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0},
+        arrowprops={"arrowstyle": "-|>", "color": style.VERMILION, "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0},
         annotation_clip=False,
         zorder=10,
     )

@@ -95,10 +95,14 @@ class State:
         """(w, 2) force on ``walls.first``."""
         return contact_force(wall_normals(self.walls.second), self.walls.normal_force, self.walls.tangential_force)
 
-    def contact_count(self) -> NDArray[np.intp]:
-        """(n,) closed contacts of each disk, walls included. Two are the least that hold one under gravity."""
-        pairs, walls = self.pairs, self.walls
-        sides = (pairs.first[pairs.touching], pairs.second[pairs.touching], walls.first[walls.touching])
+    def contact_count(self, pairs: NDArray[np.bool_] | None = None, *, walls: bool = True) -> NDArray[np.intp]:
+        """(n,) closed contacts of each disk, with or without ``walls``. Two are the least that hold one under gravity.
+
+        ``pairs`` : (m,) those that count; by default all that touch.
+        """
+        live = self.pairs.touching if pairs is None else pairs
+        at_wall = self.walls.first[self.walls.touching & walls]
+        sides = (self.pairs.first[live], self.pairs.second[live], at_wall)
         return np.bincount(np.concatenate(sides), minlength=len(self.position))
 
     def __repr__(self) -> str:

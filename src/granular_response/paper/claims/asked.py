@@ -11,9 +11,9 @@ from .claim import Condition, Finding, NotMeasured, Quantity, Reading
 from .words import Bounds
 
 
-def near(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "", of: float = 1.0) -> Condition:
-    """Off ``of`` by at most the word's part of it."""
-    return Condition(what, _known(found), (1.0 - words[word]) * of, (1.0 + words[word]) * of, (word,), unit)
+def near(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Condition:
+    """The ratio is off 1 by the word's bound at most."""
+    return Condition(what, _known(ratio), 1.0 - words[word], 1.0 + words[word], (word,))
 
 
 def at_most(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
@@ -49,11 +49,15 @@ def one_reading(summary: str, reading: str, *conditions: Condition, remark: str 
 
 
 def each(
-    what: str, found: Mapping[str, Quantity], condition: Callable[[Quantity], Condition], unit: str = ""
+    what: str,
+    found: Mapping[str, Quantity],
+    condition: Callable[[Quantity], Condition],
+    unit: str = "",
+    remark: str = "",
 ) -> Finding:
     """A number for each reading, by its name, and what is asked of each."""
     texts = ", ".join(f"{quantity.text(unit)} ({name})" for name, quantity in found.items())
-    return Finding(what + texts, [Reading(name, condition(quantity)) for name, quantity in found.items()])
+    return Finding(what + texts, [Reading(name, condition(quantity)) for name, quantity in found.items()], remark)
 
 
 def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:

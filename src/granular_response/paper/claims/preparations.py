@@ -14,6 +14,7 @@ import xarray as xr
 
 from granular_response.observe.peaks import central_dip
 
+from . import asked
 from .claim import Condition, Data, Quantity, Reading
 from .words import Bounds
 
@@ -49,12 +50,7 @@ def one_peak_at_15(data: Data, friction: float, words: Bounds) -> list[Reading]:
     if LOADING not in data.groups:
         return []
     return [
-        Reading(
-            f"{name} (15 mg)",
-            Condition(
-                "dip at x = 0 at 15 mg", Quantity.exact(dip), most=words["visible"], words=("visible",), unit="%"
-            ),
-        )
+        Reading(f"{name} (15 mg)", asked.at_most("dip at x = 0 at 15 mg", dip, words, "visible", "%"))
         for name, dip in dips(data, friction).items()
     ]
 

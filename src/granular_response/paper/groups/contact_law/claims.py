@@ -18,21 +18,11 @@ CLAIMS = Claims(GROUP)
 )
 def linear_fit(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "responses", "difference", "friction", "force")
-    readings = []
-    for index, mu in enumerate(study["friction"].values.tolist()):
-        one = study["difference"].values[index]
-        readings.append(
-            Reading(
-                f"friction {mu:g}",
-                asked.at_most(
-                    "largest difference of the responses, per largest response",
-                    float(one.max()),
-                    words,
-                    "quite well",
-                    "%",
-                ),
-            )
-        )
+    what = "largest difference of the responses, per largest response"
+    readings = [
+        Reading(f"friction {mu:g}", asked.at_most(what, one.max(), words, "quite well", "%"))
+        for mu, one in zip(study["friction"].values.tolist(), study["difference"].values, strict=True)
+    ]
     values = [reading.conditions[0].found.value for reading in readings]
     return Finding(
         f"responses by the two laws are at most {min(values):.1%} to {max(values):.1%} of the largest response apart",

@@ -95,16 +95,13 @@ def criterion(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "elastic", "root", "rotations")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
     end = data.event(GROUP, "two_peaks_end")
-    asked = 1.0 - words["quite well"], 1.0 + words["quite well"]
     return Finding(
         f"root {roots['suppressed']:.4f} of the half plane without rotations, {roots['free']:.4f} with free ones; the "
         f"slab's two peaks end at {end.text()}",
         [
             Reading(
                 name,
-                Condition(
-                    "root per crossover of the slab", Quantity.exact(roots[key]).per(end), *asked, ("quite well",)
-                ),
+                asked.near("root per crossover of the slab", Quantity.exact(roots[key]).per(end), words, "quite well"),
             )
             for key, name in (("suppressed", "rotations suppressed, as in eq. (5)"), ("free", "disks free to turn"))
         ],

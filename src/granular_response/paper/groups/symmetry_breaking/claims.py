@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ...claims import preparations
-from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
+from ...claims import asked, preparations
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity
 from ...claims.words import Bounds
 
 GROUP = "symmetry_breaking"
@@ -18,18 +18,19 @@ CLAIMS = Claims(GROUP)
 )
 def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
     brackets = data.get(GROUP, "brackets", "low", "high", "ramp_time", "time_step")
-    readings, texts = [], []
-    for low, high, ramp, step in zip(
-        *(brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step")), strict=True
-    ):
-        event = Quantity.bracket(low, high)
-        name = f"ramp of {ramp:g} sqrt(R/g), step {step:g}"
-        # the next force that the paper names is 95 mg, where its response has lost its symmetry
-        readings.append(Reading(name, Condition("loss of symmetry", event, 91.0, 95.0, unit="mg")))
-        texts.append(f"{event.text('mg')} ({name})")
+    columns = (brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step"))
+    found = {
+        f"ramp of {ramp:g} sqrt(R/g), step {step:g}": Quantity.bracket(low, high)
+        for low, high, ramp, step in zip(*columns, strict=True)
+    }
     for walls, friction in (("smooth", 0.0), ("rough", 1.0)):
         for way, event in preparations.events(data, "loss_of_symmetry_path", 1.0, friction).items():
-            name = f"{way}, {walls} walls, force grown in stages"
-            readings.append(Reading(name, Condition("loss of symmetry", event, 91.0, 95.0, unit="mg")))
-            texts.append(f"{event.text('mg')} ({name})")
-    return Finding(", ".join(texts), readings, "The paper says neither how long the force grows nor how gravity came")
+            found[f"{way}, {walls} walls, force grown in stages"] = event
+    # the next force that the paper names is 95 mg, where its response has lost its symmetry
+    return asked.each(
+        "",
+        found,
+        lambda event: Condition("loss of symmetry", event, 91.0, 95.0, unit="mg"),
+        "mg",
+        "The paper says neither how long the force grows nor how gravity came",
+    )
