@@ -419,12 +419,10 @@ def report(
     _loaded()
 
     typer.echo(str(reporting.write(output, root, keep=[file for file in (notes, figures, beyond) if file])))
-    if notes is not None:
-        reporting.renew_notes(notes, root)
-    if figures is not None:
-        reporting.renew_figures(figures, root)
-    if beyond is not None:
-        reporting.renew_beyond(beyond, root)
+    renewed = (notes, reporting.renew_notes), (figures, reporting.renew_figures), (beyond, reporting.renew_beyond)
+    for file, renew in renewed:
+        if file is not None:
+            renew(file, root)
 
 
 @_command("notebooks", "notebooks pile_dip -o elsewhere")
