@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -135,9 +135,14 @@ def letters(stem: str) -> Iterator[str]:
     return (chr(code) for code in range(ord(first), ord("z") + 1))
 
 
+def lettered(panels: Iterable[str]) -> str:
+    """What each panel shows."""
+    return ", ".join(f"({chr(ord('a') + k)}) {text}" for k, text in enumerate(panels))
+
+
 def panels(forces: Sequence[float]) -> str:
     """The force of each panel."""
-    return ", ".join(f"({chr(ord('a') + k)}) {force:g}" for k, force in enumerate(forces)) + f" {WEIGHT}."
+    return f"{lettered(f'{force:g}' for force in forces)} {WEIGHT}."
 
 
 def number(stem: str) -> int | None:

@@ -47,13 +47,13 @@ _CONTACT_VARIABLES = {
 UNITS = "reduced: mean disk radius, mean disk mass, g"
 
 
-def _flags(meanings: Sequence[str], kind: type[np.integer]) -> dict[str, Any]:
+def flags(meanings: Sequence[str], kind: type[np.integer] = np.int8) -> dict[str, Any]:
     """Attributes of a variable that holds codes, by the CF conventions."""
     return {"flag_values": np.arange(len(meanings), dtype=kind), "flag_meanings": " ".join(meanings)}
 
 
-_FLAGS = _flags(status.MEANINGS, np.int8)
-_WALL_FLAGS = _flags(box.WALL_MEANINGS, np.int32)
+STATUSES = flags(status.MEANINGS)
+_WALL_FLAGS = flags(box.WALL_MEANINGS, np.int32)
 _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 
 
@@ -110,8 +110,8 @@ def _states(states: Sequence[State], dimension: str) -> dict[str, Values]:
             data["wall_index"] = described(dim, contacts[0].second, "wall", **_WALL_FLAGS)
         for name, long_name in _CONTACT_VARIABLES.items():
             values = np.stack([getattr(c, name) for c in contacts])
-            flags = _FLAGS if name == "status" else {}
-            data[f"{prefix}_{name}"] = described((dimension, dim), values, long_name, **flags)
+            coded = STATUSES if name == "status" else {}
+            data[f"{prefix}_{name}"] = described((dimension, dim), values, long_name, **coded)
     data["load_factor"] = described(dimension, [s.load_factor for s in states], "multiplier of the scene's loads")
     return {**data, "axis": described("axis", ["x", "z"], "axis labels")}
 
@@ -249,7 +249,7 @@ def added_forces_dataset(
 
     def status(when: str, states: Sequence[State]) -> xr.Variable:
         values = np.stack([state.pairs.status for state in states])
-        return variable((dimension, "contact"), values, f"contact status {when}", **_FLAGS)
+        return variable((dimension, "contact"), values, f"contact status {when}", **STATUSES)
 
     return xr.Dataset(
         {

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from granular_response.paper.captions import Caption, of_scene
+from granular_response.paper.captions import Caption, lettered, of_scene
 from granular_response.plot import style
 
 from .parameters import Parameters
@@ -48,7 +48,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    panels = ", ".join(f"({chr(ord('a') + k)}) µ = {mu:g}" for k, mu in enumerate(parameters.friction))
+    panels = lettered(f"µ = {mu:g}" for mu in parameters.friction)
     return {
         "contact_law": Caption(
             "Not in the paper: Sec. III.B says that measurements on its disks gave a force that grows as the overlap "

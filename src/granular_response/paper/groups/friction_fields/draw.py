@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from granular_response.paper.captions import RADIUS, Caption, of_scene, values
+from granular_response.paper.captions import RADIUS, Caption, lettered, of_scene, values
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box
@@ -70,11 +70,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             of_scene(parameters.scene, force=parameters.profiles.force, friction=profiles, wall_friction=profiles),
         ),
     }
-
-
-def lettered(panels: list[str]) -> str:
-    """What each panel shows."""
-    return ", ".join(f"({chr(ord('a') + k)}) {text}" for k, text in enumerate(panels))
 
 
 def _force_chains(data: xr.Dataset) -> Figure:

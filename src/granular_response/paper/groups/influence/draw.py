@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from granular_response.paper.captions import Caption, of_scene
+from granular_response.paper.captions import Caption, lettered, of_scene
 from granular_response.plot import style
 
 from .parameters import Parameters
@@ -32,9 +32,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     most = max(case.realizations for case in parameters.cases)
     maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
-    panels = ", ".join(
-        f"({chr(ord('a') + k)}) δ = {case.polydispersity:g}, µ = {case.friction:g}" for k, case in enumerate(maps)
-    )
+    panels = lettered(f"δ = {case.polydispersity:g}, µ = {case.friction:g}" for case in maps)
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
     low, high = parameters.fitted
     return {

@@ -30,7 +30,7 @@ from granular_response.paper.survey.crossover import (
     weights,
 )
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.result import FORCE, LENGTH, flags, variable
 from granular_response.sweeps.resources import current
 
 
@@ -197,14 +197,14 @@ def _datasets(
         "level": variable("level", LEVELS, "part of the bootstrap draws below"),
         **cases,
     }
-    flags = {"flag_values": np.arange(len(KINDS), dtype=np.int8), "flag_meanings": " ".join(KINDS)}
+    kinds = flags(KINDS)
     what = "whether the crossover was found or is a bound"
     drawn = f"bootstrapped crossover forces {FORCE}, alike in cases of as many realizations; infinite beyond bounds"
     quantile = f"quantiles of the bootstrapped crossover force {FORCE}; infinite beyond bounds"
     crossovers = xr.Dataset(
         {
             "force": variable(dims, grid("force"), f"crossover force of the mean response, or its bound {FORCE}"),
-            "kind": variable(dims, grid("kind").astype(np.int8), what, **flags),
+            "kind": variable(dims, grid("kind").astype(np.int8), what, **kinds),
             "interval": variable((*dims, "level"), grid("interval"), quantile),
             "draw_part": variable((*dims, "kind_of_draw"), grid("kinds"), "part of the bootstrap draws of each kind"),
             "draws": variable((*dims, "draw"), grid("draws").astype(np.float32), drawn),
@@ -229,7 +229,7 @@ def _datasets(
                 dims_of_others,
                 np.array([[[other[1] for other in one] for one in row] for row in others], np.int8),
                 what,
-                **flags,
+                **kinds,
             ),
             "interval": variable(
                 (*dims_of_others, "level"),
@@ -310,7 +310,7 @@ def _datasets(
                 (*dims, "realization"),
                 np.nan_to_num(along("kind", ["realization"], single), nan=-1).astype(np.int8),
                 f"{what}; -1 where there is no realization",
-                **flags,
+                **kinds,
             ),
             "median": variable(
                 dims,

@@ -25,7 +25,7 @@ from granular_response.paper.groups.pile_dip.parameters import Parameters
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, minimise
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, certificates_dataset, common_candidates, variable
+from granular_response.store.result import FORCE, LENGTH, STATUSES, certificates_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.sweeps.tasks import map_tasks
 
@@ -107,13 +107,7 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
                 np.stack([state.pair_force() for state in states]),
                 f"contact force on the first disk {FORCE}",
             ),
-            "contact_status": variable(
-                dims,
-                status,
-                "contact status",
-                flag_values=np.array([0, 1, 2], np.int8),
-                flag_meanings="open sticking sliding",
-            ),
+            "contact_status": variable(dims, status, "contact status", **STATUSES),
             "wall_disk": variable("wall_contact", walls.first, "disk that the wall's force acts on"),
             "wall_index": variable("wall_contact", walls.second, "wall: 0 floor, 1 left, 2 right"),
             "wall_force": variable(

@@ -327,9 +327,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     """Mean responses with bands of one standard error at a few forces of a case; their key stands over the panel."""
     usable = np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
     steps = usable[np.unique(np.linspace(0, len(usable) - 1, min(MOST_FORCES, len(usable))).round().astype(int))]
-    total = int(
-        sum(one[f"count_{name}"].values[usable[0]] for name in ("at_rest", "collapsed", "failed", "not_reached"))
-    )
+    total = int(_realizations(one)[usable[0]])
     for k, (step, colour) in enumerate(zip(steps, style.ordered_colours(len(steps)), strict=True)):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
@@ -348,6 +346,12 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         borderpad=0.0,
         borderaxespad=0.2,
     )
+
+
+def _realizations(one: xr.Dataset) -> np.ndarray:
+    """(step,) how many a case has, whatever became of them."""
+    outcomes = ("at_rest", "collapsed", "failed", "not_reached")
+    return np.sum([one[f"count_{name}"].values for name in outcomes], axis=0)
 
 
 def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
@@ -403,7 +407,7 @@ def _bearing(axes: Axes, averages: xr.Dataset, deltas: list[float]) -> None:
         one = averages.isel(case=int(case))
         used = np.isfinite(one["force"].values)
         at_rest = one["count_at_rest"].values[used]
-        total = sum(one[f"count_{name}"].values[used] for name in ("at_rest", "collapsed", "failed", "not_reached"))
+        total = _realizations(one)[used]
         if np.all(at_rest == total):
             continue
         delta, friction = float(one["polydispersity"]), float(one["friction"])

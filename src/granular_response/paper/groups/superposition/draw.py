@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from granular_response.paper.captions import Caption, letters, of_scene
+from granular_response.paper.captions import Caption, lettered, letters, of_scene
 from granular_response.plot import style
 from granular_response.state import FloatArray
 
@@ -39,7 +39,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     given = of_scene(parameters.scene)
     diameters = [2 * offset for offset in parameters.offsets]
-    panels = ", ".join(f"({'abcdefgh'[k]}) d = {d:g} diameters" for k, d in enumerate(diameters))
+    panels = lettered(f"d = {d:g} diameters" for d in diameters)
     compared = (
         "Forces of single disks on the floor, not smoothed, per force of one load, in one realization of the "
         "disorder. Left, Right: the response to a load to the left or right of the middle of the top, (Left+Right): "

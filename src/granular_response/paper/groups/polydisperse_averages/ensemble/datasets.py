@@ -10,7 +10,7 @@ import xarray as xr
 from granular_response.paper.ensembles import NOT_REACHED, OUTCOMES
 from granular_response.paper.groups.polydisperse_averages.ensemble import realizations
 from granular_response.paper.groups.polydisperse_averages.parameters import Case
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.result import FORCE, LENGTH, flags, variable
 
 
 def _case_coordinates(cases: Sequence[Case]) -> dict[str, xr.Variable]:
@@ -62,13 +62,7 @@ def ensembles_dataset(cases: Sequence[Case], found: Sequence[realizations.Realiz
         "floor_response": variable(
             (*dims, "slot"), response, "vertical floor force that the load adds, per applied force"
         ),
-        "outcome": variable(
-            dims,
-            outcome,
-            "what became of the realization",
-            flag_values=np.arange(len(OUTCOMES), dtype=np.int8),
-            flag_meanings=" ".join(OUTCOMES),
-        ),
+        "outcome": variable(dims, outcome, "what became of the realization", **flags(OUTCOMES)),
         "message": variable(("case", "realization"), message.astype(str), "why a realization failed"),
         **{name: variable(dims, loaded[name], text) for name, text in realizations.LOADED.items()},
     }
