@@ -18,14 +18,16 @@ from granular_response.state import OPEN, Contacts, FloatArray, State
 def require_same_candidates(rest: State, loaded: State) -> None:
     """Raise ``ValueError`` unless both states list the same candidate contacts in the same order."""
     for kind in ("pairs", "walls"):
-        a: Contacts = getattr(rest, kind)
-        b: Contacts = getattr(loaded, kind)
-        if not a.same_candidates(b):
-            raise ValueError(
-                f"{kind}: the two states list different candidate contacts "
-                f"({a.first.size} and {b.first.size}); "
-                "bring them to one list with match_candidates"
-            )
+        require_same(getattr(rest, kind), getattr(loaded, kind), kind)
+
+
+def require_same(rest: Contacts, loaded: Contacts, kind: str = "contacts") -> None:
+    """The same for contacts of one kind."""
+    if not rest.same_candidates(loaded):
+        raise ValueError(
+            f"{kind}: the two states list different candidate contacts ({rest.first.size} and {loaded.first.size}); "
+            "bring them to one list with match_candidates"
+        )
 
 
 def pair_force_difference(rest: State, loaded: State) -> FloatArray:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from granular_response.observe.difference import require_same
 from granular_response.state import SLIDING, Contacts, FloatArray, State
 
 #: Directions of the triangular lattice, as returned by :func:`lattice_direction`.
@@ -35,12 +36,7 @@ def contact_changes(rest: Contacts, loaded: Contacts) -> ContactChanges:
 
     Raises ``ValueError`` if the candidates differ.
     """
-    if not rest.same_candidates(loaded):
-        raise ValueError(
-            f"contacts: the two states list different candidates "
-            f"({rest.first.size} and {loaded.first.size}); "
-            "bring them to one list with match_candidates"
-        )
+    require_same(rest, loaded)
     slid, slides = rest.status == SLIDING, loaded.status == SLIDING
     return ContactChanges(
         opened=rest.touching & ~loaded.touching,

@@ -83,11 +83,12 @@ class Caption:
         return f"{self.text} {', '.join(said)}." if said else self.text
 
 
-def of_scene(scene: Scene, **others: Value | None) -> dict[str, Value]:
+def of_scene(scene: Scene, *, frictions: Value | None = None, **others: Value | None) -> dict[str, Value]:
     """The parameters that every caption has, of a group's base scene; ``others`` replace or add, None leaves out.
 
-    Without friction there is no k_T/k_N.
+    ``frictions`` are those of disks and walls alike. Without friction there is no k_T/k_N.
     """
+    alike = {} if frictions is None else {"friction": frictions, "wall_friction": frictions}
     packing = scene.packing.model_dump()
     found: dict[str, Value | None] = {
         "friction": scene.contact.friction,
@@ -96,10 +97,10 @@ def of_scene(scene: Scene, **others: Value | None) -> dict[str, Value]:
         "normal_stiffness": scene.contact.normal_stiffness,
         "polydispersity": packing["polydispersity"],
         "packing": rows(scene.packing.build().row_count.tolist(), kind=packing["kind"]),
+        **alike,
         **others,
     }
-    frictions = found["friction"]
-    if frictions == 0.0 and "stiffness_ratio" not in others:
+    if found["friction"] == 0.0 and "stiffness_ratio" not in others:
         del found["stiffness_ratio"]
     return {key: value for key, value in found.items() if value is not None}
 

@@ -38,7 +38,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     frictions = list(parameters.frictions)
-    given = of_scene(parameters.scene, force=parameters.force, friction=frictions, wall_friction=frictions)
+    given = of_scene(parameters.scene, force=parameters.force, frictions=frictions)
     each = [f"µ = µ_wall = {mu:g}" for mu in frictions]
     below = sorted(float(depth) for depth in datasets["profiles"]["depth"].values) if "profiles" in datasets else []
     profiles = list(parameters.profiles.frictions)
@@ -67,7 +67,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             f"at depths of {values([round(depth, 1) for depth in below])} {RADIUS} below the force: "
             f"{lettered([f'µ = µ_wall = {mu:g}' for mu in profiles])}. Both panels have one scale, of the square root.",
             "Curves with two sharp peaks without friction, and with a peak in the middle with it.",
-            of_scene(parameters.scene, force=parameters.profiles.force, friction=profiles, wall_friction=profiles),
+            of_scene(parameters.scene, force=parameters.profiles.force, frictions=profiles),
         ),
     }
 

@@ -50,13 +50,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     forces = sorted({force for case in parameters.columns for force in case.forces})
     last = "abcdefghijklmnopqrstuvwxyz"[len(disordered) * len(frictions) - 1]
     at_rest, added = KEYS
-    ensemble = of_scene(
-        scene,
-        friction=frictions,
-        wall_friction=frictions,
-        polydispersity=disordered,
-        realizations=parameters.realizations,
-    )
+    ensemble = of_scene(scene, frictions=frictions, polydispersity=disordered, realizations=parameters.realizations)
     return {
         "fig02_polydisperse_forces": Caption(
             "Contact forces in a disordered packing: (a) at rest under gravity, (b) what a vertical force on top "
@@ -67,13 +61,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "are grey.",
             "Two pictures of a packing with its contact forces as lines. Gravity makes branching chains that thicken "
             "towards the floor; the load adds a few chains that spread below it.",
-            of_scene(
-                scene,
-                force=picture.force,
-                friction=picture.friction,
-                wall_friction=picture.friction,
-                polydispersity=picture.polydispersity,
-            ),
+            of_scene(scene, force=picture.force, frictions=picture.friction, polydispersity=picture.polydispersity),
         ),
         "fig19_disordered_response": Caption(
             "Smoothed floor response of slightly disordered slabs, (a), (c) without and (b), (d) with friction: "
@@ -85,8 +73,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             of_scene(
                 scene,
                 force=single.force,
-                friction=single.frictions,
-                wall_friction=single.frictions,
+                frictions=single.frictions,
                 polydispersity=single.polydispersity,
                 realizations=single.realizations,
                 width=single.width,
