@@ -117,7 +117,12 @@ TEXTS = {
         "as the paper's. Stiffness grows with the size of the slab, so that gravity compresses all of them equally "
         "little; open symbols: the region has reached the floor.",
     ),
-    "startup": ("What a newcomer waits for", "Whole processes. Compiled kernels are kept on disk."),
+    "startup": (
+        "What a newcomer waits for",
+        "Whole processes, the least of five. Compiled kernels are kept on disk. A run of two disks is what every run "
+        "pays: libraries imported, kernels read from the disk and linked, a result written. Most of what is left is "
+        "the fall of the slab, in the paper's time steps.",
+    ),
     "pipeline": (
         "Where the time of the pipeline goes",
         "Every group from nothing, with compiled kernels, on all cores. Wall-clock seconds of each stage with "

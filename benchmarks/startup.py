@@ -20,6 +20,13 @@ ALL_KERNELS = Path(__file__).with_name("all_kernels.py")
 SCENES = {
     "default (friction 0.2, force 15)": "loads: [{disk: top-centre, force: [0.0, -15.0]}]\ncontact: {friction: 0.2}\n",
     "frictionless, force 4": "loads: [{disk: top-centre, force: [0.0, -4.0]}]\ncontact: {friction: 0.0}\n",
+    "default, rest alone": "loads: []\ncontact: {friction: 0.2}\n",
+    "two disks": "packing: {kind: slab, layers: 1, disks_per_row: 2}\nloads: []\ncontact: {friction: 0.2}\n",
+}
+#: What a run waits for before it does anything, as processes of their own; they show how fast the machine is, too.
+BEFORE = {
+    "numpy, scipy.sparse, numba and xarray imported": "import numpy, scipy.sparse.linalg, numba, xarray, netCDF4",
+    "the interpreter alone": "pass",
 }
 REPEATS = 5
 
@@ -50,6 +57,8 @@ def main(path: str) -> None:
             command = [sys.executable, "-m", "granular_response", "run", str(scene), "-o", str(result)]
             run(command)  # compiles
             rows.append({"what": f"granular-response run, {name}", **run(command, REPEATS)})
+        for name, code in BEFORE.items():
+            rows.append({"what": name, **run([sys.executable, "-c", code], REPEATS)})
         command = [sys.executable, "-m", "granular_response", "--version"]
         rows.append({"what": "granular-response --version", **run(command, REPEATS)})
     for row in rows:
