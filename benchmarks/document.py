@@ -109,9 +109,9 @@ TEXTS = {
         "Large systems",
         "Whole processes, `granular-response run` from a scene file to the stored result. Slabs are four times as "
         "wide as deep, and stiffness grows with their size so that the order of the slab survives. Where the time "
-        "is far above the processor time of a thread, other work held the cores; goals are judged by the time. Rows"
-        " of one thread were measured on a faster day of the machine. On the day of the others 102,480 disks with "
-        "friction took 183 s (278 s of two processors) by the version before, whose factorisations were only ever "
+        "is far above the processor time of a thread, other work held the cores; goals are judged by the time. The "
+        "row of one thread was measured on a faster day of the machine. On the day of the others 102,480 disks with"
+        " friction took 183 s (278 s of two processors) by the version before, whose factorisations were only ever "
         "made as a whole.",
     ),
     "depth": (
@@ -125,8 +125,8 @@ TEXTS = {
         "Whole processes, the least of five. Compiled kernels are kept on disk. A run of two disks is what every "
         "run pays: libraries imported, kernels read from the disk and linked, a result written. Most of what is "
         "left is the fall of the slab, in the paper's time steps. The machine has slow days, of which this was one:"
-        " in turns the version of the days before took as long as this one, 3.7 s for the default scene and 63 s "
-        "for all kernels; on a fast day it had taken 1.8 and 35 s. The goals are those of a fast day.",
+        " in turns the first version, which on a fast day took 35 s for its kernels and 1.8 s for the default "
+        "scene, took 61 and 3.1 s. The goals are those of a fast day.",
     ),
     "pipeline": (
         "Where the time of the pipeline goes",
