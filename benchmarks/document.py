@@ -109,10 +109,9 @@ TEXTS = {
         "Large systems",
         "Whole processes, `granular-response run` from a scene file to the stored result. Slabs are four times as "
         "wide as deep, and stiffness grows with their size so that the order of the slab survives. Where the time "
-        "is far above the processor time of a thread, other work held the cores; goals are judged by the time. The "
-        "row of one thread was measured on a faster day of the machine. On the day of the others 102,480 disks with"
-        " friction took 183 s (278 s of two processors) by the version before, whose factorisations were only ever "
-        "made as a whole.",
+        "is far above the processor time of a thread, other work held the cores; goals are judged by the time. On "
+        "the same day, a slow one, 102,480 disks with friction took 183 s (278 s of two processors) by the version "
+        "before, whose factorisations were only ever made as a whole.",
     ),
     "depth": (
         "The teardrop in deep slabs",
