@@ -236,3 +236,20 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     # where Newton's method takes other steps, so do increments
     assert kept.walls.normal_force == pytest.approx(alone.walls.normal_force, rel=1e-5)
     assert kept.reached.certificate.force_residual < 1e-10
+
+
+def test_a_renewed_factor_is_kept_for_its_statuses_unless_it_has_a_shift(monkeypatch):
+    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
+    monkeypatch.setattr(multifrontal, "LARGE", 0)
+    problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless"))
+    state = rest_state(problem)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    trial = system.trial(known, known.q)
+    force = np.random.default_rng(5).normal(size=system.dof)
+    system.factorise(trial)
+    factor = system.kept_factor(trial)
+    system.step(trial, force)
+    assert system.kept_factor(trial) is factor  # renewed in its place
+    system.step(trial, force, 1e-7 * problem.stiffness)
+    assert system.kept_factor(trial) is None

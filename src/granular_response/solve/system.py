@@ -309,9 +309,12 @@ class StaticSystem:
         factor = self._storage.factor(matrix)
         if isinstance(factor, LU) and factor.large:
             self._near = Nearby(factor)
-        if np.ndim(shift) == 0 and shift == 0.0:
-            self._kept = trial.sense, factor
+        self._keep(trial, factor, shift)
         return factor
+
+    def _keep(self, trial: Trial, factor: Factor, shift: float | FloatArray) -> None:
+        """Keep the factorisation of a tangent for trials with the same statuses, unless it has a shift."""
+        self._kept = (trial.sense, factor) if np.ndim(shift) == 0 and shift == 0.0 else None
 
     def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
         """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
@@ -328,8 +331,7 @@ class StaticSystem:
                 self._kept = self._near = None
                 raise
             if found is not None:
-                if self._kept is not None:
-                    self._kept = trial.sense, self._near.factor
+                self._keep(trial, self._near.factor, shift)
                 return self.deinterleave(found)
         return self.deinterleave(self.factorise(trial, shift).solve(right))
 

@@ -15,7 +15,7 @@ from granular_response.paper.pipeline import GroupError, data_path, group_member
 from granular_response.scene import SceneError, text
 from granular_response.scene.base import Description
 from granular_response.store import files as store
-from granular_response.sweeps.resources import Progress, Resources, using
+from granular_response.sweeps.resources import Progress, using
 
 PARAMETERS = Path("params.yaml")
 
@@ -89,8 +89,8 @@ def simulate(
     store.check_writable(output, [parameter_file])
     kept = output.parent / f".{output.stem}.checkpoint"
     rest_states = output.parent.absolute() / REST_STATES
-    resources = Resources(workers, scheduler, progress, checkpoint=kept, rest_states=rest_states)
-    with _alone(kept, output), using(**vars(resources)):
+    resources = using(workers=workers, scheduler=scheduler, progress=progress, checkpoint=kept, rest_states=rest_states)
+    with _alone(kept, output), resources:
         try:
             datasets = function(described)
         except SceneError as error:
