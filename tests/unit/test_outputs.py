@@ -96,6 +96,13 @@ def test_no_command_writes_over_its_inputs(inputs, tmp_path, command):
         assert contents(tmp_path) == before
 
 
+def test_drawing_can_measure_too(inputs, tmp_path):
+    data = ["--data", str(inputs / "theory" / "fig01_predictions.png")]
+    assert call("draw", "theory", *data, "--measure", folder=tmp_path).returncode == 0
+    assert call("measure", "theory", *data, "-o", "alone.json", folder=tmp_path).returncode == 0
+    assert (tmp_path / "figures/metrics/theory.json").read_bytes() == (tmp_path / "alone.json").read_bytes()
+
+
 @pytest.mark.parametrize("name", ["r.png", "r", "r.nc.txt"])
 def test_the_name_of_a_result_says_what_it_is(inputs, tmp_path, name):
     for arguments in (["run", inputs / "scene.yaml"], ["continue", inputs / "result.nc", "--to", 2]):

@@ -192,7 +192,7 @@ def test_stages_have_the_agreed_form(kind, group, definition):
         assert definition["outs"] == [f"data/{group}.nc"]
         assert definition["params"] == ["common", group]
     elif kind == "draw":
-        assert definition["cmd"] == [f"granular-response {what} {group}" for what in ("draw", "measure")]
+        assert definition["cmd"] == f"granular-response draw {group} --measure"
         assert definition["outs"] == [{f"figures/{group}": {"cache": False}}]
         assert "params" not in definition
         assert definition["metrics"] == [{f"figures/metrics/{group}.json": {"cache": False}}]

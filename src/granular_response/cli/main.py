@@ -264,21 +264,26 @@ def simulate(
     typer.echo(str(path))
 
 
-@_command("draw pile_dip", "draw pile_dip --data other.nc -o other-figures")
+@_command("draw pile_dip", "draw pile_dip --measure", "draw pile_dip --data other.nc -o other-figures")
 def draw(
     group: Group,
     data: GroupData = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder of the figures; figures/GROUP if not given.")
     ] = None,
+    measured: Annotated[
+        bool, typer.Option("--measure", help="Write its numbers too, to figures/metrics/GROUP.json.")
+    ] = False,
 ) -> None:
     """Draw the figures of a group."""
-    from ..paper.pipeline import drawing
+    from ..paper.pipeline import drawing, measuring
 
     _loaded()
 
     for path in drawing.draw(group, data, output):
         typer.echo(str(path))
+    if measured:
+        typer.echo(str(measuring.measure(group, data)))
 
 
 @_command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")

@@ -342,14 +342,18 @@ def save(
     formats: Sequence[str] = ("png", "pdf"),
     inputs: Sequence[str | os.PathLike[str]] = (),
 ) -> list[Path]:
-    """Write ``folder/stem.png`` (200 dots per inch) and ``.pdf``, each whole or not at all.
+    """Write ``folder/stem.png`` (200 dots per inch) and ``.pdf``, each whole or not at all, laid out as the first one.
 
     Returns the paths. A missing folder is made. The same figure gives the same bytes. Raises OSError if a
     file cannot be written or is one of ``inputs``.
     """
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
-    files = {target / f"{stem}.{file_format}": render(drawn, file_format) for file_format in formats}
+    files, layout = {}, drawn.get_layout_engine()
+    for file_format in formats:
+        files[target / f"{stem}.{file_format}"] = render(drawn, file_format)
+        drawn.set_layout_engine("none")  # to lay out takes as long as to draw
+    drawn.set_layout_engine(layout or "none")
     for path in files:
         atomic.check_writable(path, inputs)
     for path, data in files.items():
