@@ -202,6 +202,50 @@ def test_an_lu_is_left_where_little_or_too_much_has_changed(factorised):
         factor.renew(empty, 1e-9, 1.0)
 
 
+def test_a_cholesky_factor_is_renewed_to_the_bits_of_a_new_one_or_seen_not_to_be_definite(factorised):
+    fronts, matrix, _, changed = factorised
+    matrix, changed = (shifted(0.5 * (each + each.T), 40.0) for each in (matrix, changed))
+    factor = fronts.definite_factor(matrix)
+    assert factor.renewable
+    for now in (changed, matrix, changed):
+        assert factor.renew(now, 1e-9, 0.9)
+        assert np.array_equal(factor.solve(RIGHT), fronts.definite_factor(now).solve(RIGHT))
+    negative = changed.copy()
+    negative.data[negative.indptr[30] : negative.indptr[31]] *= np.where(
+        negative.indices[negative.indptr[30] : negative.indptr[31]] == 30, -1.0, 1.0
+    )
+    assert fronts.definite_factor(negative) is None
+    with pytest.raises(RuntimeError, match="not positive definite"):
+        factor.renew(negative, 1e-9, 1.0)
+    counted, _ = fronts.symmetric_factor(matrix)
+    assert not counted.renewable
+
+
+def test_a_definite_step_by_a_renewed_factor_is_that_of_a_new_one(monkeypatch):
+    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
+    monkeypatch.setattr(multifrontal, "LARGE", 0)
+    problem = Problem.from_scene(scene(9, 19, contact__friction=0.0))
+    state = rest_state(problem)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    trial = system.trial(known, known.q)
+    moved = system.trial(known, known.q + np.random.default_rng(3).normal(0.0, 1e-8, system.dof))
+    force = np.random.default_rng(5).normal(size=system.dof)
+    k = problem.stiffness
+    made = []
+    definite = Multifrontal.definite_factor
+    monkeypatch.setattr(Multifrontal, "definite_factor", lambda *given: made.append(1) or definite(*given))
+    system.definite_step(trial, force, 0.0)
+    step = system.definite_step(moved, force, 1e-8 * k)
+    assert len(made) == 1
+    system.definite_step(trial, force, 1e-3 * k)  # too far away
+    assert len(made) == 2
+    exact = StaticSystem(problem, state).definite_step(moved, force, 1e-8 * k)
+    assert len(made) == 3
+    assert np.linalg.norm(step - exact) < 1e-3 * np.linalg.norm(exact)
+    assert system.definite_step(moved, force, -k) is None  # not positive definite
+
+
 def test_a_factor_serves_matrices_nearby_as_long_as_it_pays(factorised, monkeypatch):
     fronts, matrix, factor, changed = factorised
     near = Nearby(factor)

@@ -238,6 +238,37 @@ def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, out,
 
 
 @kernel
+def normal_forces(q, n, pairs, pair_shape, walls, wall_shape, force):
+    """Add the normal forces of all contacts at ``q`` to ``force`` (dof,): what a trial without friction has, alone."""
+    for c in range(pairs.first.size):
+        i = pairs.first[c]
+        j = pairs.second[c]
+        ux = q[i] - q[j]
+        uz = q[n + i] - q[n + j]
+        dx0 = pairs.dx[c]
+        dz0 = pairs.dz[c]
+        dx = dx0 + ux
+        dz = dz0 + uz
+        d = math.sqrt(dx * dx + dz * dz)
+        xi = -(pairs.gap[c] + (ux * (dx + dx0) + uz * (dz + dz0)) / (d + math.sqrt(dx0 * dx0 + dz0 * dz0)))
+        if xi > 0.0:
+            pull = elastic_force(pairs.law, xi, _shape_at(pair_shape, c)) / d
+            force[i] += pull * dx
+            force[n + i] += pull * dz
+            force[j] -= pull * dx
+            force[n + j] -= pull * dz
+    for c in range(walls.disk.size):
+        i = walls.disk[c]
+        nx = walls.normal[c, 0]
+        nz = walls.normal[c, 1]
+        xi = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+        if xi > 0.0:
+            fn = elastic_force(walls.law, xi, _shape_at(wall_shape, c))
+            force[i] += fn * nx
+            force[n + i] += fn * nz
+
+
+@kernel
 def spring_forces(overlap, spring, shape, law, out):
     """Fill ``out`` (:class:`Response`, its tangents aside) with forces from overlaps and springs (m,) as they are.
 

@@ -16,6 +16,7 @@ from ..state import FloatArray, Reached, State
 from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, attainable, certify, external_force
 from .line_search import shortened
 from .problem import Problem
+from .relaxation import relaxed
 from .system import REGULARISATION, StaticSystem, Trial
 
 #: Most iterations of one minimisation.
@@ -31,6 +32,10 @@ SPRINGS_ALONE = 1e-6
 #: Where factorisations are dear, in packings of more disks than this, a saddle is left as soon as one is near: when the
 #: stiffness is not positive though little damped and no force out of balance exceeds that many disk weights.
 LARGE, NEAR_SADDLE = 20_000, 0.1
+#: Conjugate gradients there after a step with no more damping than this (units of the normal stiffness).
+RELAXATION, LITTLE_DAMPED = 20, 1e-7
+#: First damping (units of the normal stiffness), and there, where descents begin near a minimum.
+FIRST_DAMPING, FIRST_NEAR = 1e-3, 1e-6
 #: How often a saddle is left before the search is given up.
 MOST_ESCAPES = 20
 #: First length along an unstable direction, times the normal stiffness.
@@ -82,7 +87,7 @@ class _Descent:
         self.system = StaticSystem(problem, start)
         self.external = external_force(problem, load_factor)
         self.known = self.system.start(start)
-        self.damping = 1e-3 * self.stiffness
+        self.damping = (FIRST_NEAR if self._large else FIRST_DAMPING) * self.stiffness
         self.iterations = self.escapes = 0
         q = self.system.displaced(self.known.q, load_factor).copy()
         self._move(q, self.system.trial(self.known, q))
@@ -113,21 +118,21 @@ class _Descent:
         if self._settled():
             self._leave_saddle()
             return
-        factor = self.system.definite_factor(self.trial, self.damping + REGULARISATION * self.stiffness)
+        shift = self.damping + REGULARISATION * self.stiffness
+        step = self.system.definite_step(self.trial, self.unbalanced, shift)
         self.iterations += 1
-        if factor is None:
-            near = self.size < NEAR_SADDLE and self.damping < 1e-7 * self.stiffness
+        if step is None:
+            near = self.size < NEAR_SADDLE and self.damping < LITTLE_DAMPED * self.stiffness
             if self._large and near and self.escapes < MOST_ESCAPES:
                 self.escapes += 1
-                self._move(*_down_from_saddle(self.system, self.known, self.external, self.q, self.trial))
-                self.damping = 1e-7 * self.stiffness
+                self._go_down_from_saddle()
                 return
             springs = self.system.without_prestress(self.trial)
-            factor = self.system.definite_factor(springs, max(self.damping, SPRINGS_ALONE * self.stiffness))
-        if factor is None:
+            shift = max(self.damping, SPRINGS_ALONE * self.stiffness)
+            step = self.system.definite_step(springs, self.unbalanced, shift)
+        if step is None:
             self._damp(MORE)
             return
-        step = self.system.deinterleave(factor.solve(self.system.interleave(self.unbalanced)))
         length = float(np.abs(step).max())
         if length > LONGEST_STEP:
             if not np.isfinite(length) or self.damping > 1e6 * self.stiffness:
@@ -142,17 +147,24 @@ class _Descent:
         self.escapes += 1
         self.iterations += 1
         if self._large:
-            self._move(*_down_from_saddle(self.system, self.known, self.external, self.q, self.trial))
+            self._go_down_from_saddle()
         else:
             q = self.q + 1e-4 * self.system.unstable_direction(self.trial)
             self._move(q, self.system.trial(self.known, q))
-        self.damping = 1e-4 * self.stiffness
+            self.damping = 1e-4 * self.stiffness
+
+    def _go_down_from_saddle(self) -> None:
+        self._move(*_down_from_saddle(self.system, self.known, self.external, self.q, self.trial))
+        self.damping = LITTLE_DAMPED * self.stiffness
 
     def _damp(self, factor: float) -> None:
         self.damping = max(factor * self.damping, 1e-8 * self.stiffness)
 
     def _shorter(self, step: FloatArray, slope: float, full: Trial) -> tuple[FloatArray, Trial]:
-        return shortened(self.system, self.known, self.external, self.q, step, slope, full=full, until=POOR)
+        beyond = POOR if self._large else 0.0
+        return shortened(
+            self.system, self.known, self.external, self.q, step, slope, full=full, until=POOR, beyond=beyond
+        )
 
     def _take(self, step: FloatArray) -> None:
         """Take a step, or the part of it that is good for something, and set the damping by how good it was."""
@@ -160,7 +172,6 @@ class _Descent:
         new = self.system.trial(self.known, self.q + step)
         new_value = energy(self.system, new, self.external)
         predicted = 0.5 * slope + 0.5 * self.damping * float(step @ step)
-        new_size = float(np.abs(new.contact_force + self.external).max())
         rounding = 1e-11 * (abs(self.value) + 1.0)
         if predicted > rounding:
             ratio = (self.value - new_value) / predicted
@@ -170,19 +181,20 @@ class _Descent:
                     self._damp(MORE)
                     return
         elif self._large:
-            # Energies have lost their digits, slopes have not. Contacts that open or close may raise the residual for a
-            # moment; to stop at each of them would take many steps.
+            # Energies have lost their digits, slopes have not.
+            step, new = self._shorter(step, slope, new)
             ratio = 1.0
-            if new_size > 10.0 * self.size and new_size > self.tolerance:
-                length = float(np.abs(step).max())
-                step, new = self._shorter(step, slope, new)
-                ratio = float(np.abs(step).max()) / length
         else:
-            ratio = 1.0 if new_size < 2.0 * self.size or new_size < self.tolerance else 0.0
-        if ratio < POOR and predicted <= rounding:
-            self._damp(MORE)
-            return
-        self._move(self.q + step, new)
+            new_size = float(np.abs(new.contact_force + self.external).max())
+            if new_size >= 2.0 * self.size and new_size >= self.tolerance:
+                self._damp(MORE)
+                return
+            ratio = 1.0
+        q = self.q + step
+        if self._large and self.damping <= LITTLE_DAMPED * self.stiffness:
+            q = relaxed(self.system, self.external, q, RELAXATION)
+            new = self.system.trial(self.known, q)
+        self._move(q, new)
         if ratio > 0.5:
             self.damping = LESS * self.damping if self.damping > 1e-9 * self.stiffness else 0.0
         elif ratio < POOR:
@@ -191,7 +203,7 @@ class _Descent:
 
 def _down_from_saddle(system: StaticSystem, known, external, q, trial: Trial) -> tuple[FloatArray, Trial]:
     """Go from near a saddle along its unstable direction, in doubled lengths as long as energy falls."""
-    direction = system.unstable_direction(trial)
+    direction = system.unstable_direction(trial, rough=True)
     best = (q, trial)
     for sense in (1.0, -1.0):
         length = SHORTEST_ESCAPE / system.problem.stiffness * sense

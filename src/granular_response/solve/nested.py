@@ -14,11 +14,15 @@ import numpy as np
 from ..scene.packing import Packing
 from ..state import FloatArray, State
 from .energy import minimise
-from .equilibrium import EquilibriumError
+from .equilibrium import EquilibriumError, external_force
 from .problem import Problem
+from .relaxation import relaxed
+from .system import StaticSystem
 
 #: Disks from which on a smaller slab is asked first.
 LARGE = 20_000
+#: Conjugate gradients that even out what interpolation leaves between neighbours.
+RELAXATION = 60
 
 
 def rest_start(problem: Problem) -> State:
@@ -47,7 +51,15 @@ def rest_start(problem: Problem) -> State:
     except EquilibriumError:
         return bare
     displacement = prolonged(rest.position - smaller.packing.position, smaller.packing, packing)
-    return problem.with_static_forces(replace(bare, position=bare.position + displacement))
+    return _evened_out(problem, problem.with_static_forces(replace(bare, position=bare.position + displacement)))
+
+
+def _evened_out(problem: Problem, state: State) -> State:
+    """A state under gravity near equilibrium with less out of balance between neighbours."""
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    q = relaxed(system, external_force(problem, 0.0), known.q, RELAXATION)
+    return system.state(system.trial(known, q), 0.0)
 
 
 def prolonged(displacement: FloatArray, coarse: Packing, fine: Packing) -> FloatArray:

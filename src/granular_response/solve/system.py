@@ -19,7 +19,7 @@ from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .linear import REMEMBERED, Factor, Nearby, elimination
 from .linear.band import Band
-from .linear.multifrontal import LU
+from .linear.multifrontal import Multifactor
 from .linear.two_sided import FREEDOMS, TwoSided
 from .problem import Problem
 
@@ -29,8 +29,13 @@ REGULARISATION = 1e-10
 #: Part of the force out of balance that a step by the factorisation of another tangent leaves (2-norms).
 LEFT_OVER = 1e-6
 
-#: Relative accuracy of eigenvalues of which the sign is asked, where increments are as rough.
-ROUGH = 1e-3
+#: Difference of two shifts, in units of the normal stiffness, that solutions by the factorisation with one of them make
+#: up for with little effort: below the softest modes of a packing of some hundred layers.
+SAME_SHIFT = 1e-7
+
+#: Relative accuracy of eigenvalues of which the sign is asked, where increments are as rough, or the direction; vectors
+#: among which a direction is looked for then.
+ROUGH, FEW = 1e-3, 6
 
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
@@ -111,8 +116,9 @@ class StaticSystem:
         self.held = problem.held.unknowns(problem.n)
         self._pattern()
         self._kept: tuple[np.ndarray, Factor] | None = None
-        #: the last factorisation of a large packing
+        #: the last factorisation of a large packing; of a symmetric one with its shift
         self._near: Nearby | None = None
+        self._near_definite: tuple[Nearby, float] | None = None
         self._two_sided = self._both_ends() if updated else None
 
     @property
@@ -186,6 +192,14 @@ class StaticSystem:
             pair_tangent=pair.tangent,
             wall_tangent=wall.tangent,
         )
+
+    def normal_forces(self, q: FloatArray) -> FloatArray:
+        """(dof,) forces of contacts without friction at ``q``: those of a trial up to rounding, and no tangents."""
+        force = np.zeros(self.dof)
+        pairs, walls = self._pairs, self._walls
+        statics.normal_forces(q, self.problem.n, pairs, pairs.shape, walls, walls.shape, force)
+        force[self.held] = 0.0
+        return force
 
     def _pattern(self) -> None:
         """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
@@ -307,8 +321,7 @@ class StaticSystem:
         matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
         self._kept = self._near = None  # two need not be in memory
         factor = self._storage.factor(matrix)
-        if isinstance(factor, LU) and factor.large:
-            self._near = Nearby(factor)
+        self._near = _nearby(factor)
         self._keep(trial, factor, shift)
         return factor
 
@@ -425,7 +438,34 @@ class StaticSystem:
 
     def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
         """Factorisation of the symmetric part of the tangent; None when it is not positive definite."""
+        self._near_definite = None  # two need not be in memory
         return self._storage.definite_factor(self._symmetric_part(self.tangent(trial, shift)))
+
+    def definite_step(self, trial: Trial, force: FloatArray, shift: float) -> FloatArray | None:
+        """(dof,) displacements that take ``force`` up, by the symmetric part of the tangent with ``shift`` added.
+
+        None when it is not positive definite. In a large packing the last factorisation may be brought up to date for
+        what has changed since: a tangent that is not positive definite where nothing has is not seen then, unless the
+        step would lead uphill.
+        """
+        matrix = self._symmetric_part(self.tangent(trial, shift))
+        right = self.interleave(force)
+        near, self._near_definite = self._near_definite, None
+        if near is not None and abs(near[1] - shift) <= SAME_SHIFT * self.problem.stiffness:
+            try:
+                found = near[0].solve(matrix, right, LEFT_OVER)
+            except RuntimeError:
+                return None
+            if found is not None and float(found @ right) > 0.0:
+                self._near_definite = near
+                return self.deinterleave(found)
+        del near  # two need not be in memory
+        factor = self._storage.definite_factor(matrix)
+        if factor is None:
+            return None
+        if (new := _nearby(factor)) is not None:
+            self._near_definite = new, shift
+        return self.deinterleave(factor.solve(right))
 
     def meets_unlisted(self, q: FloatArray) -> bool:
         """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""
@@ -460,8 +500,11 @@ class StaticSystem:
         )  # fmt: skip
         return int((values.real < 0).sum())
 
-    def unstable_direction(self, trial: Trial) -> FloatArray:
-        """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1."""
+    def unstable_direction(self, trial: Trial, *, rough: bool = False) -> FloatArray:
+        """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1.
+
+        ``rough`` : as accurate as a few solutions make it, which is enough to go downhill along it.
+        """
         if self.dof <= DENSE:
             _, every = np.linalg.eigh(self._symmetric_part(self.tangent(trial)).toarray())
             return self._of_largest_one(every[:, 0])
@@ -477,9 +520,15 @@ class StaticSystem:
             self._symmetric_part(self.tangent(trial)), k=1, sigma=-origin, which="LM",
             v0=np.random.default_rng(0).standard_normal(self.dof),
             OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
+            **({"tol": ROUGH, "ncv": FEW} if rough else {}),
         )  # fmt: skip
         return self._of_largest_one(vectors[:, 0])
 
     def _of_largest_one(self, vector: FloatArray) -> FloatArray:
         vector = self.deinterleave(vector)
         return vector / vector[np.argmax(np.abs(vector))]
+
+
+def _nearby(factor: Factor) -> Nearby | None:
+    """What makes a factorisation serve other tangents; None where that does not pay."""
+    return Nearby(factor) if isinstance(factor, Multifactor) and factor.renewable else None

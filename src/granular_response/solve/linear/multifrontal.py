@@ -6,9 +6,9 @@ are installed, and every front counts its negative eigenvalues.
 
 The fronts of a large packing are split into subtrees, on which several threads work side by side, and the few fronts
 above them, whose matrix products are split into blocks of columns. Neither split looks at the number of threads, and
-what subtrees leave is added in the order of the tree: the bits are those of a single thread. An LU keeps what subtrees
-leave, so that for a matrix which differs in few places only the subtrees that have them are eliminated anew, and the
-fronts above those.
+what subtrees leave is added in the order of the tree: the bits are those of a single thread. An LU, or a Cholesky
+factorisation, keeps what subtrees leave, so that for a matrix which differs in few places only the subtrees that have
+them are eliminated anew, and the fronts above those.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .dissection import Dissection
 from .frontal import Matrix, Store, Tree
 
 #: Unknowns from which on fronts are split; below, one thread is as fast.
-LARGE = 80_000
+LARGE = 20_000
 #: A subtree has at most one part in so many of the work.
 PARTS = 24
 #: Multiplications of a factorisation that take as long as a solution takes for each number of the factors.
@@ -87,7 +87,7 @@ class Multifrontal:
         return int(self.tree.start[-1])
 
     def multiplications(self) -> FloatArray:
-        """(f,) of an LU in each front."""
+        """(f,) of an LU in each front; Cholesky takes half of them."""
         own, outer = self.own.astype(float), self.outer.astype(float)
         return own**3 / 3.0 + own * outer * (own + outer)
 
@@ -155,7 +155,8 @@ class Multifrontal:
     def factor(self, matrix: sp.csc_array) -> LU:
         """LU with row exchanges inside the fronts."""
         left: dict[int, FloatArray] = {}
-        return LU(self, self._factorised(matrix, whole=True, left=left if self.large else None), matrix.data, left)
+        fronts = self._factorised(matrix, whole=True, left=left if self.large else None)
+        return LU(self, fronts, Renewal(matrix.data, left))
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Symmetric, int]:
         """Cholesky factorisation, and L D L^T in fronts that are not positive definite.
@@ -171,8 +172,9 @@ class Multifrontal:
 
     def definite_factor(self, matrix: sp.csc_array) -> Symmetric | None:
         """Cholesky factorisation; None when the matrix is not positive definite."""
-        fronts = self._factorised(matrix, definite=True)
-        return None if fronts.failed else Symmetric(self, fronts)
+        left: dict[int, FloatArray] = {}
+        fronts = self._factorised(matrix, definite=True, left=left if self.large else None)
+        return None if fronts.failed else Symmetric(self, fronts, Renewal(matrix.data, left))
 
     @cached_property
     def _at(self) -> dict[bool, np.ndarray]:
@@ -346,13 +348,63 @@ class _Elimination:
         self.left[front] = update
 
 
-class _Factor:
-    """Factorised fronts that solve."""
+@dataclass
+class Renewal:
+    """What a factorisation needs to be made anew in parts."""
+
+    entries: FloatArray  #: of the matrix
+    left: dict[int, FloatArray]  #: what subtrees and fronts above them have left
+
+
+class Multifactor:
+    """Factorised fronts that solve, and that can be made anew in parts where there is a ``renewal``."""
 
     whole: bool
 
-    def __init__(self, pattern: Multifrontal, fronts: _Fronts):
-        self._pattern, self._fronts = pattern, fronts
+    def __init__(self, pattern: Multifrontal, fronts: _Fronts, renewal: Renewal | None = None):
+        self._pattern, self._fronts, self._renewal = pattern, fronts, renewal
+
+    @property
+    def renewable(self) -> bool:
+        """Whether parts of it can be made anew."""
+        return self._renewal is not None and self._pattern.large
+
+    @property
+    def price(self) -> float:
+        """About how many solutions cost as much as it: by its multiplications for each number that it holds."""
+        multiplications = float(self._pattern.multiplications().sum()) * (1.0 if self.whole else 0.5)
+        return multiplications / (MULTIPLICATIONS * self._fronts.values.size)
+
+    def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
+        """Bring it up to date in the subtrees where any entry has changed by more than ``change``, and above them.
+
+        Everywhere else it stays that of the matrix before. False, and nothing is done, where that would take more than
+        the part ``most`` of the work of all. Only if ``renewable``.
+
+        Raises
+        ------
+        RuntimeError
+            Where a front is exactly singular, or, of Cholesky, not positive definite; the factorisation is lost then.
+        """
+        assert self._renewal is not None
+        pattern = self._pattern
+        front_of = pattern.front_of_entries(matrix)
+        anew = np.zeros(len(pattern.own), np.bool_)
+        anew[front_of[np.abs(matrix.data - self._renewal.entries) > change]] = True
+        ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
+        for span in ranges:
+            anew[span.first : span.last] = True
+        for front in pattern.above:
+            anew[front] |= anew[pattern.children(front)].any()
+        work = pattern.multiplications()
+        if work[anew].sum() > most * work.sum():
+            return False
+        above = [front for front in pattern.above if anew[front]]
+        _Elimination(pattern, matrix, self._fronts, whole=self.whole, left=self._renewal.left).run(ranges, above)
+        if self._fronts.failed:
+            raise RuntimeError("Factor is exactly singular" if self.whole else "not positive definite")
+        self._renewal.entries = np.where(anew[front_of], matrix.data, self._renewal.entries)
+        return True
 
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution for one right-hand side."""
@@ -388,58 +440,13 @@ class _Factor:
         return x
 
 
-class LU(_Factor):
+class LU(Multifactor):
     """A factorised matrix."""
 
     whole = True
 
-    def __init__(self, pattern: Multifrontal, fronts: _Fronts, entries: FloatArray, left: dict[int, FloatArray]):
-        """``entries`` : of the matrix; ``left`` : what subtrees and fronts above them have left."""
-        super().__init__(pattern, fronts)
-        self._entries, self._left = entries, left
 
-    @property
-    def large(self) -> bool:
-        """Whether parts of it can be made anew."""
-        return self._pattern.large
-
-    @property
-    def price(self) -> float:
-        """About how many solutions cost as much as it: by its multiplications for each number that it holds."""
-        return float(self._pattern.multiplications().sum() / (MULTIPLICATIONS * self._fronts.values.size))
-
-    def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
-        """Bring it up to date in the subtrees where any entry has changed by more than ``change``, and above them.
-
-        Everywhere else it stays that of the matrix before. False, and nothing is done, where that would take more than
-        the part ``most`` of the work of all.
-
-        Raises
-        ------
-        RuntimeError
-            Where a front is exactly singular; the factorisation is lost then.
-        """
-        pattern = self._pattern
-        front_of = pattern.front_of_entries(matrix)
-        anew = np.zeros(len(pattern.own), np.bool_)
-        anew[front_of[np.abs(matrix.data - self._entries) > change]] = True
-        ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
-        for span in ranges:
-            anew[span.first : span.last] = True
-        for front in pattern.above:
-            anew[front] |= anew[pattern.children(front)].any()
-        work = pattern.multiplications()
-        if work[anew].sum() > most * work.sum():
-            return False
-        above = [front for front in pattern.above if anew[front]]
-        _Elimination(pattern, matrix, self._fronts, whole=True, left=self._left).run(ranges, above)
-        if self._fronts.failed:
-            raise RuntimeError("Factor is exactly singular")
-        self._entries = np.where(anew[front_of], matrix.data, self._entries)
-        return True
-
-
-class Symmetric(_Factor):
+class Symmetric(Multifactor):
     """A factorised symmetric matrix."""
 
     whole = False

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 
 from ...state import FloatArray
 from .factor import Factor
-from .multifrontal import LU
+from .multifrontal import Multifactor
 
 #: Most products of a solution, and the number from which on it is seen whether so many will do.
 MOST, SEEN = 24, 6
@@ -25,7 +25,7 @@ MOST_ANEW = 0.7
 class Nearby:
     """A factorisation that serves other matrices as long as that pays."""
 
-    def __init__(self, factor: LU):
+    def __init__(self, factor: Multifactor):
         self.factor = factor
         #: what solutions have cost so far, the first one with the factorisation, and the last one
         self._spent, self._solutions, self._last = factor.price, 1, 0
@@ -35,7 +35,7 @@ class Nearby:
 
         None where most of the factorisation would have to be made anew, where ``MOST`` products do not lead there, as
         soon as that is to be expected, and once a solution takes more of them than the average with a new
-        factorisation so far. RuntimeError where a front is exactly singular.
+        factorisation so far. RuntimeError where a front is exactly singular, or not positive definite where it must be.
         """
         if self._last > self._spent / self._solutions:
             return None
