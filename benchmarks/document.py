@@ -120,6 +120,13 @@ TEXTS = {
         "as the paper's. Stiffness grows with the size of the slab, so that gravity compresses all of them equally "
         "little; open symbols: the region has reached the floor.",
     ),
+    "shares": (
+        "Where the time of a solution goes",
+        "Shares of the time on one thread, by a profile; the first four cases are slabs of 908 disks. A path is bound by "
+        "its factorisations and, where hundreds of contacts slide, by how many rounds with fixed limits of friction "
+        "each increment takes; dynamics goes on past them at once, which is why it is sooner at errors that it can "
+        "reach. A fall is nothing but steps of dynamics.",
+    ),
     "startup": (
         "What a newcomer waits for",
         "Whole processes, the least of five. Compiled kernels are kept on disk. A run of two disks is what every "
@@ -292,6 +299,13 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
             factorisations(metrics, "factor_milliseconds", "Factorisation, ms"),
             factorisations(metrics, "solve_milliseconds", "Solution for one right-hand side, ms"),
         ]
+    if benchmark == "shares":
+        columns = {
+            "what": "what", "seconds": "time [s]", "factorisations": "factorisations and solutions",
+            "forces and tangents": "forces and tangents of contacts", "dynamics": "steps of dynamics",
+            "matrices and arrays": "matrices and arrays", "the rest": "the rest",
+        }  # fmt: skip
+        return [table(metrics["runs"], columns)]
     if benchmark == "skipping":
         columns = {"part": "part", "friction": "friction", "cost": "cost", "same_result": "bitwise the same"}
         return [table(metrics["runs"], columns)]

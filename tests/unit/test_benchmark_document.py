@@ -75,6 +75,16 @@ def test_kernels_are_timed_whole_and_in_parts(script, monkeypatch, friction):
     assert all(row["microseconds"] >= 0.0 for row in rows if row["microseconds"] is not None)
 
 
+def test_shares_of_a_solution_are_whole_and_of_the_right_parts(script):
+    shares, timing = script("shares"), script("timing")
+    falls = timing.scene(0.2).updated({"packing.layers": 5, "packing.disks_per_row": 9})
+    row = shares.measure("a fall", lambda: shares.settled(falls))
+    assert sum(row[part] for part in (*dict(shares.PARTS), shares.REST)) == pytest.approx(1.0)
+    assert row["dynamics"] > 0.5
+    assert shares.part_of("~") == "matrices and arrays"
+    assert shares.part_of("src/granular_response/solve/path.py") == shares.REST
+
+
 def test_what_skipping_forces_on_changes_no_result(script):
     skipping = script("skipping")
     _, plain = skipping.settled(0.2, 500)
