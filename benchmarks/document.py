@@ -122,10 +122,9 @@ TEXTS = {
     ),
     "shares": (
         "Where the time of a solution goes",
-        "Shares of the time on one thread, by a profile; the first four cases are slabs of 908 disks. A path is bound by "
-        "its factorisations and, where hundreds of contacts slide, by how many rounds with fixed limits of friction "
-        "each increment takes; dynamics goes on past them at once, which is why it is sooner at errors that it can "
-        "reach. A fall is nothing but steps of dynamics.",
+        "Shares of the time on one thread, by a profile, on a machine with other work; the first four cases are slabs "
+        "of 908 disks. A path is bound by its factorisations and, where hundreds of contacts slide, by how many "
+        "rounds with fixed limits of friction each increment takes.",
     ),
     "startup": (
         "What a newcomer waits for",

@@ -18,7 +18,7 @@ from timing import scene, write
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states, rest_state
 
-#: What a function's file has in its name, by part of the code, the first that fits; kernels count where they are called.
+#: What a function's file has in its name, by part of the code, the first that fits; kernels count as those files.
 PARTS = (
     ("factorisations", ("solve/linear/", "scipy/linalg")),
     ("forces and tangents", ("kernels/statics", "solve/relaxation")),
