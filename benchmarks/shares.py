@@ -1,7 +1,7 @@
-"""Where the time of a solution goes, by a profile: parts of the code and how often factorisations are made.
+"""Where the time of a solution goes, by a profile: shares of parts of the code.
 
-`python benchmarks/shares.py OUTPUT.json`. Each case begins with its rest state, but those that are of the rest state.
-One thread; a profiler slows what calls much a little, kernels and LAPACK not at all.
+`python benchmarks/shares.py OUTPUT.json`. Of a path its rest state is no part. One thread; a profiler slows what calls
+much a little, kernels and LAPACK not at all.
 """
 
 from __future__ import annotations
