@@ -109,6 +109,33 @@ def _shape_at(shape, c):
 
 
 @kernel(forceinline=True)
+def _pair_at(q, n, pairs, c):
+    """Disks of a listed pair, their relative displacement, and separation, distance and overlap at ``q``."""
+    i = pairs.first[c]
+    j = pairs.second[c]
+    ux = q[i] - q[j]
+    uz = q[n + i] - q[n + j]
+    dx0 = pairs.dx[c]
+    dz0 = pairs.dz[c]
+    d0 = math.sqrt(dx0 * dx0 + dz0 * dz0)
+    dx = dx0 + ux
+    dz = dz0 + uz
+    d = math.sqrt(dx * dx + dz * dz)
+    # |d| - |d0| without cancellation
+    stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (d + d0)
+    return i, j, ux, uz, dx, dz, d, -(pairs.gap[c] + stretch)
+
+
+@kernel(forceinline=True)
+def _wall_at(q, n, walls, c):
+    """Disk of a listed contact with a wall, the wall's normal, and the overlap at ``q``."""
+    i = walls.disk[c]
+    nx = walls.normal[c, 0]
+    nz = walls.normal[c, 1]
+    return i, nx, nz, -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+
+
+@kernel(forceinline=True)
 def _open(c, rubs, out):
     out.status[c] = OPEN
     out.normal[c] = 0.0
@@ -164,19 +191,7 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out,
     """
     law = pairs.law
     for c in range(pairs.first.size):
-        i = pairs.first[c]
-        j = pairs.second[c]
-        ux = q[i] - q[j]
-        uz = q[n + i] - q[n + j]
-        dx0 = pairs.dx[c]
-        dz0 = pairs.dz[c]
-        d0 = math.sqrt(dx0 * dx0 + dz0 * dz0)
-        dx = dx0 + ux
-        dz = dz0 + uz
-        d = math.sqrt(dx * dx + dz * dz)
-        # |d| - |d0| without cancellation
-        stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (d + d0)
-        xi = -(pairs.gap[c] + stretch)
+        i, j, ux, uz, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         out.overlap[c] = xi
         if xi <= 0.0:
             _open(c, spring0, out)
@@ -217,10 +232,7 @@ def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, out,
     """As :func:`pair_statics` for disk-wall contacts; ``walls`` : :class:`Walls`."""
     law = walls.law
     for c in range(walls.disk.size):
-        i = walls.disk[c]
-        nx = walls.normal[c, 0]
-        nz = walls.normal[c, 1]
-        xi = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+        i, nx, nz, xi = _wall_at(q, n, walls, c)
         out.overlap[c] = xi
         if xi <= 0.0:
             _open(c, spring0, out)
@@ -241,16 +253,7 @@ def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, out,
 def normal_forces(q, n, pairs, pair_shape, walls, wall_shape, force):
     """Add the normal forces of all contacts at ``q`` to ``force`` (dof,): what a trial without friction has, alone."""
     for c in range(pairs.first.size):
-        i = pairs.first[c]
-        j = pairs.second[c]
-        ux = q[i] - q[j]
-        uz = q[n + i] - q[n + j]
-        dx0 = pairs.dx[c]
-        dz0 = pairs.dz[c]
-        dx = dx0 + ux
-        dz = dz0 + uz
-        d = math.sqrt(dx * dx + dz * dz)
-        xi = -(pairs.gap[c] + (ux * (dx + dx0) + uz * (dz + dz0)) / (d + math.sqrt(dx0 * dx0 + dz0 * dz0)))
+        i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         if xi > 0.0:
             pull = elastic_force(pairs.law, xi, _shape_at(pair_shape, c)) / d
             force[i] += pull * dx
@@ -258,10 +261,7 @@ def normal_forces(q, n, pairs, pair_shape, walls, wall_shape, force):
             force[j] -= pull * dx
             force[n + j] -= pull * dz
     for c in range(walls.disk.size):
-        i = walls.disk[c]
-        nx = walls.normal[c, 0]
-        nz = walls.normal[c, 1]
-        xi = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+        i, nx, nz, xi = _wall_at(q, n, walls, c)
         if xi > 0.0:
             fn = elastic_force(walls.law, xi, _shape_at(wall_shape, c))
             force[i] += fn * nx
