@@ -6,7 +6,7 @@ from small_scenes import scene
 
 from granular_response.solve import Problem, rest_state
 from granular_response.solve import increment as module
-from granular_response.solve.equilibrium import external_force
+from granular_response.solve.equilibrium import external_force, newton
 from granular_response.solve.increment import Work, solve_increment
 from granular_response.solve.system import StaticSystem
 
@@ -35,12 +35,12 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
     problem, system, known = start
     external = external_force(problem, 0.5)
     direct = solve_increment(system, known, external, known.q, Work())
-    newton = module.newton
+    solve = module.newton
     calls = []
 
     def refusing(*args, **options):
         calls.append(1)
-        trial, report = newton(*args, **options)
+        trial, report = solve(*args, **options)
         if len(calls) == 1:
             report = type(report)(False, report.iterations, report.residual)
         return trial, report
@@ -52,6 +52,33 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
     assert work.rounds >= 3
     assert around.configuration.q == pytest.approx(direct.configuration.q, abs=1e-11)
     assert np.array_equal(around.status, direct.status)
+
+
+def test_a_step_far_out_of_the_packing_ends_newtons_method(start):
+    problem, system, known = start
+    external = external_force(problem, 0.5)
+    _, whole = newton(system, known, external)
+    assert whole.converged
+    _, kept = newton(system, known, external, runaway=1e-3)
+    assert kept == whole
+    trial, given_up = newton(system, known, external, runaway=1e-9)
+    assert not given_up.converged and given_up.iterations == 1
+    assert np.array_equal(trial.configuration.q, known.q)
+
+
+def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
+    problem, system, known = start
+    external = external_force(problem, 0.5)
+    limits = (np.full(len(system.first), 0.2), np.full(len(system.wall_disk), 0.2))
+    monkeypatch.setattr(module, "ROUGH", 0.0)
+    monkeypatch.setattr(module, "STILL", 0.0)
+    long, short = Work(), Work()
+    module._minimise_with_limits(system, known, external, known.q, limits, long)
+    assert long.factorisations == 25  # rounding never lets the residual vanish
+    monkeypatch.setattr(module, "STILL", 1e-5)
+    trial = module._minimise_with_limits(system, known, external, known.q, limits, short)
+    assert short.factorisations < 15
+    assert np.abs(trial.contact_force + external).max() < 1e-8
 
 
 def test_hopeless_increment_returns_none():

@@ -3,9 +3,9 @@
 So a kernel that calls many small routines never returns to Python in between, and several threads run side by side. An
 address is an argument of a kernel, not a part of its code, which is kept for other processes.
 
-Fortran takes every argument by reference. In a call, :func:`at` stands for a place in an array; whole numbers and
-doubles are put where they can be referred to. Flags are the codes of their letters: a routine looks at the first byte
-of what it is given, and that of a small whole number is its lowest.
+Fortran takes every argument by reference. In a call, :func:`at` stands for a place in an array; whole numbers, and real
+ones in their own precision, are put where they can be referred to. Flags are the codes of their letters: a routine
+looks at the first byte of what it is given, and that of a small whole number is its lowest.
 """
 
 from __future__ import annotations
@@ -21,8 +21,11 @@ from numba.extending import get_cython_function_address, intrinsic
 from numpy.typing import NDArray
 
 #: Routines in the order of :func:`addresses`.
-ROUTINES = ("dgemm", "dgemv", "dsyrk", "dtrsm", "dtrsv", "dgetrf", "dlaswp", "dpotrf", "dsytrs")
+ROUTINES = ("gemm", "gemv", "syrk", "trsm", "trsv", "getrf", "laswp", "potrf", "sytrs")
 GEMM, GEMV, SYRK, TRSM, TRSV, GETRF, LASWP, POTRF, SYTRS = range(len(ROUTINES))
+
+#: First letter of their names for numbers of this type.
+PRECISIONS = {np.dtype(np.float64): "d", np.dtype(np.float32): "s"}
 
 #: Letters of flags: left or right, lower or upper triangle, transposed or not, diagonal of ones or not.
 LEFT, RIGHT, LOWER, UPPER, TRANSPOSED, AS_IS, ONES, GIVEN = (ord(letter) for letter in "LRLUTNUN")
@@ -31,10 +34,10 @@ assert sys.byteorder == "little"
 
 
 @cache
-def addresses() -> NDArray[np.int64]:
-    """(r,) addresses of ``ROUTINES``."""
+def addresses(kind: np.dtype) -> NDArray[np.int64]:
+    """(r,) addresses of ``ROUTINES`` for numbers of a type of ``PRECISIONS``."""
     found = [
-        get_cython_function_address(f"scipy.linalg.cython_{library}", name)
+        get_cython_function_address(f"scipy.linalg.cython_{library}", PRECISIONS[kind] + name)
         for name, library in zip(ROUTINES, ["blas"] * 5 + ["lapack"] * 4, strict=True)
     ]
     result = np.array(found, np.int64)
@@ -76,14 +79,17 @@ def call(typing, address, arguments):
 
 
 if config.DISABLE_JIT:
+    _REAL = {np.float64: ctypes.c_double, np.float32: ctypes.c_float}
 
     def at(array, k):
         return ctypes.c_void_p(array.ctypes.data + array.itemsize * int(k))
 
+    def referred(value):
+        if isinstance(value, ctypes.c_void_p):
+            return value
+        kind = _REAL.get(type(value))
+        return ctypes.byref(ctypes.c_int32(int(value)) if kind is None else kind(value))
+
     def call(address, arguments):
-        made = [
-            value if isinstance(value, ctypes.c_void_p)
-            else ctypes.byref(ctypes.c_double(value) if isinstance(value, float) else ctypes.c_int32(int(value)))
-            for value in arguments
-        ]  # fmt: skip
+        made = [referred(value) for value in arguments]
         ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * len(made))(int(address))(*made)

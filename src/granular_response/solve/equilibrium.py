@@ -69,14 +69,16 @@ def newton(
     tolerance: float = TOLERANCE,
     enough: float = ENOUGH,
     maximum_iterations: int = NEWTON_ITERATIONS,
+    runaway: float = np.inf,
 ) -> tuple[Trial, NewtonReport]:
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
     Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
     for a moment). A factorisation serves as long as no contact changes its status and the residual falls
     tenfold with it. Where contacts go to and fro between two states (they touch with so little force that they slide
-    one way, then the other), a system that brings its factorisation up to date stops between the two. The end is a
-    residual below ``enough``, or below ``tolerance`` where it falls no further.
+    one way, then the other), a system that brings its factorisation up to date stops between the two.
+    The end is a residual below ``enough``, or below ``tolerance`` where it falls no further, or a step that would move
+    or turn a disk by more than ``runaway`` (mean radii, radians).
     Returns the last trial and a report; ``report.converged`` says whether it is a solution,
     ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """
@@ -114,6 +116,8 @@ def newton(
         except RuntimeError:  # exactly singular
             break
         if not np.isfinite(step).all():
+            break
+        if float(np.abs(step).max()) > runaway:
             break
         length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, LONGEST_STEP / length) if length > 0 else 1.0

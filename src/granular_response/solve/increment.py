@@ -34,6 +34,11 @@ SHIFT = 1e-7
 PASSED = 1e-8
 #: Residual at which a minimisation with fixed limits ends; they change anyway.
 ROUGH = 1e-7
+#: Residual below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
+STILL, STALLED = 1e-5, 3
+#: Step (mean radii, radians) that only the tangent of nearly a mechanism asks for: nothing converges after one
+#: (docs/physics.md has the counts).
+RUNAWAY = 50.0
 #: Part to which the energy's slope falls along a step.
 FLAT = 0.1
 LONGEST_STEP = 0.05
@@ -65,7 +70,9 @@ def solve_increment(
     fails, which costs more than a shorter increment.
     """
     enough = PASSED if passing else ENOUGH
-    trial, report = newton(system, known, external, guess, enough=enough, maximum_iterations=DIRECT_ITERATIONS)
+    trial, report = newton(
+        system, known, external, guess, enough=enough, maximum_iterations=DIRECT_ITERATIONS, runaway=RUNAWAY
+    )
     work.factorisations += report.iterations
     if report.converged:
         work.increments += 1
@@ -88,7 +95,9 @@ def solve_increment(
         if done >= PATIENCE and change > SLOW:
             return None
         if done > FIRST_TRY:
-            true, report = newton(system, known, external, q, enough=enough, maximum_iterations=DIRECT_ITERATIONS - 2)
+            true, report = newton(
+                system, known, external, q, enough=enough, maximum_iterations=DIRECT_ITERATIONS - 2, runaway=RUNAWAY
+            )
             work.factorisations += report.iterations
             if report.converged:
                 work.increments += 1
@@ -109,9 +118,13 @@ def _minimise_with_limits(
     q = start
     trial = system.trial(known, q, limits)
     shift = SHIFT * system.problem.stiffness
+    best, stalled = np.inf, 0
     for _ in range(maximum_iterations):
         r = trial.contact_force + external
-        if float(np.abs(r).max()) < ROUGH:
+        size = float(np.abs(r).max())
+        stalled = stalled + 1 if size > 0.5 * best else 0
+        best = min(best, size)
+        if size < ROUGH or (best < STILL and stalled >= STALLED):
             break
         work.factorisations += 1
         try:

@@ -17,9 +17,8 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 from ..kernels import statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
-from .linear import REMEMBERED, Factor, Nearby, elimination
+from .linear import REMEMBERED, Factor, Sequence, across_diagonal, elimination
 from .linear.band import Band
-from .linear.multifrontal import Multifactor
 from .linear.two_sided import FREEDOMS, TwoSided
 from .problem import Problem
 
@@ -116,9 +115,9 @@ class StaticSystem:
         self.held = problem.held.unknowns(problem.n)
         self._pattern()
         self._kept: tuple[np.ndarray, Factor] | None = None
-        #: the last factorisation of a large packing; of a symmetric one with its shift
-        self._near: Nearby | None = None
-        self._near_definite: tuple[Nearby, float] | None = None
+        same = SAME_SHIFT * problem.stiffness
+        self._steps = Sequence(self._storage, definite=False, same=same)
+        self._definite_steps = Sequence(self._storage, definite=True, same=same)
         self._two_sided = self._both_ends() if updated else None
 
     @property
@@ -258,9 +257,7 @@ class StaticSystem:
     @cached_property
     def _mirror(self) -> np.ndarray:
         """(e,) for each entry of a tangent, in its storage, the one across the diagonal."""
-        entries = np.arange(len(self._indices), dtype=self._indices.dtype)
-        matrix = sp.csc_array((entries, self._indices, self._indptr), shape=(self.dof, self.dof))
-        return sp.csc_array(matrix.T).data
+        return across_diagonal(self._indptr, self._indices)
 
     def _transposed(self, matrix: sp.csc_array) -> sp.csc_array:
         """K^T of a tangent."""
@@ -317,11 +314,16 @@ class StaticSystem:
 
     def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Factor:
         """LU of the tangent, a tiny regularisation included."""
-        k = self.problem.stiffness
-        matrix = self.tangent(trial, np.asarray(shift) + REGULARISATION * k)
-        self._kept = self._near = None  # two need not be in memory
+        return self._factorise(trial, shift, self._regularised(trial, shift))
+
+    def _regularised(self, trial: Trial, shift: float | FloatArray) -> sp.csc_array:
+        """The tangent with ``shift`` and a tiny regularisation."""
+        return self.tangent(trial, np.asarray(shift) + REGULARISATION * self.problem.stiffness)
+
+    def _factorise(self, trial: Trial, shift: float | FloatArray, matrix: sp.csc_array) -> Factor:
+        self._kept = None  # two need not be in memory
+        self._steps.forget()
         factor = self._storage.factor(matrix)
-        self._near = _nearby(factor)
         self._keep(trial, factor, shift)
         return factor
 
@@ -332,21 +334,18 @@ class StaticSystem:
     def step(self, trial: Trial, force: FloatArray, shift: float = 0.0) -> FloatArray:
         """(dof,) displacements that take ``force`` up, by the tangent with ``shift`` on its diagonal.
 
-        In a large packing the last factorisation may be brought up to date for what has changed since; RuntimeError
-        where the tangent is exactly singular.
+        In a large packing by iteration, with a rough factorisation that may be brought up to date for what has changed
+        since. RuntimeError where the tangent is exactly singular.
         """
         right = self.interleave(force)
-        if self._near is not None:
-            matrix = self.tangent(trial, shift + REGULARISATION * self.problem.stiffness)
-            try:
-                found = self._near.solve(matrix, right, LEFT_OVER)
-            except RuntimeError:
-                self._kept = self._near = None
-                raise
-            if found is not None:
-                self._keep(trial, self._near.factor, shift)
-                return self.deinterleave(found)
-        return self.deinterleave(self.factorise(trial, shift).solve(right))
+        matrix = self._regularised(trial, shift)
+        self._kept = None
+        found = self._steps.solve(matrix, right, LEFT_OVER, shift)
+        if found is None:
+            return self.deinterleave(self._factorise(trial, shift, matrix).solve(right))
+        if self._steps.factor is not None:
+            self._keep(trial, self._steps.factor, shift)
+        return self.deinterleave(found)
 
     def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
         """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
@@ -438,34 +437,25 @@ class StaticSystem:
 
     def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
         """Factorisation of the symmetric part of the tangent; None when it is not positive definite."""
-        self._near_definite = None  # two need not be in memory
+        self._definite_steps.forget()
         return self._storage.definite_factor(self._symmetric_part(self.tangent(trial, shift)))
 
     def definite_step(self, trial: Trial, force: FloatArray, shift: float) -> FloatArray | None:
         """(dof,) displacements that take ``force`` up, by the symmetric part of the tangent with ``shift`` added.
 
-        None when it is not positive definite. In a large packing the last factorisation may be brought up to date for
-        what has changed since: a tangent that is not positive definite where nothing has is not seen then, unless the
-        step would lead uphill.
+        None when it is not positive definite. In a large packing by iteration, with a rough factorisation that may be
+        brought up to date for what has changed since: a tangent that is not positive definite where nothing has is not
+        seen then, unless the step would lead uphill.
         """
         matrix = self._symmetric_part(self.tangent(trial, shift))
         right = self.interleave(force)
-        near, self._near_definite = self._near_definite, None
-        if near is not None and abs(near[1] - shift) <= SAME_SHIFT * self.problem.stiffness:
-            try:
-                found = near[0].solve(matrix, right, LEFT_OVER)
-            except RuntimeError:
+        found = self._definite_steps.solve(matrix, right, LEFT_OVER, shift)
+        if found is None:
+            factor = self._storage.definite_factor(matrix)
+            if factor is None:
                 return None
-            if found is not None and float(found @ right) > 0.0:
-                self._near_definite = near
-                return self.deinterleave(found)
-        del near  # two need not be in memory
-        factor = self._storage.definite_factor(matrix)
-        if factor is None:
-            return None
-        if (new := _nearby(factor)) is not None:
-            self._near_definite = new, shift
-        return self.deinterleave(factor.solve(right))
+            found = factor.solve(right)
+        return self.deinterleave(found)
 
     def meets_unlisted(self, q: FloatArray) -> bool:
         """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""
@@ -527,8 +517,3 @@ class StaticSystem:
     def _of_largest_one(self, vector: FloatArray) -> FloatArray:
         vector = self.deinterleave(vector)
         return vector / vector[np.argmax(np.abs(vector))]
-
-
-def _nearby(factor: Factor) -> Nearby | None:
-    """What makes a factorisation serve other tangents; None where that does not pay."""
-    return Nearby(factor) if isinstance(factor, Multifactor) and factor.renewable else None

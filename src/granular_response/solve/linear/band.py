@@ -61,6 +61,10 @@ class Band:
         lower, info = lapack.dpbtrf(columns.T, lower=1, overwrite_ab=1)
         return BandCholesky(lower) if info == 0 else None
 
+    def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> None:
+        """None: an exact one is as cheap."""
+        return None
+
 
 class BandLU:
     """L U of a banded matrix, by rows."""

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
 import scipy.sparse as sp
 
 from ...state import FloatArray
+
+if TYPE_CHECKING:
+    from .multifrontal import Multifactor
 
 
 class Factor(Protocol):
@@ -38,3 +42,13 @@ class Storage(Protocol):
     def definite_factor(self, matrix: sp.csc_array) -> Factor | None:
         """Factorisation of a symmetric matrix; None when it is not positive definite."""
         ...
+
+    def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> Multifactor | None:
+        """One that takes half the time, for solutions by iteration; None where there is none (see :mod:`.nearby`)."""
+        ...
+
+
+def across_diagonal(indptr: np.ndarray, indices: np.ndarray) -> np.ndarray:
+    """(e,) for each entry of a matrix of symmetric pattern the one across the diagonal."""
+    entries = np.arange(len(indices), dtype=indices.dtype)
+    return sp.csr_array((entries, indices, indptr), shape=(len(indptr) - 1,) * 2).tocsc().data

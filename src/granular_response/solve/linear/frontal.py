@@ -4,7 +4,8 @@ A front is a dense matrix over the unknowns ``start ... stop`` that it eliminate
 that these are tied to; its blocks are ``f11`` (own, own), ``f21`` (boundary, own), ``f12`` and ``f22``, its update,
 which is what it leaves for its boundary. All are stored by columns in flat arrays: in ``values`` from ``at[front]`` on
 the first two or three, one after the other, in ``updates`` from ``room[front]`` on the last. Matrices with lower
-triangles only are symmetric, and have no ``f12``.
+triangles only are symmetric, and have no ``f12``. Fronts are of double or of single precision, whatever ``values`` is;
+so are the right-hand sides that they solve for, and the routines whose addresses come with them.
 
 Kernels work off the fronts ``first ... last`` without a return to Python, so several threads may, each on a subtree.
 """
@@ -32,13 +33,13 @@ class Tree(NamedTuple):
 
 
 class Matrix(NamedTuple):
-    """A matrix of symmetric pattern: its entries by columns and, where it is not symmetric, by rows."""
+    """A matrix of symmetric pattern, column-compressed."""
 
     indptr: NDArray[Any]
     indices: NDArray[Any]
     data: NDArray[Any]
     whole: bool  #: whether it is not symmetric
-    by_rows: NDArray[Any]  #: none of a symmetric one
+    across: NDArray[Any]  #: for each entry the one across the diagonal; none of a symmetric one
 
 
 class Store(NamedTuple):
@@ -52,9 +53,25 @@ class Store(NamedTuple):
     place: NDArray[Any]  #: (n,) for the places of a boundary
 
 
+@kernel
+def mark(front_of, data, known, change, changed):
+    """Mark the fronts, ``front_of`` (e,), of entries (e,) that differ by more than ``change`` from the known ones."""
+    for k in range(len(data)):
+        if abs(data[k] - known[k]) > change:
+            changed[front_of[k]] = True
+
+
+@kernel
+def keep(front_of, data, anew, known):
+    """Entries (e,) of the fronts that were made ``anew`` (f,) become the known ones."""
+    for k in range(len(data)):
+        if anew[front_of[k]]:
+            known[k] = data[k]
+
+
 @kernel(nogil=True)
 def gather(tree, front, matrix, place, values, f11):
-    """Fill the first blocks of a front with its columns of a matrix, and its rows if it has them by rows too."""
+    """Fill the first blocks of a front with its columns of a matrix, and its rows if it is not symmetric."""
     start, stop = tree.start[front], tree.start[front + 1]
     begin, end = tree.begin[front], tree.begin[front + 1]
     own, outer = stop - start, end - begin
@@ -79,7 +96,7 @@ def gather(tree, front, matrix, place, values, f11):
             for k in range(matrix.indptr[start + row], matrix.indptr[start + row + 1]):
                 column = matrix.indices[k]
                 if column >= stop:
-                    values[f12 + place[column] * own + row] += matrix.by_rows[k]
+                    values[f12 + place[column] * own + row] += matrix.data[matrix.across[k]]
 
 
 @kernel(nogil=True)
@@ -138,42 +155,45 @@ def factorise_own(lapack, own, values, f11, pivots, p, whole, info):
 @kernel(nogil=True)
 def solve_columns(lapack, own, outer, values, f11, pivots, p, first, last):
     """Columns ``first ... last`` of ``f12`` to those of U."""
+    one = values.dtype.type(1.0)
     f12 = at(values, f11 + own * (own + outer + first))
     call(lapack[la.LASWP], (last - first, f12, own, 1, own, at(pivots, p), 1))
     call(lapack[la.TRSM], (
-        la.LEFT, la.LOWER, la.AS_IS, la.ONES, own, last - first, 1.0, at(values, f11), own, f12, own,
+        la.LEFT, la.LOWER, la.AS_IS, la.ONES, own, last - first, one, at(values, f11), own, f12, own,
     ))  # fmt: skip
 
 
 @kernel(nogil=True)
 def solve_rows(lapack, own, outer, values, f11, whole, first, last):
     """Rows ``first ... last`` of ``f21`` to those of L."""
+    one = values.dtype.type(1.0)
     triangle, form = (la.UPPER, la.AS_IS) if whole else (la.LOWER, la.TRANSPOSED)
     f21 = at(values, f11 + own * own + first)
     call(lapack[la.TRSM], (
-        la.RIGHT, triangle, form, la.GIVEN, last - first, own, 1.0, at(values, f11), own, f21, outer,
+        la.RIGHT, triangle, form, la.GIVEN, last - first, own, one, at(values, f11), own, f21, outer,
     ))  # fmt: skip
 
 
 @kernel(nogil=True)
 def update_columns(lapack, own, outer, values, f11, updates, f22, whole, first, last):
     """Columns ``first ... last`` of the update, of a symmetric one from the diagonal down."""
+    one = values.dtype.type(1.0)
     f21 = f11 + own * own
     if whole:
         f12 = f21 + own * (outer + first)
         call(lapack[la.GEMM], (
-            la.AS_IS, la.AS_IS, outer, last - first, own, -1.0, at(values, f21), outer, at(values, f12), own,
-            1.0, at(updates, f22 + outer * first), outer,
+            la.AS_IS, la.AS_IS, outer, last - first, own, -one, at(values, f21), outer, at(values, f12), own,
+            one, at(updates, f22 + outer * first), outer,
         ))  # fmt: skip
         return
     call(lapack[la.SYRK], (
-        la.LOWER, la.AS_IS, last - first, own, -1.0, at(values, f21 + first), outer,
-        1.0, at(updates, f22 + (outer + 1) * first), outer,
+        la.LOWER, la.AS_IS, last - first, own, -one, at(values, f21 + first), outer,
+        one, at(updates, f22 + (outer + 1) * first), outer,
     ))  # fmt: skip
     if last < outer:
         call(lapack[la.GEMM], (
-            la.AS_IS, la.TRANSPOSED, outer - last, last - first, own, -1.0, at(values, f21 + last), outer,
-            at(values, f21 + first), outer, 1.0, at(updates, f22 + outer * first + last), outer,
+            la.AS_IS, la.TRANSPOSED, outer - last, last - first, own, -one, at(values, f21 + last), outer,
+            at(values, f21 + first), outer, one, at(updates, f22 + outer * first + last), outer,
         ))  # fmt: skip
 
 
@@ -205,6 +225,7 @@ def forward(lapack, tree, first, last, at_front, values, pivots, exchanged, whol
     ``exchanged`` : (f,) fronts that were factorised as L D L^T; ``gathered`` : what is left for unknowns from
     ``below`` on, which are ``outside`` (sorted); ``line`` : (b,) room.
     """
+    none, one = x.dtype.type(0.0), x.dtype.type(1.0)
     for front in range(first, last):
         start = tree.start[front]
         own = tree.start[front + 1] - start
@@ -219,7 +240,7 @@ def forward(lapack, tree, first, last, at_front, values, pivots, exchanged, whol
         if outer == 0:
             continue
         f21 = at(values, at_front[front] + own * own)
-        call(lapack[la.GEMV], (la.AS_IS, outer, own, 1.0, f21, outer, at(x, start), 1, 0.0, at(line, 0), 1))
+        call(lapack[la.GEMV], (la.AS_IS, outer, own, one, f21, outer, at(x, start), 1, none, at(line, 0), 1))
         k = 0
         for b in range(outer):
             unknown = tree.boundary[begin + b]
@@ -234,6 +255,7 @@ def forward(lapack, tree, first, last, at_front, values, pivots, exchanged, whol
 @kernel(nogil=True)
 def backward(lapack, tree, first, last, at_front, values, pivots, exchanged, whole, x, line, product, info):
     """Solve with U, or L^T, in the fronts ``first ... last``, the last one first."""
+    none, one = x.dtype.type(0.0), x.dtype.type(1.0)
     for front in range(last - 1, first - 1, -1):
         start = tree.start[front]
         own = tree.start[front + 1] - start
@@ -248,12 +270,12 @@ def backward(lapack, tree, first, last, at_front, values, pivots, exchanged, who
             if whole:
                 f12 = at(values, at_front[front] + own * (own + outer))
                 call(lapack[la.GEMV], (
-                    la.AS_IS, own, outer, 1.0, f12, own, at(line, 0), 1, 0.0, at(product, 0), 1,
+                    la.AS_IS, own, outer, one, f12, own, at(line, 0), 1, none, at(product, 0), 1,
                 ))  # fmt: skip
             else:
                 f21 = at(values, at_front[front] + own * own)
                 call(lapack[la.GEMV], (
-                    la.TRANSPOSED, outer, own, 1.0, f21, outer, at(line, 0), 1, 0.0, at(product, 0), 1,
+                    la.TRANSPOSED, outer, own, one, f21, outer, at(line, 0), 1, none, at(product, 0), 1,
                 ))  # fmt: skip
             for k in range(own):
                 x[start + k] -= product[k]

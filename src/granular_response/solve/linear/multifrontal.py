@@ -6,9 +6,11 @@ are installed, and every front counts its negative eigenvalues.
 
 The fronts of a large packing are split into subtrees, on which several threads work side by side, and the few fronts
 above them, whose matrix products are split into blocks of columns. Neither split looks at the number of threads, and
-what subtrees leave is added in the order of the tree: the bits are those of a single thread. An LU, or a Cholesky
-factorisation, keeps what subtrees leave, so that for a matrix which differs in few places only the subtrees that have
-them are eliminated anew, and the fronts above those.
+what subtrees leave is added in the order of the tree: the bits are those of a single thread.
+
+Besides exact factorisations there are rough ones of large packings, for solutions by iteration: in single precision,
+which takes half the time and memory, and with what subtrees leave, so that for a matrix which differs in few places
+only the subtrees that have them are eliminated anew, and the fronts above those.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ from ...machine.lapack import addresses
 from ...state import FloatArray
 from . import frontal
 from .dissection import Dissection
+from .factor import across_diagonal
 from .frontal import Matrix, Store, Tree
 
 #: Unknowns from which on fronts are split; below, one thread is as fast.
@@ -39,6 +42,8 @@ PARTS = 24
 MULTIPLICATIONS = 6
 #: Columns of a block of a matrix product above the subtrees.
 BLOCK = 240
+#: Numbers of exact factorisations, and of rough ones.
+EXACT, ROUGH = np.dtype(np.float64), np.dtype(np.float32)
 
 
 @dataclass(frozen=True)
@@ -79,6 +84,7 @@ class Multifrontal:
         )  # fmt: skip
         self.own, self.outer = np.diff(start), sizes
         self._front_of_entries: np.ndarray | None = None
+        self._across: np.ndarray | None = None
         self._split()
         self._lay_out()
 
@@ -152,11 +158,15 @@ class Multifrontal:
             self._front_of_entries = np.repeat(np.arange(len(self.own), dtype=np.int32), self.own)[first]
         return self._front_of_entries
 
+    def across(self, matrix: sp.csc_array) -> np.ndarray:
+        """(e,) for each entry of a matrix the one across the diagonal."""
+        if self._across is None:
+            self._across = across_diagonal(matrix.indptr, matrix.indices)
+        return self._across
+
     def factor(self, matrix: sp.csc_array) -> LU:
         """LU with row exchanges inside the fronts."""
-        left: dict[int, FloatArray] = {}
-        fronts = self._factorised(matrix, whole=True, left=left if self.large else None)
-        return LU(self, fronts, Renewal(matrix.data, left))
+        return LU(self, self._factorised(matrix, whole=True))
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Symmetric, int]:
         """Cholesky factorisation, and L D L^T in fronts that are not positive definite.
@@ -172,9 +182,21 @@ class Multifrontal:
 
     def definite_factor(self, matrix: sp.csc_array) -> Symmetric | None:
         """Cholesky factorisation; None when the matrix is not positive definite."""
+        fronts = self._factorised(matrix, definite=True)
+        return None if fronts.failed else Symmetric(self, fronts)
+
+    def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> Multifactor | None:
+        """LU, or Cholesky if ``definite``, in single precision, that can be renewed; None of a small packing.
+
+        None too where a front is not positive definite, or is exactly singular, to that precision.
+        """
+        if not self.large:
+            return None
         left: dict[int, FloatArray] = {}
-        fronts = self._factorised(matrix, definite=True, left=left if self.large else None)
-        return None if fronts.failed else Symmetric(self, fronts, Renewal(matrix.data, left))
+        fronts = self._factorised(matrix, whole=not definite, definite=True, kind=ROUGH, left=left)
+        if fronts.failed:
+            return None
+        return (Symmetric if definite else LU)(self, fronts, Renewal(matrix.data.copy(), left))
 
     @cached_property
     def _at(self) -> dict[bool, np.ndarray]:
@@ -189,6 +211,7 @@ class Multifrontal:
         whole: bool = False,
         definite: bool = False,
         keep: bool = True,
+        kind: np.dtype = EXACT,
         left: dict[int, FloatArray] | None = None,
     ) -> _Fronts:
         """Fronts factorised: L U if ``whole``, else Cholesky, and L D L^T, or an end if ``definite``, where needed.
@@ -199,7 +222,7 @@ class Multifrontal:
         at = self._at[whole]
         fronts = _Fronts(
             at=at[:-1] if keep else np.zeros(len(self.own), np.int64),
-            values=np.empty(int(at[-1] if keep else 0)),
+            values=np.empty(int(at[-1] if keep else 0), kind),
             pivots=np.zeros(self.unknowns, np.int32),
             exchanged=np.zeros(len(self.own), np.bool_),
             definite=definite,
@@ -237,9 +260,10 @@ class _Elimination:
         left: dict[int, FloatArray] | None = None,
     ):
         self.pattern, self.fronts, self.whole, self.keep = pattern, fronts, whole, keep
-        by_rows = sp.csr_array(matrix).data if whole else np.zeros(0)
-        self.matrix = Matrix(matrix.indptr, matrix.indices, matrix.data, whole, by_rows)
-        self.lapack = addresses()
+        across = pattern.across(matrix) if whole else np.zeros(0, matrix.indices.dtype)
+        self.matrix = Matrix(matrix.indptr, matrix.indices, matrix.data, whole, across)
+        self.kind = fronts.values.dtype
+        self.lapack = addresses(self.kind)
         #: what subtrees and fronts above them leave for the fronts above these; given away once it has been added
         #: unless it is asked for
         self.left: dict[int, FloatArray] = {} if left is None else left
@@ -261,9 +285,9 @@ class _Elimination:
         with contextlib.suppress(Empty):
             return self.free.get_nowait()
         pattern, fronts = self.pattern, self.fronts
-        values = fronts.values if self.keep else np.empty(int(np.diff(pattern._at[self.whole]).max()))
+        values = fronts.values if self.keep else np.empty(int(np.diff(pattern._at[self.whole]).max()), self.kind)
         place = np.empty(pattern.unknowns, np.int64)
-        return Store(fronts.at, values, fronts.pivots, pattern._room, np.empty(pattern._most), place)
+        return Store(fronts.at, values, fronts.pivots, pattern._room, np.empty(pattern._most, self.kind), place)
 
     def _subtree(self, span: _Range) -> int:
         """Eliminate a range of fronts; returns the number of negative eigenvalues."""
@@ -317,7 +341,7 @@ class _Elimination:
         store = self._store()
         self.free.put(store)
         values, f11, start = store.values, int(fronts.at[front]), int(tree.start[front])
-        update = np.zeros(outer * outer)
+        update = np.zeros(outer * outer, self.kind)
         frontal.gather(tree, front, self.matrix, store.place, values, f11)
         for child in pattern.children(front):
             of_child = self.left.pop(child) if self.spent else self.left[child]
@@ -357,17 +381,12 @@ class Renewal:
 
 
 class Multifactor:
-    """Factorised fronts that solve, and that can be made anew in parts where there is a ``renewal``."""
+    """Factorised fronts that solve; rough ones can be made anew in parts, with their ``renewal``."""
 
     whole: bool
 
     def __init__(self, pattern: Multifrontal, fronts: _Fronts, renewal: Renewal | None = None):
         self._pattern, self._fronts, self._renewal = pattern, fronts, renewal
-
-    @property
-    def renewable(self) -> bool:
-        """Whether parts of it can be made anew."""
-        return self._renewal is not None and self._pattern.large
 
     @property
     def price(self) -> float:
@@ -379,7 +398,7 @@ class Multifactor:
         """Bring it up to date in the subtrees where any entry has changed by more than ``change``, and above them.
 
         Everywhere else it stays that of the matrix before. False, and nothing is done, where that would take more than
-        the part ``most`` of the work of all. Only if ``renewable``.
+        the part ``most`` of the work of all. Only of a rough one.
 
         Raises
         ------
@@ -390,7 +409,7 @@ class Multifactor:
         pattern = self._pattern
         front_of = pattern.front_of_entries(matrix)
         anew = np.zeros(len(pattern.own), np.bool_)
-        anew[front_of[np.abs(matrix.data - self._renewal.entries) > change]] = True
+        frontal.mark(front_of, matrix.data, self._renewal.entries, change, anew)
         ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
         for span in ranges:
             anew[span.first : span.last] = True
@@ -403,29 +422,30 @@ class Multifactor:
         _Elimination(pattern, matrix, self._fronts, whole=self.whole, left=self._renewal.left).run(ranges, above)
         if self._fronts.failed:
             raise RuntimeError("Factor is exactly singular" if self.whole else "not positive definite")
-        self._renewal.entries = np.where(anew[front_of], matrix.data, self._renewal.entries)
+        frontal.keep(front_of, matrix.data, anew, self._renewal.entries)
         return True
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """The solution for one right-hand side."""
+        """The solution for one right-hand side, to the precision of the fronts."""
         pattern, fronts, tree = self._pattern, self._fronts, self._pattern.tree
-        x = np.array(right, float)
-        lapack = addresses()
+        kind = fronts.values.dtype
+        x = np.array(right, kind)
+        lapack = addresses(kind)
         room = int(pattern.outer.max(initial=0))
         nowhere = np.zeros(0, np.int64)
 
         def down(first: int, last: int, below: int, outside: np.ndarray) -> FloatArray:
-            gathered = np.zeros(len(outside))
+            gathered = np.zeros(len(outside), kind)
             frontal.forward(
                 lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
-                x, below, outside, gathered, np.empty(room),
+                x, below, outside, gathered, np.empty(room, kind),
             )  # fmt: skip
             return gathered
 
         def up(first: int, last: int) -> None:
             frontal.backward(
                 lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
-                x, np.empty(room), np.empty(int(pattern.own.max())), np.zeros(1, np.int32),
+                x, np.empty(room, kind), np.empty(int(pattern.own.max()), kind), np.zeros(1, np.int32),
             )  # fmt: skip
 
         with threads.mapping(pattern.large) as spread:
@@ -437,7 +457,7 @@ class Multifactor:
             for front in reversed(pattern.above):
                 up(front, front + 1)
             spread(lambda s: up(s.first, s.last), pattern.ranges)
-        return x
+        return np.asarray(x, float)
 
 
 class LU(Multifactor):
