@@ -26,8 +26,9 @@ DIRECT_ITERATIONS = 8
 ROUNDS, FIRST_TRY = 24, 2
 #: Rounds after which limits must have stopped changing by more than this (mean disk weights), or the increment fails.
 PATIENCE, SLOW = 6, 0.05
-#: Factorisations after which an increment fails: a smaller one is cheaper.
-MOST_WORK = 150
+#: Factorisations after which an increment fails, since a smaller one is cheaper (those that succeeded took 67 at most),
+#: and of one minimisation, which all that are of any use end before.
+MOST_WORK, MOST_STEPS = 75, 25
 #: Levenberg shift of the minimisation, in units of the normal stiffness.
 SHIFT = 1e-7
 #: Unbalanced force (mean disk weights) up to which a state is left that is only passed: the next increment takes it up.
@@ -88,7 +89,10 @@ def solve_increment(
         if work.factorisations - before_rounds > MOST_WORK:
             return None
         work.rounds += 1
+        steps = work.factorisations
         trial = _minimise_with_limits(system, known, external, q, limits, work)
+        if work.factorisations - steps == MOST_STEPS:
+            return None
         q = trial.configuration.q
         before, limits = limits, (pair_mu * trial.pair_normal, wall_mu * trial.wall_normal)
         change = max(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(before, limits, strict=True))
@@ -112,14 +116,13 @@ def _minimise_with_limits(
     start: FloatArray,
     limits: tuple[FloatArray, FloatArray],
     work: Work,
-    maximum_iterations: int = 25,
 ) -> Trial:
     """Minimise the energy of an increment with fixed Coulomb limits; returns the last trial."""
     q = start
     trial = system.trial(known, q, limits)
     shift = SHIFT * system.problem.stiffness
     best, stalled = np.inf, 0
-    for _ in range(maximum_iterations):
+    for _ in range(MOST_STEPS):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
         stalled = stalled + 1 if size > 0.5 * best else 0

@@ -33,8 +33,8 @@ from .system import Configuration, StaticSystem, Trial
 from .timestep import stability_limit
 
 #: First load increment in mean disk weights, times the square root of the number of disks: the deeper a packing, the
-#: more load it takes to change as many contacts.
-FIRST_STEP = 0.0033
+#: more load it takes to change as many contacts. But under the load they change at the same one however deep it is.
+FIRST_STEP, LONGEST_FIRST = 0.0033, 1.6
 #: First increment of a large load, as a part of it.
 LARGE_LOAD = 0.005
 #: Longest and shortest increment as parts of the first.
@@ -145,7 +145,8 @@ class _Path:
         self.unit = problem.load_size
         #: part of the load that a first increment may have; nothing is added to what the caller asks for
         self.part = LARGE_LOAD if longest_step is None else 0.0
-        self.least_first = (FIRST_STEP * problem.n**0.5 if longest_step is None else longest_step) / self.unit
+        first = min(FIRST_STEP * problem.n**0.5, LONGEST_FIRST) if longest_step is None else longest_step
+        self.least_first = first / self.unit
         self.shortest = SHORTEST * self.least_first
         #: None where increments keep to the first length
         self.tolerance: float | None = tolerance if longest_step is None else None
