@@ -80,7 +80,8 @@ def test_shares_of_a_solution_are_whole_and_of_the_right_parts(script):
     falls = timing.scene(0.2).updated({"packing.layers": 5, "packing.disks_per_row": 9})
     row = shares.measure("a fall", lambda: shares.settled(falls))
     assert sum(row[part] for part in (*dict(shares.PARTS), shares.REST)) == pytest.approx(1.0)
-    assert row["dynamics"] > 0.5
+    # most of the time on a machine that does nothing else
+    assert row["dynamics"] > max(row["factorisations"], row["forces and tangents"])
     assert shares.part_of("~") == "matrices and arrays"
     assert shares.part_of("src/granular_response/solve/path.py") == shares.REST
 
