@@ -110,9 +110,8 @@ TEXTS = {
         "Whole processes, `granular-response run` from a scene file to the stored result. Slabs are four times as "
         "wide as deep, and stiffness grows with their size so that the order of the slab survives. Where the time "
         "is far above the processor time of a thread, other work held the cores; goals are judged by the time. On "
-        "the same day, a slow one, versions before took 1,009 s (1,523 s of two processors) for 1,000,250 disks "
-        "without friction, where near the minimum contacts went to and fro, and 183 s (278 s) for 102,480 with, where "
-        "factorisations were only ever made as a whole.",
+        "days as slow, versions before took 1,009 s (1,523 s of two processors) for 1,000,250 disks without friction, "
+        "where near the minimum contacts went to and fro, and 183 s (278 s) for 102,480 with, where factorisations were only ever made as a whole.",
     ),
     "depth": (
         "The teardrop in deep slabs",

@@ -77,11 +77,10 @@ def test_kernels_are_timed_whole_and_in_parts(script, monkeypatch, friction):
 
 def test_shares_of_a_solution_are_whole_and_of_the_right_parts(script):
     shares, timing = script("shares"), script("timing")
-    falls = timing.scene(0.2).updated({"packing.layers": 5, "packing.disks_per_row": 9})
+    falls = timing.scene(0.2).updated({"packing.layers": 10, "packing.disks_per_row": 21})
     row = shares.measure("a fall", lambda: shares.settled(falls))
     assert sum(row[part] for part in (*dict(shares.PARTS), shares.REST)) == pytest.approx(1.0)
-    # most of the time on a machine that does nothing else
-    assert row["dynamics"] > max(row["factorisations"], row["forces and tangents"])
+    assert row["dynamics"] > 0.5
     assert shares.part_of("~") == "matrices and arrays"
     assert shares.part_of("src/granular_response/solve/path.py") == shares.REST
 

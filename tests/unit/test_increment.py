@@ -73,7 +73,7 @@ def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
     monkeypatch.setattr(module, "ROUGH", 0.0)
     monkeypatch.setattr(module, "STILL", 0.0)
     long, short = Work(), Work()
-    module._minimise_with_limits(system, known, external, known.q, limits, long)
+    assert module._minimise_with_limits(system, known, external, known.q, limits, long) is None
     assert long.factorisations == module.MOST_STEPS  # rounding never lets the residual vanish
     monkeypatch.setattr(module, "STILL", 1e-5)
     trial = module._minimise_with_limits(system, known, external, known.q, limits, short)
@@ -91,19 +91,12 @@ def test_hopeless_increment_returns_none():
     assert solve_increment(system, known, external_force(problem, 1.0), known.q, Work()) is None
 
 
-def test_an_increment_gives_up_after_its_work(start, monkeypatch):
+@pytest.mark.parametrize(("limit", "most"), [("MOST_WORK", 0), ("MOST_STEPS", 1)])
+def test_an_increment_gives_up_after_its_work(start, monkeypatch, limit, most):
+    """That of all its rounds, and that of one minimisation."""
     problem, system, known = start
     monkeypatch.setattr(module, "DIRECT_ITERATIONS", 1)
-    monkeypatch.setattr(module, "MOST_WORK", 0)
-    work = Work()
-    assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
-    assert work.rounds <= 1
-
-
-def test_an_increment_gives_up_where_a_minimisation_does_not_end(start, monkeypatch):
-    problem, system, known = start
-    monkeypatch.setattr(module, "DIRECT_ITERATIONS", 1)
-    monkeypatch.setattr(module, "MOST_STEPS", 1)
+    monkeypatch.setattr(module, limit, most)
     work = Work()
     assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
     assert work.rounds == 1

@@ -12,6 +12,7 @@ point on the limits is the one of Panagiotopoulos for contact with friction.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -71,9 +72,8 @@ def solve_increment(
     fails, which costs more than a shorter increment.
     """
     enough = PASSED if passing else ENOUGH
-    trial, report = newton(
-        system, known, external, guess, enough=enough, maximum_iterations=DIRECT_ITERATIONS, runaway=RUNAWAY
-    )
+    solve = partial(newton, system, known, external, enough=enough, runaway=RUNAWAY)
+    trial, report = solve(guess, maximum_iterations=DIRECT_ITERATIONS)
     work.factorisations += report.iterations
     if report.converged:
         work.increments += 1
@@ -89,19 +89,16 @@ def solve_increment(
         if work.factorisations - before_rounds > MOST_WORK:
             return None
         work.rounds += 1
-        steps = work.factorisations
-        trial = _minimise_with_limits(system, known, external, q, limits, work)
-        if work.factorisations - steps == MOST_STEPS:
+        held = _minimise_with_limits(system, known, external, q, limits, work)
+        if held is None:
             return None
-        q = trial.configuration.q
-        before, limits = limits, (pair_mu * trial.pair_normal, wall_mu * trial.wall_normal)
+        q = held.configuration.q
+        before, limits = limits, (pair_mu * held.pair_normal, wall_mu * held.wall_normal)
         change = max(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(before, limits, strict=True))
         if done >= PATIENCE and change > SLOW:
             return None
         if done > FIRST_TRY:
-            true, report = newton(
-                system, known, external, q, enough=enough, maximum_iterations=DIRECT_ITERATIONS - 2, runaway=RUNAWAY
-            )
+            true, report = solve(q, maximum_iterations=DIRECT_ITERATIONS - 2)
             work.factorisations += report.iterations
             if report.converged:
                 work.increments += 1
@@ -116,8 +113,8 @@ def _minimise_with_limits(
     start: FloatArray,
     limits: tuple[FloatArray, FloatArray],
     work: Work,
-) -> Trial:
-    """Minimise the energy of an increment with fixed Coulomb limits; returns the last trial."""
+) -> Trial | None:
+    """The minimum of an increment's energy with fixed Coulomb limits, as near as steps come; None where they go on."""
     q = start
     trial = system.trial(known, q, limits)
     shift = SHIFT * system.problem.stiffness
@@ -128,18 +125,18 @@ def _minimise_with_limits(
         stalled = stalled + 1 if size > 0.5 * best else 0
         best = min(best, size)
         if size < ROUGH or (best < STILL and stalled >= STALLED):
-            break
+            return trial
         work.factorisations += 1
         try:
             step = system.step(trial, r, shift)
         except RuntimeError:  # exactly singular
-            break
+            return trial
         length = float(np.abs(step).max())
         if not np.isfinite(length):
-            break
+            return trial
         if length > LONGEST_STEP:
             step *= LONGEST_STEP / length
         slope = float(r @ step)
         step, trial = shortened(system, known, external, q, step, slope, limits=limits, until=FLAT, beyond=FLAT)
         q = q + step
-    return trial
+    return None

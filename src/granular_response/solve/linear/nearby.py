@@ -32,7 +32,7 @@ class Sequence:
     def __init__(self, storage: Storage, *, definite: bool, same: float):
         self._storage, self._definite, self._same = storage, definite, same
         self._near: Nearby | None = None
-        self._shift: float | None = None
+        self._shift = 0.0
 
     @property
     def factor(self) -> Factor | None:
@@ -50,7 +50,7 @@ class Sequence:
         definite to the precision of a rough one, and where iterations do not converge.
         """
         near, self._near = self._near, None
-        if near is not None and self._shift is not None and abs(self._shift - shift) <= self._same:
+        if near is not None and abs(self._shift - shift) <= self._same:
             try:
                 found = near.solve(matrix, right, tolerance)
             except RuntimeError:
