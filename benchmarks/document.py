@@ -111,7 +111,8 @@ TEXTS = {
         "wide as deep, and stiffness grows with their size so that the order of the slab survives. Where the time "
         "is far above the processor time of a thread, other work held the cores; goals are judged by the time. On "
         "days as slow, versions before took 1,009 s (1,523 s of two processors) for 1,000,250 disks without friction, "
-        "where near the minimum contacts went to and fro, and 183 s (278 s) for 102,480 with, where factorisations were only ever made as a whole.",
+        "where near the minimum contacts went to and fro, and 183 s (278 s) for 102,480 with, where factorisations "
+        "were only ever made as a whole.",
     ),
     "depth": (
         "The teardrop in deep slabs",
