@@ -1,5 +1,7 @@
 """Increments of a path: Newton's method on the true law, and minimisations with fixed Coulomb limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_scenes import scene
@@ -7,7 +9,7 @@ from small_scenes import scene
 from granular_response.solve import Problem, rest_state
 from granular_response.solve import increment as module
 from granular_response.solve.equilibrium import external_force, newton
-from granular_response.solve.increment import Work, solve_increment
+from granular_response.solve.increment import PATIENT, Work, solve_increment
 from granular_response.solve.system import StaticSystem
 
 
@@ -73,10 +75,10 @@ def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
     monkeypatch.setattr(module, "ROUGH", 0.0)
     monkeypatch.setattr(module, "STILL", 0.0)
     long, short = Work(), Work()
-    assert module._minimise_with_limits(system, known, external, known.q, limits, long) is None
-    assert long.factorisations == module.MOST_STEPS  # rounding never lets the residual vanish
+    assert module._minimise_with_limits(system, known, external, known.q, limits, long, 25) is None
+    assert long.factorisations == 25  # rounding never lets the residual vanish
     monkeypatch.setattr(module, "STILL", 1e-5)
-    trial = module._minimise_with_limits(system, known, external, known.q, limits, short)
+    trial = module._minimise_with_limits(system, known, external, known.q, limits, short, 25)
     assert short.factorisations < 15
     assert np.abs(trial.contact_force + external).max() < 1e-8
 
@@ -91,12 +93,12 @@ def test_hopeless_increment_returns_none():
     assert solve_increment(system, known, external_force(problem, 1.0), known.q, Work()) is None
 
 
-@pytest.mark.parametrize(("limit", "most"), [("MOST_WORK", 0), ("MOST_STEPS", 1)])
-def test_an_increment_gives_up_after_its_work(start, monkeypatch, limit, most):
+@pytest.mark.parametrize("limit", [{"factorisations": 0}, {"steps": 0}])
+def test_an_increment_gives_up_after_its_work(start, monkeypatch, limit):
     """That of all its rounds, and that of one minimisation."""
     problem, system, known = start
     monkeypatch.setattr(module, "DIRECT_ITERATIONS", 1)
-    monkeypatch.setattr(module, limit, most)
     work = Work()
-    assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
+    patience = replace(PATIENT, **limit)
+    assert solve_increment(system, known, external_force(problem, 0.5), known.q, work, patience=patience) is None
     assert work.rounds == 1

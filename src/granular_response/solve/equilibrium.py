@@ -24,9 +24,9 @@ ENOUGH = 1e-3 * TOLERANCE
 LEAST_FRICTION = 1e-4
 #: Most factorisations of a Newton solution.
 NEWTON_ITERATIONS = 30
-#: Part to which the force along a step falls where contacts go to and fro.
+#: Part to which the force along a step (the slope of the energy, where there is one) falls in a line search.
 FLAT = 0.1
-#: A Newton step moves no disk farther than this (mean radii).
+#: A step moves no disk farther than this (mean radii).
 LONGEST_STEP = 0.05
 
 

@@ -17,7 +17,7 @@ from functools import partial
 import numpy as np
 
 from ..state import FloatArray
-from .equilibrium import ENOUGH, newton
+from .equilibrium import ENOUGH, FLAT, LONGEST_STEP, newton
 from .line_search import shortened
 from .system import Configuration, StaticSystem, Trial
 
@@ -26,10 +26,7 @@ DIRECT_ITERATIONS = 8
 #: Rounds of fixed limits, and the round from which the true law is tried again.
 ROUNDS, FIRST_TRY = 24, 2
 #: Rounds after which limits must have stopped changing by more than this (mean disk weights), or the increment fails.
-PATIENCE, SLOW = 6, 0.05
-#: Factorisations after which an increment fails, since a smaller one is cheaper (those that succeeded took 67 at most),
-#: and of one minimisation, which all that are of any use end before.
-MOST_WORK, MOST_STEPS = 75, 25
+SETTLED_BY, SLOW = 6, 0.05
 #: Levenberg shift of the minimisation, in units of the normal stiffness.
 SHIFT = 1e-7
 #: Unbalanced force (mean disk weights) up to which a state is left that is only passed: the next increment takes it up.
@@ -38,12 +35,21 @@ PASSED = 1e-8
 ROUGH = 1e-7
 #: Residual below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
 STILL, STALLED = 1e-5, 3
-#: Step (mean radii, radians) that only the tangent of nearly a mechanism asks for: nothing converges after one
-#: (docs/physics.md has the counts).
-RUNAWAY = 50.0
-#: Part to which the energy's slope falls along a step.
-FLAT = 0.1
-LONGEST_STEP = 0.05
+
+@dataclass(frozen=True)
+class Patience:
+    """When an increment fails."""
+
+    factorisations: int  #: of all minimisations with fixed limits together
+    steps: int  #: of one of them
+    runaway: float  #: step of Newton's method (mean radii, radians) that the tangent of nearly a mechanism asks for
+
+
+#: Where a shorter increment is cheaper: those that succeeded took 67 factorisations at most, minimisations of any use
+#: end before, and after such a step next to nothing converges (docs/physics.md has the counts).
+HASTY = Patience(75, 25, 50.0)
+#: Where no shorter one is left, before dynamics has to take over.
+PATIENT = Patience(150, 150, np.inf)
 
 
 @dataclass
@@ -64,6 +70,7 @@ def solve_increment(
     *,
     passing: bool = False,
     stubborn: bool = True,
+    patience: Patience = PATIENT,
 ) -> Trial | None:
     """Equilibrium under ``external``, one increment after ``known``; None where none is found.
 
@@ -72,7 +79,7 @@ def solve_increment(
     fails, which costs more than a shorter increment.
     """
     enough = PASSED if passing else ENOUGH
-    solve = partial(newton, system, known, external, enough=enough, runaway=RUNAWAY)
+    solve = partial(newton, system, known, external, enough=enough, runaway=patience.runaway)
     trial, report = solve(guess, maximum_iterations=DIRECT_ITERATIONS)
     work.factorisations += report.iterations
     if report.converged:
@@ -86,16 +93,16 @@ def solve_increment(
     q = system.held_as_in(guess, known.q)
     before_rounds = work.factorisations
     for done in range(1, ROUNDS + 1):
-        if work.factorisations - before_rounds > MOST_WORK:
+        if work.factorisations - before_rounds > patience.factorisations:
             return None
         work.rounds += 1
-        held = _minimise_with_limits(system, known, external, q, limits, work)
+        held = _minimise_with_limits(system, known, external, q, limits, work, patience.steps)
         if held is None:
             return None
         q = held.configuration.q
         before, limits = limits, (pair_mu * held.pair_normal, wall_mu * held.wall_normal)
         change = max(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(before, limits, strict=True))
-        if done >= PATIENCE and change > SLOW:
+        if done >= SETTLED_BY and change > SLOW:
             return None
         if done > FIRST_TRY:
             true, report = solve(q, maximum_iterations=DIRECT_ITERATIONS - 2)
@@ -113,19 +120,22 @@ def _minimise_with_limits(
     start: FloatArray,
     limits: tuple[FloatArray, FloatArray],
     work: Work,
+    most_steps: int,
 ) -> Trial | None:
     """The minimum of an increment's energy with fixed Coulomb limits, as near as steps come; None where they go on."""
     q = start
     trial = system.trial(known, q, limits)
     shift = SHIFT * system.problem.stiffness
     best, stalled = np.inf, 0
-    for _ in range(MOST_STEPS):
+    for left in range(most_steps, -1, -1):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
         stalled = stalled + 1 if size > 0.5 * best else 0
         best = min(best, size)
         if size < ROUGH or (best < STILL and stalled >= STALLED):
             return trial
+        if left == 0:
+            break
         work.factorisations += 1
         try:
             step = system.step(trial, r, shift)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..state import SLIDING, STICKING, FloatArray
 from .equilibrium import external_force
-from .increment import Work, solve_increment
+from .increment import HASTY, Work, solve_increment
 from .system import Configuration, StaticSystem, Trial
 
 
@@ -53,7 +53,7 @@ def error_of_two(system: StaticSystem, start: Place, middle: Place, end: Place, 
             wall_spring=known.wall_spring - slid_on[pairs:],
         )
     external = external_force(problem, end.factor)
-    single = solve_increment(system, known, external, end.known.q, work, passing=True, stubborn=False)
+    single = solve_increment(system, known, external, end.known.q, work, passing=True, stubborn=False, patience=HASTY)
     if single is None:
         return np.inf
     normal = np.abs(single.wall_normal - end.trial.wall_normal).max(initial=0.0)
