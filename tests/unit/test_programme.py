@@ -54,6 +54,29 @@ def test_dynamics_agrees_with_the_path_on_the_way_down():
     assert dynamics == pytest.approx(path, abs=0.02)
 
 
+def test_a_load_that_stays_is_no_turn():
+    """Dynamics starts each ramp at rest until the programme turns, which it does not by staying where it is."""
+    scene = slab(contact__friction=0.2, protocol__method="dynamics", protocol__ramp_time=1.0)
+    once = solve_scene(scene, load_factors=[1.0]).loaded[-1]
+    for programme in ([0.5, 1.0], [0.0, 0.5, 1.0], [0.5, 0.5, 1.0]):
+        last = solve_scene(scene, load_factors=programme).loaded[-1]
+        np.testing.assert_array_equal(last.walls.normal_force, once.walls.normal_force)
+
+
+def test_a_result_holds_the_programme_that_was_solved():
+    solution = solve_scene(slab(), load_factors=[0.5])
+    assert solution.scene.protocol.load_factors == (0.5,)
+    further = continue_solution(solution, [1, np.float64(0.25)])
+    assert further.scene.protocol.load_factors == further.load_factors == (0.5, 1.0, 0.25)
+
+
+@pytest.mark.parametrize("programme", [2, "12", [True], [[1, 2]], ["1"], None])
+def test_what_is_no_programme_is_one_line(programme):
+    solution = solve_scene(slab())
+    with pytest.raises(SceneError, match=r"^load factors .*: must be a list of one or more numbers$"):
+        continue_solution(solution, programme)
+
+
 def test_loads_may_change_their_sign():
     """The slab is symmetric, and so are its answers to loads from either side, from rest."""
     pushed = scene(5, 9, loads=[{"disk": "top-centre", "force": [1.0, 0.0]}])

@@ -184,3 +184,25 @@ def test_open_contacts_forget():
     assert trial.pair_status[0] == OPEN
     assert trial.configuration.pair_spring[0] == 0.0
     assert not trial.contact_force.any()
+
+
+@pytest.mark.parametrize("rollers", [0, 2, 10])
+def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
+    """A disk balanced on another, a floor contact that slides, and disks on the floor that nothing holds along it.
+
+    Each of these rolls at an eigenvalue of nearly zero, nearer to it than that of the unstable stack.
+    """
+    places = [(5.0, 0.9995), (5.0, 2.9985), (12.0, 0.9995)] + [(20.0 + 4.0 * i, 0.9995) for i in range(rollers)]
+    force = 30.0
+    friction = {"contact__friction": 0.5, "wall__friction": 0.5}
+    problem, state = free_disks(places, loads=[{"disk": 1, "force": [0.0, -force]}], **friction)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    slides = np.where(system.wall_disk == 2, 1.0, 0.0)  # a spring far beyond Coulomb's limit
+    q = known.q.copy()
+    q[problem.n : problem.n + 2] -= np.array([1.0, 2.0]) * force / problem.stiffness
+    trial = system.trial(replace(known, wall_spring=slides), q)
+    assert SLIDING in trial.wall_status
+    every = np.linalg.eigvals(system.tangent(trial, 1e-6).toarray()).real
+    assert (every < 0).sum() == 1 and every.min() < -1e-3 * problem.stiffness
+    assert system.negative_modes(trial) == 1

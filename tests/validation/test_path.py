@@ -19,6 +19,7 @@ from granular_response.solve import (
     relax,
     rest_state,
 )  # fmt: skip
+from granular_response.solve.increment import HASTY, PATIENT, solve_increment
 from granular_response.state import OPEN
 
 FLOOR = np.arange(13)
@@ -69,7 +70,8 @@ def test_a_path_back_leads_elsewhere_with_friction_and_back_within_the_reversibl
     assert np.abs(floor_force(first, FLOOR) - floor_force(again, FLOOR)).max() < 0.02 * change
 
 
-def test_an_equilibrium_that_is_left_slowly_is_not_called_stable():
+@pytest.mark.parametrize("factor", [1.0, 0.0])
+def test_an_equilibrium_that_is_left_slowly_is_not_called_stable(factor):
     """A disk balanced on another, displaced by 1e-6, needs seconds to move: a look at once sees it at rest."""
     load = [{"disk": 1, "force": [0.0, -0.1]}]
     problem, state = free_disks([(10.0, 2.0), (10.0, 5.0)], [2.0, 1.0], contact__friction=0.0, loads=load)
@@ -78,7 +80,7 @@ def test_an_equilibrium_that_is_left_slowly_is_not_called_stable():
     assert balanced.certificate.negative_modes == 1
     record = PathRecord()
     with pytest.raises(PathError, match="no equilibrium beyond load factor 0"):
-        follow(problem, balanced, [1.0], record=record)
+        follow(problem, balanced, [factor], record=record)
     assert record.stability_trials >= 1
 
 
@@ -168,3 +170,18 @@ def test_a_stretch_that_costs_too_much_is_left_to_dynamics(settled, monkeypatch)
     assert {c.reason for c in record.crossings} == {"too much work"}
     assert record.crossings[-1].end <= 2.0 and state.load_factor == 2.0
     assert state.certificate.force_residual < 1e-9
+
+
+def test_only_the_shortest_increment_has_patience_before_dynamics_takes_over(settled, monkeypatch):
+    problem, rest = settled
+    asked = []
+
+    def fails(*args, patience, **options):
+        asked.append(patience)
+        return None if len(asked) <= 3 else solve_increment(*args, patience=patience, **options)
+
+    monkeypatch.setattr(path, "solve_increment", fails)
+    record = PathRecord()
+    follow(problem, rest, [1.0], longest_step=0.2, record=record)
+    assert asked[:4] == [HASTY, HASTY, PATIENT, HASTY]
+    assert record.crossings[0].reason == "no equilibrium" and record.crossings[0].start == 0.0

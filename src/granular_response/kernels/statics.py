@@ -50,14 +50,6 @@ class Walls(NamedTuple):
     law: Any
 
 
-class Known(NamedTuple):
-    """What contacts remember of the converged configuration at the beginning of an increment."""
-
-    overlap: Floats  #: (m,)
-    spring: Floats | None  #: (m,); None without friction
-    limits: Floats | None  #: (m,) fixed Coulomb limits in place of ``mu f_n``; None for the true law
-
-
 class Response(NamedTuple):
     """Contact forces at a trial configuration, to be filled."""
 
@@ -186,8 +178,9 @@ def _rub(c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overl
 def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out, force):
     """Forces of disk-disk contacts at ``q``, one increment after ``q0``, and their local tangents.
 
-    ``pairs`` : :class:`Pairs`, and its ``shape``; ``overlap0``, ``spring0``, ``limits`` : those of :class:`Known`;
-    ``out`` : :class:`Response`, filled; the generalised contact force ``force`` (dof,) is added to.
+    ``pairs`` : :class:`Pairs`, and its ``shape``; ``overlap0``, ``spring0`` (m,) : at ``q0``, no springs (None) without
+    friction; ``limits`` (m,) : fixed Coulomb limits, None for ``mu f_n``; ``out`` : :class:`Response`, filled; the
+    generalised contact force ``force`` (dof,) is added to.
     """
     law = pairs.law
     for c in range(pairs.first.size):

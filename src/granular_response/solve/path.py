@@ -24,7 +24,7 @@ import numpy as np
 from ..state import Crossing, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop, relax
 from .equilibrium import certify, external_force
-from .increment import Work, solve_increment
+from .increment import HASTY, PATIENT, Work, solve_increment
 from .increment_error import Place, error_of_two, slip
 from .problem import Problem
 from .settle import CROSSING as CROSSING_OVER
@@ -100,7 +100,7 @@ def follow(
     problem : with its loads chosen.
     rest : certified state at load factor ``rest.load_factor``; a path may start from any of the states it returned,
         also from a file, and then goes on to the last bit as if it had not been cut.
-    factors : increasing multipliers of the loads.
+    factors : multipliers of the loads, in turn.
     time_step : where dynamics takes over, in sqrt(R/g); that of the protocol if not given, looked at only when needed.
     longest_step : bound on an increment, in mean disk weights, in place of increments by their error.
     tolerance : error of a floor or wall force that increments may leave, per load; that of the protocol if not given.
@@ -155,6 +155,7 @@ class _Path:
         looks = self.tolerance is not None and problem.rotations
         self.fineness = min(1.0, tolerance / TRUSTED_FOR) if looks else np.inf
         self.factor = rest.load_factor
+        self.start_is_stable = rest.reached.certificate is not None and rest.reached.certificate.stable is True
         self.middle: Place | None = None
         #: a state ahead that is known, but was too far away for the tolerance
         self.beyond: Place | None = None
@@ -193,6 +194,8 @@ class _Path:
         for target in factors:
             if results:
                 self._restart(results[-1])
+            elif target == self.factor and not self.start_is_stable:
+                self._look_at_stability()
             left = abs(target - self.factor)
             while self.factor != target:
                 self._advance(target)
@@ -228,13 +231,15 @@ class _Path:
         increment = abs(new - self.factor)
         work = self.record.work
         rounds, factorisations = work.rounds, work.factorisations
+        shorter = increment > 1.2 * self.shortest  # the last one before a target is up to 1.1 steps long
         found = solve_increment(
             self.system, self.known, external_force(self.problem, new), self._guess(new), work,
             passing=new != target and self.tolerance is not None,
             stubborn=self.tolerance is None or increment < 1.2 * self.first,
+            patience=HASTY if shorter else PATIENT,
         )  # fmt: skip
         if found is None:
-            if increment > 1.2 * self.shortest:  # the last one before a target is up to 1.1 steps long
+            if shorter:
                 self.step = min(max(0.5 * increment, self.shortest), self.first)
                 self.rate = None
                 self.calm = 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -56,10 +57,17 @@ class Solution:
 
     @property
     def rounding(self) -> float:
-        """Largest force out of balance over the smallest load: the part of a response that is no more than rounding."""
+        """How much of a response may be no more than rounding.
+
+        Forces out of balance and what the last digit of a position is worth as a force, over the smallest load.
+        """
         loads = [self.applied_force(state) for state in self.loaded if state.load_factor]
-        states = (self.rest, *self.loaded)
-        return max(s.certificate.force_residual for s in states) / min(loads) if loads and min(loads) > 0.0 else 0.0
+        if not loads or min(loads) <= 0.0:
+            return 0.0
+        stiffness = max(self.problem.stiffness, self.problem.wall_law.normal_stiffness)
+        digit = 0.5 * float(np.spacing(np.abs(self.rest.position).max())) * stiffness
+        residual = max(s.certificate.force_residual for s in (self.rest, *self.loaded))
+        return max(residual, digit) / min(loads)
 
     @property
     def unsettled(self) -> str:
@@ -106,7 +114,9 @@ def solve_scene(
     SceneError, NotSettled, DynamicsError, EquilibriumError, PathError
         Each with one line that says what to change.
     """
-    factors = load_programme(scene.protocol.load_factors if load_factors is None else load_factors)
+    if load_factors is not None:  # what is stored is the scene that was solved
+        scene = scene.updated({"protocol.load_factors": load_programme(load_factors)})
+    factors = scene.protocol.load_factors
     check_memory(scene, scene.packing.disk_count)
     problem = Problem.from_scene(scene)
     check_memory(scene, problem.n)  # a file's disks are counted by now
@@ -156,12 +166,16 @@ def continue_solution(
     _, states = loaded_states(solution.problem, solution.rest, factors, before=solution.loaded, progress=progress)
     for state in states:
         check_overlaps(solution.problem, state)
-    return replace(solution, loaded=(*solution.loaded, *states))
+    scene = solution.scene.updated({"protocol.load_factors": [*solution.load_factors, *factors]})
+    return replace(solution, scene=scene, loaded=(*solution.loaded, *states))
 
 
-def load_programme(factors: Sequence[float]) -> list[float]:
-    """A load programme as numbers; raises ``SceneError`` when it is empty or not finite."""
-    programme = [float(factor) for factor in factors]
+def load_programme(factors: Any) -> list[float]:
+    """A load programme as numbers; raises ``SceneError`` when it is anything but one or more that are finite."""
+    given: list[Any] = list(factors) if np.iterable(factors) and not isinstance(factors, (str, bytes)) else [None]
+    if not all(isinstance(factor, Real) and not isinstance(factor, (bool, np.bool_)) for factor in given):
+        raise SceneError(f"load factors {factors!r}: must be a list of one or more numbers")
+    programme = [float(factor) for factor in given]
     if not programme:
         raise SceneError("load factors: none given, must be one or more numbers")
     if not all(np.isfinite(programme)):
@@ -212,7 +226,7 @@ def loaded_states(
     for done, factor in enumerate(factors, 1):
         if choice.method == "dynamics":
             so_far = [*(state.load_factor for state in states), factor]
-            turned = len({after > here for here, after in pairwise(so_far)}) > 1
+            turned = len({after > here for here, after in pairwise(so_far) if after != here}) > 1
             states.append(_by_dynamics(problem, states[-1] if turned else rest, factor, progress))
             continue
         if choice.method == "minimise":

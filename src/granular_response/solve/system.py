@@ -36,6 +36,10 @@ SAME_SHIFT = 1e-7
 #: among which a direction is looked for then.
 ROUGH, FEW = 1e-3, 6
 
+#: Eigenvalues that are looked for where one may be negative, and how far to the left of zero, in units of the normal
+#: stiffness: the first that the symmetric part allows.
+SOUGHT, LEFT_OF_ALL = 4, (1e-2, 1e-1, 1.0, 10.0)
+
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
 
@@ -472,23 +476,38 @@ class StaticSystem:
         """Number of unstable directions of the tangent.
 
         Without sliding the tangent is symmetric (up to the turn of the contacts) and they are counted exactly.
-        Sliding makes it unsymmetric. If its symmetric part has no negative eigenvalue, no eigenvalue of the tangent
-        has a negative real part (Bendixson); else the four nearest to zero are computed and those with a
-        negative real part counted. ``shift`` keeps disks that roll freely from counting.
+        Sliding makes it unsymmetric. No eigenvalue has a smaller real part than the lowest eigenvalue of its symmetric
+        part (Bendixson). Is that negative, the ``SOUGHT`` nearest to a point still further to the left are computed,
+        and those with a negative real part counted: from there a real negative one is nearer than all that are not.
+        ``shift`` keeps disks that roll freely from counting.
         """
         modes = self._storage.negative_eigenvalues(self._symmetric_part(self.tangent(trial, shift)))
         if modes == 0 or (SLIDING not in trial.pair_status and SLIDING not in trial.wall_status):
             return modes
         if self.dof <= DENSE:
             return int((np.linalg.eigvals(self.tangent(trial, shift).toarray()).real < 0).sum())
-        origin = -1e-4 * self.problem.stiffness
-        factor = self.factorise(trial, shift - origin)
+        left = self._left_of_all(trial, shift)
+        # eigenvalues of their own, at the shift, would only slow the search
+        bare = self.tangent(trial)
+        moves_nothing = np.add.reduceat(np.abs(bare.data), bare.indptr[:-1]) == 0.0
+        held = shift + self.problem.stiffness * moves_nothing
+        factor = self.factorise(trial, held - left)
         values = eigs(
-            self.tangent(trial, shift), k=4, sigma=origin, return_eigenvectors=False,
+            self.tangent(trial, held), k=SOUGHT, sigma=left, return_eigenvectors=False,
             OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
             v0=np.random.default_rng(0).standard_normal(self.dof), tol=0.0 if self._two_sided is None else ROUGH,
         )  # fmt: skip
         return int((values.real < 0).sum())
+
+    def _left_of_all(self, trial: Trial, shift: float) -> float:
+        """A number below the lowest eigenvalue of the symmetric part of the tangent with ``shift``, not far below."""
+        k = self.problem.stiffness
+        self._definite_steps.forget()
+        for origin in LEFT_OF_ALL:
+            matrix = self._symmetric_part(self.tangent(trial, shift + origin * k))
+            if self._storage.rough_factor(matrix, definite=True) or self._storage.definite_factor(matrix):
+                break
+        return -origin * k
 
     def unstable_direction(self, trial: Trial, *, rough: bool = False) -> FloatArray:
         """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1.
