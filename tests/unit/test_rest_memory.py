@@ -92,6 +92,15 @@ def test_what_changes_the_rest_state_changes_its_name(change):
     assert settled.name(Problem.from_scene(SCENE.updated(change))) != settled.name(Problem.from_scene(SCENE))
 
 
+@pytest.mark.parametrize(
+    "change", [{"protocol.static_finish": False}, {"protocol.integrator": "verlet"}, {"protocol.maximum_steps": 1000}]
+)
+def test_so_does_what_settles_a_packing_that_was_prepared_without_friction(change):
+    """It may turn away once it has friction, and dynamics takes it to rest."""
+    scene = SCENE.updated({"preparation.gravity": "frictionless"})
+    assert settled.name(Problem.from_scene(scene.updated(change))) != settled.name(Problem.from_scene(scene))
+
+
 @pytest.mark.parametrize("change", [{"loads.0.torque": 3.0}, {"protocol.ramp_time": 50.0}, {"protocol.method": "path"}])
 def test_what_comes_after_rest_does_not(change):
     assert settled.name(Problem.from_scene(SCENE.updated(change))) == settled.name(Problem.from_scene(SCENE))

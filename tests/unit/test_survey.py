@@ -107,7 +107,7 @@ def test_its_pipeline_names_a_stage_and_the_sources_of_every_block():
     assert stage["foreach"] == "${blocks}"
     stage = yaml.safe_load((ROOT / "survey" / "dvc.yaml").read_text())["stages"]["packings"]
     declared = {path.removeprefix("../src/granular_response/") for path in stage["do"]["deps"]}
-    assert {*larger.SOURCES, "paper/survey", "paper/groups/${item}/simulate.py"} <= declared
+    assert {*larger.sources_of("${item}"), "paper/survey"} <= declared
     assert stage["foreach"] == list(larger.GROUPS)
 
 
@@ -204,4 +204,8 @@ def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_p
             else:
                 np.testing.assert_allclose(stored[name][key], values, rtol=1e-4, atol=1e-5, err_msg=key)
     marks = store.read_attributes(path)
-    assert marks["block"] == group and marks["seed"] == "0" and survey.sources(*larger.SOURCES) in marks["sources"]
+    assert (
+        marks["block"] == group
+        and marks["seed"] == "0"
+        and survey.sources(*larger.sources_of(group)) in marks["sources"]
+    )

@@ -51,9 +51,12 @@ def digest(*values: Any) -> str:
 
 @functools.cache
 def sources(*parts: str) -> str:
-    """Name of the present code of some parts of this package, of all if none is named, and of what computes in it."""
-    folders = [_PACKAGE / part for part in parts] or [_PACKAGE]
-    files = sorted(path for folder in folders for path in folder.rglob("*.py"))
+    """Name of the present code of some parts of this package, of all if none is named, and of what computes in it.
+
+    A part is a folder or a file.
+    """
+    places = [_PACKAGE / part for part in parts] or [_PACKAGE]
+    files = sorted(path for place in places for path in (place.rglob("*.py") if place.is_dir() else [place]))
     versions = [metadata.version(package) for package in ("numba", "numpy", "scipy")]
     return digest({path.relative_to(_PACKAGE).as_posix(): path.read_bytes() for path in files}, versions)
 

@@ -12,7 +12,7 @@ from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.solve import solution as solvers
 from granular_response.solve.choice import rest_method, stop_energy
-from granular_response.solve.timestep import resolve_time_step
+from granular_response.solve.timestep import UnstableTimeStep, resolve_time_step
 from granular_response.state import State
 from granular_response.sweeps.digest import digest, sources
 from granular_response.sweeps.memory import Memory
@@ -43,15 +43,26 @@ def rest_of(scene: Scene) -> State:
     return rest_state(Problem.from_scene(scene))
 
 
+def _time_step(problem: Problem, *, must_be_stable: bool) -> float | str | None:
+    """The time step, as the scene says it where it is not a stable one and need not be."""
+    try:
+        return resolve_time_step(problem)
+    except UnstableTimeStep:
+        if must_be_stable:
+            raise
+        return problem.scene.protocol.time_step
+
+
 def name(problem: Problem) -> str:
     """Equal for problems with the same rest state."""
     packing, protocol = problem.packing, problem.scene.protocol
     method = rest_method(problem).method
     numerics: tuple = ()
-    if method == "dynamics":  # only then must the time step be a stable one
+    # a packing prepared without friction may turn away once it has it, however it was prepared
+    if method == "dynamics" or (problem.rotations and problem.scene.preparation.gravity == "frictionless"):
         numerics = (
             protocol.integrator,
-            resolve_time_step(problem),
+            _time_step(problem, must_be_stable=method == "dynamics"),
             stop_energy(problem),
             protocol.stop_rule,
             protocol.maximum_steps,

@@ -2,8 +2,8 @@
 
 A group says in its section of ``params.yaml`` which packings are the survey's. Its ``simulate.py`` has what a packing
 takes: ``survey``, their tasks by what tells them apart, ``compute``, and ``STORED``, how the outcomes are kept. So they
-are made as those of the pipeline are. Finished ones are kept as those of :mod:`.simulate`, under names made from the
-sources of the mechanics and from the task; what is measured on them is no part of the names.
+are made as those of the pipeline are. Finished ones are kept as those of :mod:`.simulate`, under names made from all
+sources that an outcome depends on and from the task.
 """
 
 from __future__ import annotations
@@ -24,8 +24,12 @@ from granular_response.sweeps.tasks import Progress, map_tasks
 
 #: Groups with packings of this kind.
 GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
-#: The sources that a packing depends on, beside the ``simulate.py`` of its group.
-SOURCES = ("contact", "kernels", "machine", "observe", "scene", "solve", "state", "theory")
+
+
+def sources_of(group: str) -> tuple[str, ...]:
+    """Parts of the package that an outcome depends on."""
+    mechanics = ("contact", "kernels", "machine", "observe", "scene", "solve", "state", "theory")
+    return (*mechanics, "paper/slab_response.py", f"paper/groups/{group}/simulate.py")
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,7 @@ def run(
         scheduler=scheduler,
         progress=progress,
         checkpoint=folder / ".realizations.checkpoint",
-        parts=SOURCES,
+        parts=sources_of(group),
         what=f"packings of {group}",
     )
     by_key = dict(zip(order, found, strict=True))
@@ -80,6 +84,6 @@ def run(
         [by_key[key].seconds for key in tasks],
     )
     scene = parameters.base  # type: ignore[attr-defined]
-    attributes = {"block": group, "parameters": text.write(given)} | origin(SOURCES, scene)
+    attributes = {"block": group, "parameters": text.write(given)} | origin(sources_of(group), scene)
     store.write(output, labelled({packings.DATASET: dataset}, scene), attributes)
     return output
