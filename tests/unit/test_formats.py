@@ -9,6 +9,7 @@ import pytest
 
 from granular_response.machine import memory
 from granular_response.scene import FilePacking, Scene, SceneError, formats
+from granular_response.scene.errors import show
 from granular_response.solve import solution, solve_scene
 from granular_response.solve.size import STATICS, check_memory
 from granular_response.store import files as store
@@ -27,6 +28,15 @@ def result(tmp_path_factory) -> Path:
     scene = Scene.from_dict({"packing": packing, "contact": {"friction": 0.3}, "loads": [load]}, folder=folder)
     store.write(folder / "result.nc", to_dataset(solve_scene(scene)))
     return folder / "result.nc"
+
+
+@pytest.fixture(scope="module")
+def periodic(tmp_path_factory) -> Path:
+    packing = {"kind": "slab", "layers": 2, "disks_per_row": 5, "sides": "periodic"}
+    load = {"disk": 7, "force": [0.0, -1.0]}
+    path = tmp_path_factory.mktemp("periodic") / "result.nc"
+    store.write(path, to_dataset(solve_scene(Scene.from_dict({"packing": packing, "loads": [load]}))))
+    return path
 
 
 def build(path: Path, text: str | None = None, **changes):
@@ -74,6 +84,32 @@ def test_what_is_exported_is_imported(result, tmp_path, name):
         assert packing.width * scale == pytest.approx(stored.attrs["width"], rel=10 * precision + 1e-14)
         if name != "yade":  # its text has no masses
             np.testing.assert_allclose(packing.mass, stored["mass"], rtol=10 * precision + 1e-14)
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_a_periodic_result_comes_back_periodic(periodic, tmp_path, name):
+    suffix, precision = ENDINGS[name]
+    stored = store.read(periodic)[""]
+    path = export(periodic, tmp_path / f"disks{suffix}")
+    width = {"width": stored.attrs["width"]} if name in ("csv", "yade") else {}
+    packing = build(path, sides="periodic", **width)
+    assert packing.periodic and packing.width == pytest.approx(stored.attrs["width"], rel=1e-14)
+    apart = packing.position - stored["position"].values[-1]
+    apart[:, 0] -= packing.width * np.round(apart[:, 0] / packing.width)
+    np.testing.assert_allclose(apart, 0.0, atol=10 * precision + 1e-14)
+    if name in ("csv", "yade"):  # the others do not say
+        assert formats.read(path, name).periodic is None
+        return
+    with pytest.raises(SceneError) as caught:
+        build(path)
+    assert (
+        str(caught.value) == f"packing.sides = 'walls': must be periodic, the box of {show(str(path))} is periodic in x"
+    )
+    with pytest.raises(
+        SceneError, match=r"^packing\.width = 10\.1: must be 10\.0 or left out, the period of the box of "
+    ):
+        build(path, sides="periodic", width=10.1)
+    build(path, sides="periodic", width=10.0)
 
 
 def test_density_makes_mass(tmp_path):
@@ -160,6 +196,38 @@ def test_lammps_dump_has_the_last_frame(tmp_path):
     assert packing.width * 1.25 == pytest.approx(10)
 
 
+def test_lammps_dump_says_what_the_sides_are(tmp_path):
+    text = DUMP.replace("ff pp ff", "pp pp ff").replace("1 0.1 0", "1 1.1 0").replace("2 0.4 0", "2 -0.6 0")
+    packing = build(tmp_path / "a.dump", text, sides="periodic")
+    np.testing.assert_allclose(packing.position * 1.25, [[1, 1], [4, 1.5]])
+    assert packing.periodic and packing.width * 1.25 == pytest.approx(10)
+    with pytest.raises(
+        SceneError, match=r"^packing\.sides = 'walls': must be periodic, the box of '.*' is periodic in x$"
+    ):
+        build(tmp_path / "a.dump", text)
+    with pytest.raises(SceneError, match=r"'periodic': must be walls, the box of '.*' is not periodic in x$"):
+        build(tmp_path / "a.dump", DUMP, sides="periodic")
+    for sides in ("walls", "periodic"):  # a file without flags
+        assert build(tmp_path / "a.dump", DUMP.replace(" ff pp ff", ""), sides=sides).periodic == (sides == "periodic")
+
+
+@pytest.mark.parametrize(("name", "text", "last"), [("a.data", DATA, 3), ("a.dump", DUMP, 2)])
+def test_lammps_disks_are_in_the_order_of_their_ids(tmp_path, name, text, last):
+    """LAMMPS writes them in any order, and loads name them by their place."""
+    lines = text.splitlines(keepends=True)
+    first = max(k for k, line in enumerate(lines) if "Atoms" in line or "ITEM: ATOMS" in line) + 1
+    first += not lines[first].strip()
+    rows = lines[first : first + last]
+    ordered = build(tmp_path / name, text)
+    shuffled = build(tmp_path / name, "".join([*lines[:first], *rows[::-1], *lines[first + last :]]))
+    np.testing.assert_array_equal(shuffled.position, ordered.position)
+    np.testing.assert_array_equal(shuffled.radius, ordered.radius)
+    np.testing.assert_array_equal(shuffled.mass, ordered.mass)
+    bad = "".join([*lines[:first], *rows[::-1], *lines[first + last :]]).replace(rows[0], "1" + rows[0])
+    far = build(tmp_path / name, bad)  # 11 comes after 2
+    np.testing.assert_array_equal(far.position, np.roll(ordered.position, -1, axis=0))
+
+
 def test_yade_in_either_plane(tmp_path):
     for text in ("# by hand\n1 0 1 1\n3 0 1.5 1\n", "#format x_y_z_r_matId\n1 1 2 1 0\n3 1.5 2 1 0\n"):
         packing = build(tmp_path / "a.txt", text, width=9.0)
@@ -189,6 +257,10 @@ def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
         ("a.data", DATA.replace("3 atoms", "4 atoms"), "is not a whole LAMMPS data file"),
         ("a.data", DATA.replace("# sphere", "# atomic"), "line 14: atoms must be of style sphere"),
         ("a.data", DATA.replace("2.0 1.0 13.0", "2.0 one 13.0"), "line 17: density = 'one': must be a finite number"),
+        ("a.data", DATA.replace("3 1 1.0", "1 1 1.0"), "line 18: id = 1: must differ from that of line 16"),
+        ("a.dump", DUMP.replace("2 0.4", "1 0.4"), "line 21: id = 1: must differ from that of line 20"),
+        ("a.dump", DUMP.replace("2 0.4", "2.5 0.4"), "line 21: id = '2.5': must be a whole number"),
+        ("a.dump", DUMP.replace("2 0.4", "9" * 5000 + " 0.4"), "must be a whole number"),
         ("a.data", "", "is not a whole LAMMPS data file"),
         ("a.dump", DUMP.replace("diameter", "size"), "line 19: column radius or diameter is missing"),
         ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),

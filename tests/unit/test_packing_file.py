@@ -62,6 +62,7 @@ def test_layout_of_the_file(build):
         ("x,z,radius\n1,1,1\n3,1,0\n", "line 3: radius = 0.0: must be greater than 0"),
         ("x,z,radius\n1,1,-1\n", "line 2: radius = -1.0: must be greater than 0"),
         ("x,z,radius\n1,1,1\n10,1,1\n", "line 3: x = 10.0: must be between the side walls 0 and 10"),
+        ("x,z,radius\n1,1,1\n5,6,5.1\n", "line 3: radius = 5.1: must be at most 5, half the width of the box"),
         ("x,z,radius\n1,-1,1\n", "line 2: z = -1.0: must be above the floor 0"),
         ("x,z,radius\n1,1,1\n3,1,1\n1,1,2\n", "line 4: disk is in the same place as that of line 2"),
     ],
@@ -73,6 +74,10 @@ def test_mistakes_name_the_line(build, tmp_path, text, rule):
     assert rest == rule
     assert len(str(caught.value).splitlines()) == 1
     assert path.startswith("'") and path.endswith("'")
+
+
+def test_a_disk_may_be_as_wide_as_the_box(build):
+    assert build("x,z,radius\n5,5,5\n").n == 1
 
 
 def test_files_that_cannot_be_read(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,10 +11,12 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_v
 
 from . import formats
 from .base import Description, Positive, Sides, allowed
-from .errors import Problem, SceneError, describe
+from .errors import Problem, SceneError, describe, show
 from .packing import Packing, exact_mean
 
 _FORMATS = " or ".join(formats.SUFFIXES)
+#: By which lengths of a file may be off, relatively: some formats have single precision.
+_ROUNDING = 1e-6
 
 
 def _printable(text: str) -> str:
@@ -94,18 +97,29 @@ class FilePacking(Description):
         SceneError
             For a file that is missing, cannot be read or is not of its format, and, with its place in the file, for a
             value that is no finite number, a radius or mass that is not positive, a centre outside the box, or two
-            disks in one place; for a width that neither the scene nor the file gives.
+            disks in one place; for a width that neither the scene nor the file gives, a disk wider than that, and sides
+            or a period other than those that the file says.
         """
         table = self._read()
         x, z, radius, places = table.x, table.z, table.radius, table.places
         width = table.width if self.width is None else self.width
         if width is None:
             raise SceneError(describe(("packing", "width"), None, "must be given, the file has no box"))
+        if table.periodic not in (None, self.periodic):
+            there, box = ("periodic", "is periodic") if table.periodic else ("walls", "is not periodic")
+            rule = f"must be {there}, the box of {show(self.path)} {box} in x"
+            raise SceneError(describe(("packing", "sides"), self.sides, rule))
+        if table.periodic and table.width is not None and not math.isclose(width, table.width, rel_tol=_ROUNDING):
+            rule = f"must be {table.width!r} or left out, the period of the box of {show(self.path)}"
+            raise SceneError(describe(("packing", "width"), width, rule))
         if self.periodic:
             x = np.mod(x, width)
+        half = 0.5 * width
+        fits = radius <= half * (1.0 + _ROUNDING)
         mass = np.ones(len(x)) if table.mass is None else table.mass
         for name, values, good, rule in (
             ("radius", radius, radius > 0.0, "must be greater than 0"),
+            ("radius", radius, fits, f"must be at most {half:g}, half the width of the box"),
             ("x", x, self.periodic | ((x > 0.0) & (x < width)), f"must be between the side walls 0 and {width:g}"),
             ("z", z, z > 0.0, "must be above the floor 0"),
             ("mass", mass, mass > 0.0, "must be greater than 0"),

@@ -1,7 +1,7 @@
 """GSD files: the last frame, positions from the lower corner of the box.
 
 The format has the origin in the middle of the box. Our own files have it in the lower left corner, as their log entry
-``origin`` says.
+``origin`` says, and their bonds are contacts.
 """
 
 from __future__ import annotations
@@ -40,5 +40,9 @@ def read(path: Path) -> Table:
     places = [f"particle {k}" for k in range(len(x))]
     up = heights(y, z)
     if "origin" in frame.log:
-        return Table(x, up, radius, places, mass, width=float(frame.log["box_width"][0]))
+        one, two = frame.bonds.group.T
+        apart = np.hypot(x[one] - x[two], up[one] - up[two])
+        # Only across periodic sides do disks touch that are apart, here by more than the rounding of single precision.
+        periodic = True if (apart > 1.1 * (radius[one] + radius[two])).any() else None
+        return Table(x, up, radius, places, mass, width=float(frame.log["box_width"][0]), periodic=periodic)
     return Table(x + 0.5 * box[0], up + 0.5 * box[1 if up is y else 2], radius, places, mass, width=float(box[0]))

@@ -1,6 +1,7 @@
 """LAMMPS data files with atoms of style sphere: ``id type diameter density x y z``.
 
-Masses are those that LAMMPS gives such atoms, density times the volume of the sphere.
+Disks are in the order of their ids. Masses are those that LAMMPS gives such atoms, density times the volume of the
+sphere.
 """
 
 from __future__ import annotations
@@ -9,17 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from .table import FormatError, Table, heights, numbers
+from .table import FormatError, Table, by_id, heights, numbers
 
 _COLUMNS = ("diameter", "density", "x", "y", "z")
 
 
 def read(path: Path) -> Table:
     """The disks of section Atoms, from the lower corner of the box."""
-    count, bounds, rows, places = None, {}, [], []
+    count, bounds, ids, rows, places = None, {}, [], [], []
     inside = False
     with path.open(encoding="utf-8") as stream:
-        next(stream, None)  # the first line is a title
+        title = next(stream, "")  # of our own files it says whether the box is periodic
         for line_number, line in enumerate(stream, start=2):
             text, _, comment = line.partition("#")
             cells, place = text.split(), f"line {line_number}"
@@ -32,6 +33,7 @@ def read(path: Path) -> Table:
             elif inside:
                 if len(cells) not in (7, 10):  # three numbers of the periodic image may follow
                     raise FormatError(f"has {len(cells)} values, must have id type diameter density x y z", place)
+                ids.append(cells[0])
                 rows.append(numbers(cells[2:7], _COLUMNS, place))
                 places.append(place)
             elif cells[1:] == ["atoms"] and cells[0].isdecimal():
@@ -45,10 +47,12 @@ def read(path: Path) -> Table:
         raise FormatError(f"is not a whole LAMMPS data file, {rule}")
     if not rows:
         raise FormatError("has no atoms")
-    diameter, density, x, y, z = np.array(rows).T
+    order = by_id(ids, places)
+    diameter, density, x, y, z = np.array(rows)[order].T
     up = heights(y, z)
     low = bounds.get("y" if up is y else "z", [0.0])[0]
     return Table(
-        x - bounds["x"][0], up - low, 0.5 * diameter, places,
+        x - bounds["x"][0], up - low, 0.5 * diameter, [places[k] for k in order],
         mass=density * diameter**3, width=bounds["x"][1] - bounds["x"][0],
+        periodic=True if title.rstrip().endswith("periodic in x") else None,
     )  # fmt: skip

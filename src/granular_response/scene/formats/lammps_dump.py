@@ -1,4 +1,7 @@
-"""LAMMPS dump files of text: the last frame, with columns x y z (also unwrapped or scaled) and radius or diameter."""
+"""LAMMPS dump files of text: the last frame, with columns x y z (also unwrapped or scaled) and radius or diameter.
+
+Disks are in the order of their ids, if there is a column id.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...state import FloatArray
-from .table import FormatError, Table, heights, numbers
+from .table import FormatError, Table, by_id, heights, number, numbers
 
 _AXES = "xyz"
 
@@ -33,20 +36,22 @@ def read(path: Path) -> Table:
         raise FormatError("is not a whole LAMMPS dump file: the last frame lacks its number, box or atoms") from None
     if len(rows) != count or not count:
         raise FormatError(f"holds {len(rows)} of {count} atoms in its last frame")
-    if "xy" in lines[box].split():
+    flags = lines[box].split()[3:]
+    if "xy" in flags:
         raise FormatError("the box must not be tilted", f"line {box + 1}")
     bounds = np.array([numbers(lines[box + 1 + a].split()[:2], ("lo", "hi"), f"line {box + 2 + a}") for a in range(3)])
     names = lines[atoms].split()[2:]
     places = [f"line {atoms + 2 + k}" for k in range(count)]
+    for cells, place in zip(rows, places, strict=True):
+        if len(cells) != len(names):
+            raise FormatError(f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
+    if "id" in names:
+        order = by_id([cells[names.index("id")] for cells in rows], places)
+        rows, places = [rows[k] for k in order], [places[k] for k in order]
 
     def column(name: str) -> FloatArray:
         at = names.index(name)
-        values = []
-        for cells, place in zip(rows, places, strict=True):
-            if len(cells) != len(names):
-                raise FormatError(f"has {len(cells)} values, must have {len(names)} as ITEM: ATOMS", place)
-            values += numbers([cells[at]], [name], place)
-        return np.array(values)
+        return np.array([number(cells[at], name, place) for cells, place in zip(rows, places, strict=True)])
 
     def coordinate(axis: int) -> FloatArray:
         low, high = bounds[axis]
@@ -67,4 +72,5 @@ def read(path: Path) -> Table:
     mass = column("mass") if "mass" in names else None
     x, y, z = (coordinate(axis) for axis in range(3))
     up = heights(y, z if np.ptp(z) else 0.0 * z)  # where all z are the same, that is anywhere in the box
-    return Table(x, up, radius, places, mass, width=float(bounds[0, 1] - bounds[0, 0]))
+    periodic = flags[0] == "pp" if flags else None  # old versions write no flags
+    return Table(x, up, radius, places, mass, width=float(bounds[0, 1] - bounds[0, 0]), periodic=periodic)

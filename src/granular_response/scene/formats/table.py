@@ -29,6 +29,7 @@ class Table:
     places: Sequence[str]  #: (n,) where each disk stands in the file, such as "line 7"
     mass: FloatArray | None = None  #: (n,) in any unit; None where all disks are of one material
     width: float | None = None  #: of the file's box
+    periodic: bool | None = None  #: whether that box is in x; None where the file does not say
 
 
 def number(text: str, name: str, place: str) -> float:
@@ -38,15 +39,33 @@ def number(text: str, name: str, place: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        shown = text.strip()
-        shown = repr(shown if len(shown) <= 24 else shown[:21] + "...")
-        raise FormatError(f"{name} = {shown}: must be a finite number", place)
+        raise FormatError(f"{name} = {shown(text)}: must be a finite number", place)
     return value
+
+
+def shown(text: str) -> str:
+    """What stands in a cell, quoted and cut."""
+    text = text.strip()
+    return repr(text if len(text) <= 24 else text[:21] + "...")
 
 
 def numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[float]:
     """One number for each name."""
     return [number(cell, name, place) for cell, name in zip(cells, names, strict=True)]
+
+
+def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
+    """The order of disks by their ids, as LAMMPS writes them in any order.
+
+    Raises FormatError for an id that is no whole number or that two disks have.
+    """
+    first: dict[int, int] = {}
+    for k, (text, place) in enumerate(zip(ids, places, strict=True)):
+        if not (text.isdecimal() and len(text) <= 20):  # LAMMPS has 64 bits
+            raise FormatError(f"id = {shown(text)}: must be a whole number", place)
+        if (known := first.setdefault(int(text), k)) != k:
+            raise FormatError(f"id = {int(text)}: must differ from that of {places[known]}", place)
+    return [first[value] for value in sorted(first)]
 
 
 def heights(y: FloatArray, z: FloatArray) -> FloatArray:
