@@ -70,15 +70,3 @@ def test_rays_carry_the_force_and_widen_like_a_random_walk() -> None:
 def test_bad_input_is_named(call, message) -> None:
     with pytest.raises(ValueError, match=message):
         call()
-
-
-@pytest.mark.parametrize("moduli", SOLIDS)
-def test_half_of_the_pressure_on_the_axis(moduli: Moduli) -> None:
-    there = 7.0 * half_plane.half_maximum(moduli)
-    assert half_plane.pressure(there, 7.0, moduli) == pytest.approx(
-        0.5 * half_plane.pressure(0.0, 7.0, moduli), rel=1e-12
-    )
-
-
-def test_half_maximum_of_an_isotropic_half_plane() -> None:
-    assert half_plane.half_maximum(Moduli.isotropic(0.3)) == pytest.approx(np.sqrt(np.sqrt(2.0) - 1.0), rel=1e-12)

@@ -24,13 +24,3 @@ def pressure(x: ArrayLike, depth: float, moduli: Moduli, force: float = 1.0) -> 
     s, p = moduli.shape
     t2 = (np.asarray(x, dtype=float) / depth) ** 2
     return force / (np.pi * depth) * np.sqrt(s + 2.0 * np.sqrt(p)) / (1.0 + s * t2 + p * t2**2)
-
-
-def half_maximum(moduli: Moduli) -> float:
-    """Distance from the axis, per depth, where the pressure has fallen to half of that on the axis.
-
-    ``sqrt(sqrt(2) - 1) = 0.6436`` in an isotropic solid. With two peaks (``Moduli.peak_criterion`` below 0) the one
-    place where it is half of that on the axis still exists, outside the peaks.
-    """
-    s, p = moduli.shape
-    return float(np.sqrt((np.sqrt(s**2 + 4.0 * p) - s) / (2.0 * p)))
