@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 import granular_response as gr
+from granular_response.scene import SceneError
 
 SMALL = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 21}, "loads": [{"disk": 93, "force": [0, -4]}]}
 
@@ -56,7 +57,7 @@ def test_a_result_has_states_certificates_and_response(result):
     assert len(result.certificates) == 3 and result.certificate.stable
     assert result.certificate.force_residual < 1e-10
     assert float(result.floor_response.isel(load=1).sum()) == pytest.approx(1.0, abs=1e-9)
-    assert result.scene == gr.Scene.from_dict(SMALL)
+    assert result.scene == gr.Scene.from_dict(SMALL).updated({"protocol.load_factors": [0.5, 1.0]})
 
 
 def test_contacts_are_those_of_the_states(result):
@@ -78,6 +79,36 @@ def test_stress_carries_the_load(result):
         result.stress(state=0, added=True)
     with pytest.raises(IndexError, match="state = 3: must be from -3 to 2"):
         result.stress(state=3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "said"),
+    [
+        ({"state": 1.0}, TypeError, r"^state = 1.0: must be an integer"),
+        ({"state": True}, TypeError, r"^state = True: must be an integer"),
+        ({"x": [[1, 2]]}, ValueError, r"^x = \[\[1, 2\]\]: must be a list of finite numbers$"),
+        ({"x": np.ones((2, 2))}, ValueError, r"^x = array.*: must be a list of finite numbers$"),
+        ({"x": [1, [2]]}, ValueError, r"^x = .*: must be a list of finite numbers$"),
+        ({"z": 3.0}, ValueError, r"^z = 3.0: must be a list of finite numbers$"),
+        ({"z": [np.nan]}, ValueError, r"^z = \[nan\]: must be a list of finite numbers$"),
+        ({"z": ["low"]}, ValueError, r"^z = \['low'\]: must be a list of finite numbers$"),
+    ],
+)
+def test_mistakes_of_a_stress_are_one_line(result, arguments, error, said):
+    with pytest.raises(error, match=said) as caught:
+        result.stress(**arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_state_of_an_influence_is_an_integer(result):
+    with pytest.raises(TypeError, match=r"^state = 1.0: must be an integer"):
+        result.influence(state=1.0)
+
+
+@pytest.mark.parametrize("factors", [2, "12", True, [[1, 2]]])
+def test_further_load_factors_that_are_none_are_one_line(result, factors):
+    with pytest.raises(SceneError, match=r"^load factors.*must be .*one or more numbers$"):
+        result.continued(factors)
 
 
 def test_a_stored_result_is_the_result(result, tmp_path):

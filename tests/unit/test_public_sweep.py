@@ -1,6 +1,10 @@
 """Sweeps and events by the public namespace alone."""
 
 import io
+import re
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -60,6 +64,99 @@ def test_the_floor_response_is_measured_where_nothing_is_named(tmp_path):
     assert xr.open_dataset(tmp_path / "sweep.nc").equals(found)
 
 
+def of_programme(factors, **changes):
+    return gr.solve(SCENE.updated(changes), load_factors=factors).floor_response.values
+
+
+@pytest.mark.parametrize("factors", [[0.5, 1.0], (1.0, 0.5, 1.0)], ids=["growing", "turning"])
+def test_a_sweep_with_several_loads_has_them_as_a_dimension(factors, tmp_path):
+    frictions = [0.0, 0.3]
+    axes = {"contact.friction": frictions}
+    found = gr.sweep(SCENE, axes, load_factors=factors, workers=1, progress=False)
+    assert found["floor_response"].dims == ("friction", "load", "floor_disk")
+    for name in ("load", "load_factor"):
+        assert found[name].dims == ("load",) and found[name].values.tolist() == list(factors)
+    assert found["step"].values.tolist() == [*range(1, len(factors) + 1)]
+    for friction in frictions:
+        alone = of_programme(factors, **{"contact.friction": friction})
+        np.testing.assert_array_equal(found["floor_response"].sel(friction=friction), alone)
+        chosen = {"load_factor": 0.5} if len(factors) == 2 else {"step": 2}  # as in a result of one scene
+        place = list(factors).index(0.5)
+        np.testing.assert_array_equal(found["floor_response"].sel(friction=friction, **chosen), alone[place])
+    whole = gr.sweep(SCENE, axes, lambda r: r.to_dataset(), load_factors=factors, workers=1, progress=False)
+    xr.testing.assert_identical(whole["floor_response"].drop_attrs(), found["floor_response"].drop_attrs())
+    part = gr.sweep(
+        SCENE, axes, lambda r: r.to_dataset()[["floor_response"]], load_factors=factors, workers=1, progress=False
+    )
+    xr.testing.assert_equal(part, found)
+    found.to_netcdf(tmp_path / "sweep.nc")
+    assert xr.open_dataset(tmp_path / "sweep.nc").equals(found)
+
+
+def only_labelled_by_load(result):
+    return result.floor_response.drop_vars(["load_factor", "step"])
+
+
+@pytest.mark.parametrize(
+    "measure", [lambda r: r.floor_response, lambda r: r.to_dataset(), only_labelled_by_load], ids=["one", "all", "bare"]
+)
+def test_other_programmes_of_one_length_lie_side_by_side(measure):
+    programmes = [[0.5, 1.0], [0.5, 2.0], [1.0, 0.5]]
+    found = gr.sweep(SCENE, {"protocol.load_factors": programmes}, measure, workers=1, progress=False)
+    assert found["floor_response"].dims == ("load_factors", "load", "floor_disk")
+    assert found["load_factor"].dims == ("load_factors", "load") and "load_factor" in found.coords
+    assert found["load_factor"].values.tolist() == programmes
+    assert "load" not in found.variables
+    for k, factors in enumerate(programmes):
+        np.testing.assert_array_equal(found["floor_response"][k], of_programme(factors))
+    if measure is not only_labelled_by_load:
+        np.testing.assert_array_equal(found["floor_response"].sel(step=2), found["floor_response"][:, 1])
+
+
+def test_programmes_of_other_lengths_are_filled_up(tmp_path):
+    programmes = [[0.5, 1.0], [0.5, 1.0, 0.5], [1.0]]
+    found = gr.sweep(SCENE, {"protocol.load_factors": programmes}, workers=1, progress=False)
+    assert found["floor_response"].sizes == {"load_factors": 3, "load": 3, "floor_disk": 9}
+    assert found["step"].values.tolist() == [1, 2, 3] and found["step"].dtype.kind == "i"
+    for k, factors in enumerate(programmes):
+        count = len(factors)
+        assert found["load_factor"][k, :count].values.tolist() == factors
+        alone = of_programme(factors).reshape(count, -1)
+        np.testing.assert_array_equal(found["floor_response"][k, :count], alone)
+        assert np.isnan(found["floor_response"][k, count:]).all() and np.isnan(found["load_factor"][k, count:]).all()
+    found.to_netcdf(tmp_path / "sweep.nc")
+    assert xr.open_dataset(tmp_path / "sweep.nc").equals(found)
+
+
+def test_a_combination_without_equilibrium_is_missing_at_every_load():
+    scene, steps = SCENE.updated({"contact.friction": 0.3}), [10, 300_000]
+    with pytest.warns(UserWarning, match="1 of 2 combinations"):
+        found = gr.sweep(scene, {"protocol.maximum_steps": steps}, load_factors=[0.5, 1.0], workers=1, progress=False)
+    assert found["load_factor"].values.tolist() == [0.5, 1.0]
+    assert np.isnan(found["floor_response"][0]).all()
+    alone = of_programme([0.5, 1.0], **{"contact.friction": 0.3, "protocol.maximum_steps": steps[1]})
+    np.testing.assert_array_equal(found["floor_response"][1], alone)
+
+
+def test_labels_that_cannot_be_joined_are_one_line():
+    def measured(result):
+        layers = result.scene.packing.layers
+        return xr.DataArray([1.0, 2.0], {"place": [layers, layers]}, "place")
+
+    with pytest.raises(SweepError, match=r"^measure: place has a label twice, must have different ones"):
+        gr.sweep(SCENE, {"packing.layers": [3, 4]}, measured, workers=1, progress=False)
+
+
+def test_text_has_gaps_too():
+    def measured(result):
+        layers = result.scene.packing.layers
+        return {"word": ["a"] * layers, "plain": 1.0 if layers == 3 else [2, 3]}
+
+    found = gr.sweep(SCENE, {"packing.layers": [2, 3]}, measured, workers=1, progress=False)
+    assert found["word"].values.tolist() == [["a", "a", ""], ["a", "a", "a"]]
+    np.testing.assert_array_equal(found["plain"], [[2, 3], [1, np.nan]])  # not repeated
+
+
 def test_what_has_another_length_is_filled_up():
     def responses(result):
         return {"floor": result.floor_response, "plain": result.floor_response.values}
@@ -109,7 +206,17 @@ def test_a_combination_without_equilibrium_is_missing_and_says_why():
         ({"contact.frition": [0.1]}, None, SceneError, r"frition.*friction"),
         ({"contact.friction": [0.1, -1]}, None, SceneError, r"contact.friction = -1"),
         ({"contact.friction": []}, None, ValueError, r"contact.friction has no values"),
-        ({"contact.friction": [0.1, 0.1]}, None, ValueError, r"contact.friction has a value twice"),
+        ({"contact.friction": [0.1, 0.1]}, None, ValueError, r"contact.friction has 0.1 twice, must have different"),
+        ({"contact.friction": [0, 0.0]}, None, ValueError, r"contact.friction has 0.0 twice"),
+        ({"contact.friction": [np.float64(1), 1]}, None, ValueError, r"contact.friction has 1 twice"),
+        ({"loads.0.force": [[0, -1], (0.0, -1.0)]}, None, ValueError, r"loads.0.force has \(0.0, -1.0\) twice"),
+        ({"protocol.static_finish": [True, True]}, None, ValueError, r"static_finish has true twice"),
+        ({"protocol.static_finish": [True, 1]}, None, SceneError, r"static_finish = 1"),  # others, and not allowed
+        ({"contact.friction": 0.1}, None, ValueError, r"^axes: contact.friction = 0.1, must be a list of values$"),
+        ({"contact.friction": np.array(0.1)}, None, ValueError, r"contact.friction = array.*must be a list of values$"),
+        ({"contact.law": "hertz"}, None, ValueError, r"^axes: contact.law = 'hertz', must be a list of values$"),
+        ({"contact": {"friction": 1}}, None, ValueError, r"^axes: contact = .*friction.*, must be a list of values$"),
+        ([("contact.friction", [0.1])], None, ValueError, r"^axes = .*contact.friction.*: must be a mapping of keys"),
         ({"contact.friction": [0.1]}, lambda result: 1 / 0, SweepError, r"task 1 of 1 .*ZeroDivisionError"),
         ({"contact.friction": [0.1]}, lambda result: result, SweepError, r"measure is a Result, must be a number"),
         ({"contact.friction": [0.1]}, lambda result: {"friction": 1}, SweepError, r"friction is the name of an axis"),
@@ -119,6 +226,40 @@ def test_mistakes_are_one_line(axes, measure, error, said):
     with pytest.raises(error, match=said) as caught:
         gr.sweep(SCENE, axes, *filter(None, [measure]), workers=1, progress=False)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("factors", [2, "12", True, [True], [[1, 2]], []])
+def test_load_factors_that_are_none_are_one_line_before_anything_is_solved(factors):
+    calls = []
+    for solved in (
+        lambda: gr.sweep(
+            SCENE, {"contact.friction": [0.1]}, load_factors=factors, progress=lambda *call: calls.append(call)
+        ),
+        lambda: gr.solve(SCENE, load_factors=factors),
+    ):
+        with pytest.raises(SceneError, match=r"^load factors.*must be .*one or more numbers$"):
+            solved()
+    assert calls == []
+
+
+def test_the_sweep_of_the_notes_runs_as_a_script_with_workers(tmp_path):
+    text = (Path(__file__).parents[2] / "docs" / "own-scenes.md").read_text()
+    code = re.search(r"## Many scenes.*?```python\n(.*?)```", text, re.DOTALL)[1]
+    smaller = 'gr.Scene().updated({"packing.layers": 4, "packing.disks_per_row": 9})'
+    for old, new in {
+        "gr.Scene()": smaller,
+        "[0, 0.1, 0.2, 0.5]": "[0, 0.2]",
+        "[5, 10, 15]": "[2, 3]",
+        'checkpoint="kept"': 'checkpoint="kept", workers=2',
+        "layers=10": "layers=3",
+    }.items():
+        assert code.count(old) == 1
+        code = code.replace(old, new)
+    (tmp_path / "script.py").write_text(code)
+    command = [sys.executable, "-W", "error::UserWarning:__main__", "script.py"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert any((tmp_path / "kept").iterdir())
 
 
 def test_a_sweep_continues_from_its_checkpoint(tmp_path):
@@ -175,6 +316,26 @@ def test_an_event_along_a_key_is_bracketed():
 def test_mistakes_of_an_event_are_one_line(arguments, error, said):
     with pytest.raises(error, match=said):
         gr.find_event(SCENE, opened, *arguments, progress=False)
+
+
+def test_an_event_along_the_load_needs_loads():
+    calls = []
+    with pytest.raises(SceneError, match=r"^loads: none in this scene, must be one or more"):
+        gr.find_event(SCENE.updated({"loads": []}), calls.append, 0.1, 1.0, progress=False)
+    assert calls == []
+
+
+def test_an_event_along_a_key_needs_no_loads():
+    bare = SCENE.updated({"loads": []})
+    at_middle = gr.solve(bare.updated({"contact.normal_stiffness": 2000.0})).rest.position[:, 1].max()
+
+    def higher(result):
+        return result.rest.position[:, 1].max() > at_middle
+
+    bracket = gr.find_event(
+        bare, higher, 1000.0, 4000.0, key="contact.normal_stiffness", tolerance=2000.0, progress=False
+    )
+    assert bracket.at_low is False and bracket.low < 2000.0 <= bracket.high
 
 
 def test_progress_in_a_notebook_is_a_line_of_text():

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..observe.events import Bracket, bisect_event
-from ..scene import Scene
+from ..scene import Scene, SceneError
 from ..sweeps.tasks import Progress
 from .result import Result, described, solve
 from .terminal import TerminalProgress
@@ -51,11 +51,14 @@ def find_event(
     ValueError
         For an empty range, or a tolerance or a smallest load that is not positive.
     granular_response.scene.SceneError, granular_response.solve.SOLVE_ERRORS
-        For a key or a value that is not allowed, and where there is no equilibrium.
+        For a key or a value that is not allowed, for a scene without loads where these grow, and where there is no
+        equilibrium.
     """
     base = described(scene)
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise ValueError(f"low = {low}, high = {high}: must be finite, and low below high")
+    if key == "load" and not base.loads:
+        raise SceneError("loads: none in this scene, must be one or more to look along the load; or name a key")
     if key == "load" and low <= 0.0:
         raise ValueError(f"low = {low}: must be greater than 0, a factor of the scene's loads")
     tolerance = 1e-3 * (high - low) if tolerance is None else tolerance

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
+from ..scene.errors import show
 from ..solve.small_loads import influence
 from ..solve.solution import Progress, Solution, continue_solution, solve_scene
 from ..state import Certificate, State
@@ -134,8 +135,11 @@ class Result:
         ------
         IndexError
             For a state that there is not.
+        TypeError
+            For a ``state`` that is no integer.
         ValueError
-            Unless ``width`` is positive, and for the added part of the state at rest.
+            Unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
+            state at rest.
         """
         import xarray as xr
 
@@ -145,8 +149,8 @@ class Result:
             raise ValueError("added: a load adds nothing to the state at rest, must be False for state 0")
         origin = self.origin
         box, top = self.rest.box.width, float(self.rest.position[:, 1].max()) + 1.0
-        across = np.arange(-origin, box - origin + 0.5) if x is None else np.asarray(x, float)
-        up = np.arange(0.0, top) if z is None else np.asarray(z, float)
+        across = np.arange(-origin, box - origin + 0.5) if x is None else _places("x", x)
+        up = np.arange(0.0, top) if z is None else _places("z", z)
         rest, now = (state_from(self._data, k) for k in (0, state))  # on one list of candidates
         forces = load_forces(rest, now) if added else contact_forces(now)
         tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
@@ -178,6 +182,8 @@ class Result:
         ------
         IndexError
             For a state that there is not.
+        TypeError
+            For a ``state`` that is no integer.
         ValueError
             For another ``sliding``.
         granular_response.solve.EquilibriumError
@@ -206,10 +212,12 @@ class Result:
         )
 
     def _index(self, state: int) -> int:
+        if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
+            raise TypeError(f"state = {state!r}: must be an integer, 0 for the state at rest")
         count = len(self.loaded) + 1
         if not -count <= state < count:
             raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
-        return state % count
+        return int(state) % count
 
     @property
     def origin(self) -> float:
@@ -303,6 +311,18 @@ def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scen
     if isinstance(scene, (str, os.PathLike)):
         return Scene.from_yaml(scene)
     return scene if isinstance(scene, Scene) else Scene.from_dict(scene)
+
+
+def _places(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Coordinates of a grid along one axis."""
+    try:
+        places = np.asarray(given, float)
+    except (TypeError, ValueError):  # text, or rows of different lengths
+        places = np.array(np.nan)
+    if places.ndim != 1 or not np.isfinite(places).all():
+        shown = " ".join(show(given).split())  # an array is several lines
+        raise ValueError(f"{name} = {shown}: must be a list of finite numbers")
+    return places
 
 
 def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] | None = None) -> Result:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import itertools
+import numbers
 import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,7 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..scene import Scene
+from ..scene.errors import show
 from ..solve import SOLVE_ERRORS
+from ..solve.solution import load_programme
 from ..sweeps.errors import SweepError
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described, solve
@@ -45,6 +48,8 @@ def sweep(
 ) -> xr.Dataset:
     """Solve a scene with every combination of values of its keys, and measure each result.
 
+    A script calls it under ``if __name__ == "__main__":``, since worker processes import the script.
+
     Parameters
     ----------
     scene : what all have in common: a scene, nested mappings, or the path of a scene file.
@@ -65,6 +70,8 @@ def sweep(
     of its key as name (``friction``, ``realization``), or the whole with ``_`` where two keys end alike; its values as
     coordinate, with the attribute ``key``; values that are neither numbers nor text are numbered, in the order given.
     What has no coordinate of its own and another length in each result, such as the floor disks, is filled up with NaN.
+    Load programmes that differ are put side by side step by step: ``load`` then has no labels, but ``step`` and, for
+    each combination, ``load_factor``.
 
     A combination without equilibrium is NaN throughout; the variable ``error`` then has its message, empty for the
     others, and a warning says how many there are.
@@ -72,19 +79,15 @@ def sweep(
     Raises
     ------
     granular_response.scene.SceneError
-        For a key or a value that a scene does not allow, before anything is solved.
+        For a key, a value or load factors that are not allowed, before anything is solved.
     ValueError
-        For an axis that is empty or has a value twice.
+        For axes that are no mapping, and for an axis that is no list of values, is empty or has a value twice.
     granular_response.sweeps.errors.SweepError
         If ``measure`` raises or returns something else, if no combination has an equilibrium, or if workers fail.
     """
     base = described(scene)
-    values = {key: list(given) for key, given in axes.items()}
-    for key, given in values.items():
-        if not given:
-            raise ValueError(f"axes: {key} has no values, must have one or more")
-        if len({repr(_plain(value)) for value in given}) < len(given):
-            raise ValueError(f"axes: {key} has a value twice")
+    values = _values(axes)
+    load_factors = None if load_factors is None else load_programme(load_factors)
     scenes = [base.updated(dict(zip(values, point, strict=True))) for point in itertools.product(*values.values())]
     task = functools.partial(_measured, measure=measure, load_factors=load_factors)
     with contextlib.ExitStack() as stack:
@@ -95,6 +98,41 @@ def sweep(
             what="scenes",
         )  # fmt: skip
     return _gridded(values, found)
+
+
+def _values(axes: Any) -> dict[str, list[Any]]:
+    """The values of each key; raises ValueError for what is no axis."""
+    if not isinstance(axes, Mapping):
+        shown = " ".join(show(axes).split())  # an array is several lines
+        raise ValueError(f"axes = {shown}: must be a mapping of keys to lists of values")
+    values = {}
+    for key, given in axes.items():
+        # text and mappings can be iterated over too, but by letters and by names
+        if isinstance(given, (str, bytes, Mapping)) or not np.iterable(given):
+            raise ValueError(f"axes: {key} = {show(given)}, must be a list of values")
+        values[key] = list(given)
+        if not values[key]:
+            raise ValueError(f"axes: {key} has no values, must have one or more")
+        seen = set()
+        for value in values[key]:
+            if (same := _comparable(value)) in seen:
+                raise ValueError(f"axes: {key} has {show(_plain(value))} twice, must have different values")
+            seen.add(same)
+    return values
+
+
+def _comparable(value: Any) -> Any:
+    """What is equal, and has the same hash, for equal values: numbers as numbers, but truth values apart from them."""
+    value = _plain(value)
+    if isinstance(value, bool):
+        return "truth", value
+    if isinstance(value, (numbers.Real, str)) or value is None:
+        return value
+    if isinstance(value, Mapping):
+        return "mapping", frozenset((key, _comparable(part)) for key, part in value.items())
+    if isinstance(value, (list, tuple)):
+        return "list", tuple(map(_comparable, value))
+    return "other", repr(value)
 
 
 def _measured(
@@ -143,14 +181,9 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
     taken = {str(name) for _, one in good for name in (*one.variables, *one.dims)} & {*names.values(), "error", _POINT}
     if taken:
         raise SweepError(f"measure: {min(taken)} is the name of an axis, must be another one")
-    # what has no coordinate is numbered while results are put side by side, and so filled up where it is shorter
-    bare = {dim for _, one in good for dim in one.dims if dim not in one.coords}
-    numbered = []
-    for _, one in good:
-        plain = one.reset_coords([name for name in one.coords if name not in one.dims])
-        numbered.append(plain.assign_coords({dim: np.arange(one.sizes[dim]) for dim in bare & {*one.dims}}))
-    side_by_side = xr.concat(numbered, _POINT, data_vars="all", join="outer", combine_attrs="override")
-    coordinates = {str(name) for _, one in good for name in one.coords if name not in one.dims}
+    measured = _labelled_alike([one for _, one in good])
+    coordinates = {str(name) for one in measured for name in one.coords if name not in one.dims}
+    side_by_side, bare = _side_by_side(measured)
 
     shape = tuple(len(given) for given in values.values())
     place = np.array([place for place, _ in good])
@@ -164,6 +197,9 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         variable = variable.transpose(_POINT, ...)
         if name in coordinates and _same(variable.values):
             variables[str(name)] = variable.isel({_POINT: 0})
+            continue
+        if name == "step" and name in coordinates and (steps := _shared(variable.values)) is not None:
+            variables[name] = (variable.dims[1:], steps, variable.attrs)
             continue
         whole = _spread(variable.values, place, len(found))
         dimensions = (*names.values(), *variable.dims[1:])
@@ -181,13 +217,77 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
         )
     inside = [name for name in side_by_side.coords if name in variables]
     gridded = xr.Dataset(variables, attrs=good[0][1].attrs)
-    return gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
+    gridded = gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
+    # as for a single result, sel() takes the factor, or the step where factors repeat or differ
+    for name in ("load_factor", "step"):
+        along = gridded.coords.get(name)
+        if along is not None and along.dims == ("load",) and len(set(along.values.tolist())) == len(along):
+            return gridded.set_xindex(name)
+    return gridded
+
+
+def _labelled_alike(results: Sequence[xr.Dataset]) -> list[xr.Dataset]:
+    """Results of which labels along a dimension can be joined.
+
+    A step of one load programme is no step of another, though both be at the same factor: where programmes differ,
+    ``load`` loses its labels, which ``load_factor`` has too.
+    """
+    plain = [one.reset_index([name for name in one.xindexes if name not in one.dims]) for one in results]
+    for dim in {dim for one in plain for dim in one.dims if dim in one.coords}:
+        labels = [one.get_index(dim) if dim in one.dims else None for one in plain]
+        if all(one is not None and one.equals(labels[0]) for one in labels):
+            continue
+        if dim == "load":
+            plain = [_without_load_labels(one) for one in plain]
+        elif not all(one is None or one.is_unique for one in labels):
+            raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
+    return plain
+
+
+def _without_load_labels(one: xr.Dataset) -> xr.Dataset:
+    if "load" not in one.coords:
+        return one
+    if "load_factor" not in one.variables:
+        one = one.assign_coords(load_factor=one["load"].variable.to_base_variable())
+    return one.drop_vars("load")
+
+
+def _side_by_side(results: Sequence[xr.Dataset]) -> tuple[xr.Dataset, set[Any]]:
+    """All results along one dimension, and the dimensions that have no labels in it.
+
+    These are numbered here, and so filled up where a result is shorter, or has nothing along them.
+    """
+    import xarray as xr
+
+    bare = {dim for one in results for dim in one.dims if dim not in one.coords}
+    along: dict[Any, set[Any]] = {dim: set() for dim in bare}
+    for one in results:
+        for name, variable in one.variables.items():
+            for dim in bare & {*variable.dims}:
+                along[dim].add(name)
+    numbered = []
+    for one in results:
+        plain = one.reset_coords([name for name in one.coords if name not in one.dims])
+        for dim in bare - {*one.dims}:  # xarray would repeat the values along it
+            given = {name: plain.variables[name] for name in along[dim] & {*plain.data_vars}}
+            plain = plain.assign({name: variable.set_dims([dim, *variable.dims]) for name, variable in given.items()})
+        numbered.append(plain.assign_coords({dim: np.arange(plain.sizes[dim]) for dim in bare & {*plain.dims}}))
+    return xr.concat(numbered, _POINT, data_vars="all", join="outer", combine_attrs="override"), bare
+
+
+def _shared(steps: np.ndarray) -> np.ndarray | None:
+    """The numbers that are the same all along the first axis, but for NaN where a programme is shorter; else None."""
+    numbered = np.fmax.reduce(steps, axis=0)
+    if np.isnan(numbered).any() or not (np.isnan(steps) | (steps == numbered)).all():
+        return None
+    return np.asarray(numbered, int)
 
 
 def _spread(measured: np.ndarray, place: np.ndarray, count: int) -> np.ndarray:
     """(count, ...) what was measured at its place along the first axis, and NaN, or no text, at the others."""
-    if measured.dtype.kind == "O":  # truth values with gaps
-        measured = measured.astype(float)
+    if measured.dtype.kind == "O":  # text or truth values with gaps
+        text = any(isinstance(value, str) for value in measured.flat)
+        measured = np.where(measured == measured, measured, "").astype(str) if text else measured.astype(float)
     if len(place) == count:
         return measured
     kind = measured.dtype if measured.dtype.kind in "fcSU" else np.dtype(float)
@@ -219,4 +319,4 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
 
 
 def _plain(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value
+    return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
