@@ -1,6 +1,6 @@
 """`docs/benchmarks.md`, its pictures, `summary.json` with its goals, and the lines of the README that quote them.
 
-All of it comes from the other JSON files alone.
+Tables and pictures come from the other JSON files alone; texts may name what earlier versions took.
 
 `python benchmarks/document.py` from anywhere in the repository. A benchmark whose file is missing is named as not
 measured.

@@ -51,7 +51,7 @@ def test_a_load_is_found_by_its_factor(path):
 
 
 def test_one_load_has_no_dimension(solution):
-    one = to_dataset(solve_scene(solution.scene))
+    one = to_dataset(solve_scene(solution.scene, load_factors=[1.0]))
     assert "load" not in one.dims and float(one["load_factor"]) == 1.0 and "load_factor" in one.coords
 
 
@@ -118,11 +118,22 @@ def test_what_xarray_writes_is_shown_and_exported(solution, tmp_path):
     to_dataset(solution).to_netcdf(tmp_path / "by_xarray.nc")
     shown = call("show", "by_xarray.nc", folder=tmp_path)
     assert shown.returncode == 0, shown.stderr
-    assert "written by another program" in shown.stdout and "force residual" in shown.stdout
+    assert "not sealed: rewritten by another program, so its numbers are not vouched for\n" in shown.stdout
+    assert "force residual" in shown.stdout
     assert call("export", "by_xarray.nc", "-o", "a.xyz", folder=tmp_path).returncode == 0
     xr.Dataset({"a": ("n", [1.0])}).to_netcdf(tmp_path / "foreign.nc")
     finished = call("show", "foreign.nc", folder=tmp_path)
     assert (finished.returncode, finished.stderr.count("\n")) == (2, 1)
+
+
+def test_an_altered_result_is_shown_as_not_sealed(path, tmp_path):
+    altered = xr.load_dataset(path)
+    altered["floor_response"] = 2.0 * altered["floor_response"]
+    altered.to_netcdf(tmp_path / "altered.nc")
+    lines = {file: call("show", file, folder=tmp_path).stdout.splitlines() for file in (path, "altered.nc")}
+    assert [sum("not sealed" in line for line in shown) for shown in lines.values()] == [0, 1]
+    refused = call("plot", "altered.nc", "-o", "a.png", folder=tmp_path)
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
 
 
 def spoil(data: xr.Dataset, name: str, value: float) -> xr.Dataset:

@@ -160,11 +160,34 @@ def test_vtu(result, data, tmp_path, index):
     np.testing.assert_allclose(mesh["contact_force"][:n, :2], sums, atol=1e-12)
 
 
+@pytest.mark.parametrize("index", [0, 1, -1])
+def test_one_frame_is_that_of_the_whole_file(result, tmp_path, index):
+    for suffix in (".xyz", ".dump"):
+        whole = export(result, tmp_path / f"whole{suffix}").read_text()
+        one = export(result, tmp_path / f"one{suffix}", state=index).read_text()
+        lines = whole.splitlines(keepends=True)
+        size = len(lines) // 2
+        assert one == "".join(lines[index % 2 * size :][:size]) != whole
+    whole, one = (read_gsd(export(result, tmp_path / name, state=k)) for name, k in (("w.gsd", None), ("o.gsd", index)))
+    expected = {**whole[0], **whole[index % 2]}
+    assert sorted(one) == [0] and sorted(whole) == [0, 1]
+    for name in ("particles/position", "log/particles/force_change", "log/load_factor", "bonds/group"):
+        np.testing.assert_array_equal(one[0][name], expected[name])
+
+
+def test_a_series_has_no_single_state(result, tmp_path):
+    with pytest.raises(ExportError, match=r"^state = 0: \S+\.pvd is a series of all states, must be left out \(.*\)$"):
+        export(result, tmp_path / "result.pvd", state=0)
+    assert not list(tmp_path.iterdir())
+
+
 def test_errors_are_one_line(result, tmp_path):
     with pytest.raises(ExportError, match=r"format '\.pdf' is unknown, must be \.csv or .* or \.xyz$"):
         export(result, tmp_path / "result.pdf")
     with pytest.raises(ExportError, match=r"state = 2: must be from -2 to 1"):
         export(result, tmp_path / "result.vtu", state=2)
+    with pytest.raises(ExportError, match=r"state = -3: must be from -2 to 1"):
+        export(result, tmp_path / "result.xyz", state=-3)
     with pytest.raises(store.StoreError, match="no such file"):
         export(tmp_path / "absent.nc", tmp_path / "result.gsd")
     (tmp_path / "file").write_text("")
@@ -188,6 +211,10 @@ def test_on_the_command_line(result, tmp_path):
     command = [sys.executable, "-m", "granular_response", "export", str(result), "-o"]
     done = subprocess.run([*command, "sub/result.xyz"], cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stdout.strip()) == (0, "sub/result.xyz"), done.stderr
+    one = subprocess.run([*command, "rest.xyz", "--state", "0"], cwd=tmp_path, capture_output=True, text=True)
+    assert one.returncode == 0, one.stderr
+    assert (tmp_path / "rest.xyz").read_text().count("load_factor=0.0") == 1
+    assert "load_factor=1.0" not in (tmp_path / "rest.xyz").read_text()
     wrong = subprocess.run([*command, "result.abc"], cwd=tmp_path, capture_output=True, text=True)
     assert wrong.returncode == 2
     assert wrong.stderr.count("\n") == 1

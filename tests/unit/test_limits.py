@@ -1,10 +1,13 @@
 """Scenes at the edge of what can be solved: an answer, or the line that says what is wrong with the scene."""
 
+import warnings
+
 import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 from test_cli import call
 
+import granular_response
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import (
     Dynamics,
@@ -106,10 +109,23 @@ def test_a_friction_that_newton_cannot_follow_is_named(where, friction):
         finish(problem, state)
 
 
-def test_a_response_that_is_rounding_says_so(tmp_path):
-    for force, said in (("1.0e-12", True), ("1.0", False)):
-        loads = f"loads: [{{disk: top-centre, force: [0.0, -{force}]}}]\n"
-        (tmp_path / "scene.yaml").write_text("packing: {kind: slab, layers: 4, disks_per_row: 7}\n" + loads)
-        finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
-        assert finished.returncode == 0
-        assert ("the response is rounded off; take larger loads" in finished.stderr) is said
+@pytest.mark.parametrize(
+    ("force", "stiffness", "said"), [(1e-12, 2e3, True), (1e-10, 2e3, True), (1.0, 2e3, False), (0.01, 1e10, True)]
+)
+def test_a_response_that_is_rounding_says_so(tmp_path, force, stiffness, said):
+    """Of small loads, and of larger ones on disks so stiff that the last digit of a position is a force."""
+    scene = {
+        "packing": {"kind": "slab", "layers": 4, "disks_per_row": 7},
+        "preparation": {"gravity": "frictionless"},
+        "contact": {"normal_stiffness": stiffness},
+        "loads": [{"disk": "top-centre", "force": [0.0, -force]}],
+    }
+    (tmp_path / "scene.yaml").write_text(Scene.from_dict(scene).to_yaml())
+    finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
+    assert finished.returncode == 0
+    line = "of the response to the smallest load may be rounding; take larger loads"
+    assert (line in finished.stderr) is said
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        granular_response.solve(scene)
+    assert any(line in str(warning.message) for warning in caught) is said

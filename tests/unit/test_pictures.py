@@ -164,8 +164,61 @@ def test_a_page_has_what_was_asked_for(result):
     figure = gr.plot.page(result)
     titles = [axes.get_title(loc="left") for axes in figure.axes if axes.get_title(loc="left")]
     assert [title[:5] for title in titles] == ["(a) f", "(b) f", "(c) c", "(d) s"]
-    with pytest.raises(pictures.PictureError, match="what = 'chains': must be among response, forces"):
+    with pytest.raises(pictures.PictureError, match="what = 'chains': must be among response, floor, forces"):
         gr.plot.page(result, ["chains"])
+
+
+@pytest.fixture(scope="module")
+def loadless() -> gr.Result:
+    return gr.solve({**SCENE, "loads": []})
+
+
+@pytest.fixture(scope="module")
+def turned() -> gr.Result:
+    load = {"disk": {"row": "top"}, "force": [0.0, 0.0], "torque": 0.01}
+    return gr.solve({**SCENE, "loads": [load]}, load_factors=[0.5, 1.0])
+
+
+def curve(axes) -> np.ndarray:
+    (one,) = [line for line in axes.get_lines() if len(line.get_xdata()) == 15]
+    return one.get_ydata()
+
+
+def titles(figure) -> list[str]:
+    return [axes.get_title(loc="left") for axes in figure.axes if axes.get_title(loc="left")]
+
+
+def test_a_page_without_a_response_has_the_forces_on_the_floor(loadless, turned):
+    for state in (-1, 0):
+        page = gr.plot.page(loadless, state=state)
+        assert titles(page) == [f"({a}, at rest" for a in ("a) floor forces", "b) forces", "c) contacts", "d) stress")]
+        at_rest = curve(page.axes[0])
+        np.testing.assert_array_equal(at_rest, loadless.to_dataset()["floor_force_rest"])
+        assert at_rest.sum() == pytest.approx(73.0, rel=1e-9)  # the weight of all disks
+    page, data = gr.plot.page(turned), turned.to_dataset()
+    assert titles(page)[0] == rf"(a) floor forces, torque $0.01\,{style.TORQUE_UNIT}$"
+    np.testing.assert_array_equal(curve(page.axes[0]), data["floor_force"].values[1] - data["floor_force_rest"].values)
+    assert np.abs(curve(page.axes[0])).max() > 1e-6
+    assert page.axes[3].get_ylim()[1] > pictures.Shown.of(turned).top + 1.0  # room for the arc
+    assert titles(gr.plot.page(turned, state=0))[0] == "(a) floor forces, at rest"
+
+
+def test_floor_forces_are_of_the_state_asked_for(result, ax):
+    data = result.to_dataset()
+    np.testing.assert_array_equal(curve(gr.plot.floor(result, ax=ax, state=1, added=False)), data["floor_force"][0])
+    assert ax.get_ylabel() == style.FLOOR_FORCE
+    other = gr.plot.floor(result, ax=style.figure()[1][0, 0])
+    np.testing.assert_array_equal(curve(other), data["floor_force"][1] - data["floor_force_rest"])
+    assert other.get_ylabel() == style.ADDED_FLOOR_FORCE
+
+
+def test_why_there_is_no_response_is_said(loadless, turned, ax):
+    nothing = gr.solve(SCENE, load_factors=[0.0])
+    for one, why in ((loadless, "no loads"), (turned, "no load has a force"), (nothing, "the loads apply no force in")):
+        with pytest.raises(pictures.PictureError, match=f"^result: {why}[^\n]*, so there is no response; floor draws"):
+            gr.plot.response(one, ax=ax)
+        with pytest.raises(pictures.PictureError, match="so there is no response"):
+            gr.plot.page(one, ["response", "forces"])
 
 
 def test_bad_input_is_named(result, ax):
@@ -174,7 +227,6 @@ def test_bad_input_is_named(result, ax):
         "scale = 'log': must be one of linear, sqrt, percentile": lambda: gr.plot.forces(result, ax=ax, scale="log"),
         "component = 'yy'": lambda: gr.plot.stress(result, ax=ax, component="yy"),
         "largest = 0": lambda: gr.plot.forces(result, ax=ax, largest=0),
-        "no loads, so there is no response": lambda: gr.plot.response(gr.solve({**SCENE, "loads": []}), ax=ax),
         "holds no states": lambda: gr.plot.forces(result.to_dataset()[["radius"]], ax=ax),
     }.items():
         with pytest.raises(pictures.PictureError, match=message):

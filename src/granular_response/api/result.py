@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import html
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -245,7 +246,7 @@ class Result:
         Raises as :func:`solve` does, and ResultError where the table of disks has changed since.
         """
         solution = self._solution or solution_from(self._data, folder=self._folder)
-        return Result(continue_solution(solution, load_factors, progress=progress))
+        return _vouched(continue_solution(solution, load_factors, progress=progress))
 
     @property
     def _data(self) -> xr.Dataset:
@@ -302,8 +303,17 @@ def solve(
         For a scene that is not allowed.
     granular_response.solve.NotSettled, DynamicsError, EquilibriumError, PathError
         For one that has no such states, each with one line that says what to change.
+
+    Warns (UserWarning) where a load is so small that rounding is seen in its response.
     """
-    return Result(solve_scene(described(scene), load_factors=load_factors, progress=progress))
+    return _vouched(solve_scene(described(scene), load_factors=load_factors, progress=progress))
+
+
+def _vouched(solution: Solution) -> Result:
+    """The result, with a warning where digits are lost."""
+    if solution.rounded_off:
+        warnings.warn(solution.rounded_off, stacklevel=3)
+    return Result(solution)
 
 
 def described(scene: Scene | Mapping[str, Any] | str | os.PathLike[str]) -> Scene:

@@ -76,9 +76,6 @@ def _command(*examples: str, name: str | None = None) -> Callable[[Callable], Ca
     return app.command(name, epilog=_examples(*examples))
 
 
-#: Part of a load, left out of balance, from which on a response is said to be rounded off.
-ROUNDED = 1e-3
-
 Group = Annotated[str, typer.Argument(help="Figure group.", show_default=False)]
 #: Folders and files that several commands take.
 StoredResult = Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)]
@@ -107,9 +104,8 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
         typer.echo(f"granular-response: {output}: {solution.unsettled}", err=True)
         if not allow_unsettled:
             raise typer.Exit(1)
-    elif solution.rounding > ROUNDED:
-        off = f"forces out of balance are {solution.rounding:.1g} of the smallest load: the response is rounded off"
-        typer.echo(f"granular-response: {output}: {off}; take larger loads", err=True)
+    elif solution.rounded_off:
+        typer.echo(f"granular-response: {output}: {solution.rounded_off}", err=True)
 
 
 def _print_version(asked: bool) -> None:
@@ -332,8 +328,13 @@ def plot(
     result: StoredResult,
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture to make: .pdf, .png or .svg.")],
     what: Annotated[
-        str, typer.Option(help="Pictures on the page, among response, forces, contacts, stress, packing.")
-    ] = "response,forces,contacts,stress",
+        str | None,
+        typer.Option(
+            help="Pictures on the page, among response, floor, forces, contacts, stress, packing; if not given "
+            "response,forces,contacts,stress, with floor for response where no force is applied.",
+            show_default=False,
+        ),
+    ] = None,
     state: Annotated[int, typer.Option(help="State: 0 at rest, then one for each load factor, -1 the last.")] = -1,
     scale: Annotated[str, typer.Option(help="Scale of the forces: linear, sqrt or percentile.")] = "sqrt",
 ) -> None:
@@ -344,7 +345,8 @@ def plot(
     _loaded()
 
     stored = read_result(result)
-    typer.echo(str(pictures.save(stored, output, what.split(","), state=state, scale=scale, inputs=[result])))
+    names = None if what is None else what.split(",")
+    typer.echo(str(pictures.save(stored, output, names, state=state, scale=scale, inputs=[result])))
 
 
 @_command("keys", "keys protocol", "keys --page docs/scene-reference.md")
@@ -367,7 +369,13 @@ def keys(
 def export(
     result: StoredResult,
     output: Annotated[Path, typer.Option("--output", "-o", help="File to make; its ending is the format.")],
-    state: Annotated[int, typer.Option(help="State in a file of one state: 0 at rest, -1 the last one.")] = -1,
+    state: Annotated[
+        int | None,
+        typer.Option(
+            help="Write this state alone: 0 at rest, -1 the last one. If not given all, or the last in a file of one.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Write a result for OVITO (.gsd, .xyz), ParaView (.pvd, .vtu), LAMMPS (.data, .dump), YADE (.txt) or as .csv."""
     from ..store import export as exporting

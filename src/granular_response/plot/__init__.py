@@ -1,8 +1,8 @@
 """Pictures in one style: for the figures of the paper and for own results.
 
-``response``, ``forces``, ``contacts``, ``stress`` and ``packing`` each draw a result on axes of their own or the ones
-given as ``ax``, and return the axes; ``page`` makes one figure of several of them. Below them: ``network``, ``field``
-and ``style``, which take arrays.
+``response``, ``floor``, ``forces``, ``contacts``, ``stress`` and ``packing`` each draw a result on axes of their own or
+the ones given as ``ax``, and return the axes; ``page`` makes one figure of several of them. Below them: ``network``,
+``field`` and ``style``, which take arrays.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .pictures import contacts, forces, packing, page, response, stress
+    from .pictures import contacts, floor, forces, packing, page, response, stress
 
-__all__ = ["contacts", "forces", "packing", "page", "response", "stress"]
+__all__ = ["contacts", "floor", "forces", "packing", "page", "response", "stress"]
 
 
 def __getattr__(name: str) -> Any:

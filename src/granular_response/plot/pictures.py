@@ -1,4 +1,4 @@
-"""Pictures of a result: its response, the forces that the load adds, contacts, stress, and the packing itself.
+"""Pictures of a result: its response, forces on the floor and in the packing, contacts, stress, and the packing itself.
 
 Each takes a ``Result`` or the dataset of one (``Result.to_dataset``, or a stored file as xarray opens it). ``state`` is
 0 at rest, then one for each load factor, -1 the last. Without ``ax`` a picture has a figure of its own, made by pyplot.
@@ -120,12 +120,14 @@ class Shown:
 def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line: Any) -> Axes:
     """The floor response against the place from the loaded disk, a curve for each load (Fig. 7).
 
-    ``line`` goes to ``Axes.plot``. Raises PictureError for a result without loads.
+    ``line`` goes to ``Axes.plot``. Raises PictureError for a result without forces to respond to; see :func:`floor`.
     """
     shown = Shown.of(result)
     values = np.atleast_2d(shown.data["floor_response"].values)
-    if not np.isfinite(values).any():
-        raise PictureError("result: no loads, so there is no response")
+    if not _has_response(shown):
+        raise PictureError(
+            f"result: {_why_no_response(shown)}, so there is no response; floor draws the forces on the floor"
+        )
     with style.context():
         axes = _axes(ax, 0.36)
         forces = np.atleast_1d(shown.data["total_force"].values)
@@ -137,6 +139,37 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
         axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
         axes.margins(x=0.02)
         axes.legend(title=style.FORCE)
+    return axes
+
+
+def floor(
+    result: HasDataset | xr.Dataset,
+    *,
+    ax: Axes | None = None,
+    state: int = -1,
+    added: bool | None = None,
+    **line: Any,
+) -> Axes:
+    """The vertical force on each floor disk in mean disk weights, by default the part that the load adds.
+
+    For what has no response: a packing at rest, and loads that are torques alone.
+
+    Parameters
+    ----------
+    added : draw what the load adds rather than the whole; by default so but at rest.
+    line : goes to ``Axes.plot``.
+    """
+    shown = Shown.of(result, state)
+    added = shown.index > 0 if added is None else added
+    rest = shown.data["floor_force_rest"].values
+    force = np.atleast_2d(shown.data["floor_force"].values)[shown.index - 1] if shown.index else rest
+    with style.context():
+        axes = _axes(ax, 0.36)
+        look = {**style.marked_line(0, colour=style.ordered_colours(1)[0]), "markersize": 2.6, **line}
+        axes.plot(shown.data["x"].values, force - rest if added else force, **look)
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        axes.set(xlabel=style.POSITION, ylabel=style.ADDED_FLOOR_FORCE if added else style.FLOOR_FORCE)
+        axes.margins(x=0.02)
     return axes
 
 
@@ -324,16 +357,19 @@ def packing(
 #: The pictures of a page, by name.
 PICTURES: Mapping[str, Callable[..., Axes]] = {
     "response": response,
+    "floor": floor,
     "forces": forces,
     "contacts": contacts,
     "stress": stress,
     "packing": packing,
 }
+#: Those that are curves over the floor, not maps of the packing.
+_GRAPHS = ("response", "floor")
 
 
 def page(
     result: HasDataset | xr.Dataset,
-    what: Sequence[str] = ("response", "forces", "contacts", "stress"),
+    what: Sequence[str] | None = None,
     *,
     state: int = -1,
     scale: Scale = "sqrt",
@@ -341,21 +377,24 @@ def page(
 ) -> Figure:
     """One figure with a picture for each of ``what``, in this order: names of the functions of this module.
 
+    By default ``response``, ``forces``, ``contacts`` and ``stress``, with ``floor`` where there is no response.
     ``scale`` is that of :func:`forces`; ``figure`` is drawn into, or a new one of pyplot's.
 
     Raises PictureError for another name, and what the pictures raise.
     """
-    for name in what:
+    for name in what or ():
         if name not in PICTURES:
             raise PictureError(f"what = {name!r}: must be among {', '.join(PICTURES)}")
-    if not what:
+    if what is not None and not what:
         raise PictureError(f"what: nothing to draw, must be among {', '.join(PICTURES)}")
     shown = Shown.of(result, state)
+    if what is None:
+        what = ("response" if _has_response(shown) else "floor", "forces", "contacts", "stress")
     with style.context():
         columns = 1 if len(what) == 1 or _aspect(shown) < 0.6 else 2
         rows = -(-len(what) // columns)
         wide = style.DOUBLE / columns
-        heights = [0.36 * wide if name == "response" else _aspect(shown) * wide + 0.25 for name in what]
+        heights = [0.36 * wide if name in _GRAPHS else _aspect(shown) * wide + 0.25 for name in what]
         in_row = [max(heights[k * columns : (k + 1) * columns]) + 0.12 for k in range(rows)]
         figure = _new_figure(sum(in_row)) if figure is None else figure
         figure.set_size_inches(style.DOUBLE, sum(in_row))
@@ -368,7 +407,7 @@ def page(
             options: dict[str, Any] = {} if what[k] == "response" else {"state": state}
             options |= {"scale": scale} if what[k] == "forces" else {}
             PICTURES[what[k]](shown.data, ax=axes, **options)
-            if what[k] == "response" and columns > 1:
+            if what[k] in _GRAPHS and columns > 1:
                 axes.set_box_aspect(0.75)
             style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
     return figure
@@ -377,7 +416,7 @@ def page(
 def save(
     result: HasDataset | xr.Dataset,
     output: str | os.PathLike[str],
-    what: Sequence[str],
+    what: Sequence[str] | None = None,
     *,
     state: int = -1,
     scale: Any = "sqrt",
@@ -405,8 +444,26 @@ def _title(what: str, shown: Shown) -> str:
     load = "at rest"
     if shown.index:
         total = sum(float(np.hypot(*force)) for _, force, _ in shown.loads)
+        turning = sum(abs(torque) for *_, torque in shown.loads)
         load = f"$F_{{\\mathrm{{ext}}}} = {total:.4g}\\,\\bar m g$"
-    return "floor response" if what == "response" else f"{what}, {load}"
+        if turning and not total:
+            load = f"torque ${turning:.4g}\\,{style.TORQUE_UNIT}$"
+    return "floor response" if what == "response" else f"{'floor forces' if what == 'floor' else what}, {load}"
+
+
+def _has_response(shown: Shown) -> bool:
+    """Whether a load applies a force: the response is divided by it."""
+    return bool(np.isfinite(shown.data["floor_response"].values).any())
+
+
+def _why_no_response(shown: Shown) -> str:
+    if not shown.data.sizes["load_point"]:
+        return "no loads"
+    if shown.data.sizes["state"] == 1:
+        return "no state under load"
+    if "reaction" not in shown.data and not shown.data["applied_load"].values[:, :2].any():
+        return "no load has a force"
+    return "the loads apply no force in any state"
 
 
 def _axes(ax: Axes | None, aspect: float) -> Axes:
@@ -457,6 +514,9 @@ def _loads(axes: Axes, shown: Shown, *, shift: float = 0.0) -> None:
             length = max(3.0, 0.16 * shown.top) * size / largest
             network.draw_load(axes, tip, force, length=length)
         network.draw_torque(axes, centre, torque, radius=1.7 * radius)
+        if torque and not largest:  # no arrow of a force makes room for the arc
+            axes.update_datalim([(centre[0], centre[1] + 2.2 * radius)])
+            axes.autoscale_view()
 
 
 def _legend(axes: Axes, handles: Sequence[Any], shown: Shown) -> None:

@@ -36,6 +36,7 @@ ROUGH = 1e-7
 #: Residual below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
 STILL, STALLED = 1e-5, 3
 
+
 @dataclass(frozen=True)
 class Patience:
     """When an increment fails."""

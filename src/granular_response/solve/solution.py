@@ -28,6 +28,9 @@ from .timestep import resolve_time_step
 #: Load that the contacts of one disk bear at most without an overlap of a radius, over the stiffness of one.
 MOST_BORNE = 4.0
 
+#: Part of a response that may be rounding, from which on that is said.
+ROUNDED = 1e-3
+
 #: Reaction (mean disk weights) up to which a displaced disk counts as free of force.
 BALANCED = 1e-8
 
@@ -68,6 +71,13 @@ class Solution:
         digit = 0.5 * float(np.spacing(np.abs(self.rest.position).max())) * stiffness
         residual = max(s.certificate.force_residual for s in (self.rest, *self.loaded))
         return max(residual, digit) / min(loads)
+
+    @property
+    def rounded_off(self) -> str:
+        """How much of the response may be rounding, in one line; empty where that is little."""
+        if self.rounding <= ROUNDED:
+            return ""
+        return f"up to {self.rounding:.1g} of the response to the smallest load may be rounding; take larger loads"
 
     @property
     def unsettled(self) -> str:

@@ -47,7 +47,7 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     result = read_result(path, sealed=False) if root is not None and "floor_response" in root else None
     yield _text(path, style="bold")
     if not store.is_sealed(path):
-        yield Text("written by another program: without the digest that shows damage")
+        yield Text("not sealed: rewritten by another program, so its numbers are not vouched for", style="bold")
     yield _table((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
     if result is not None:
         yield from _result(result)

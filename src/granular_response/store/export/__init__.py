@@ -2,14 +2,15 @@
 
 ``export`` picks the format by the suffix:
 
-* ``.gsd`` and ``.xyz`` for OVITO: one frame for each stored state, with radius, angle, mass, load and coordination
-  number of every disk, and the force that the state's load adds to it (the change of the contact forces, largest
-  around the loaded disk).
+* ``.gsd`` and ``.xyz`` for OVITO: one frame for each stored state, or for the one asked for, with radius, angle, mass,
+  load and coordination number of every disk, and the force that the state's load adds to it (the change of the contact
+  forces, largest around the loaded disk).
 * ``.vtu`` for ParaView: one state, the last one unless another is asked for. Disks are vertices with their radius
   (show them with a Glyph filter) and the stress that the load adds, contacts are lines with normal and tangential force
   and status. ``.pvd`` is all states in order, each a ``.vtu`` beside it.
 * ``.data`` and ``.dump`` for LAMMPS, ``.txt`` for YADE, ``.csv`` for anything: disks alone, which
-  ``packing: {kind: file}`` reads again (``scene.formats`` has the suffixes). A dump has all states, the others one.
+  ``packing: {kind: file}`` reads again (``scene.formats`` has the suffixes). A dump has all states or one, the others
+  one.
 
 Disks lie in the plane of the screen: file coordinates are (x, z, 0); YADE's are (x, 0, z), where gravity points to -z.
 Units are those of the result: mean disk radius, mean disk mass, g.
@@ -22,66 +23,71 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
-import xarray as xr
-
 from ...scene import formats
 from .. import atomic
 from ..checked import read_result
 from .frames import contact_force_sums
 
-#: For each suffix its module, and whether its file holds one state.
+#: For each suffix its module, and the states of its file: the one asked for, every one, or either as frames.
 _WRITERS = {
-    ".gsd": ("gsd_file", False),
-    ".pvd": ("vtk", False),
-    ".vtu": ("vtk", True),
-    ".xyz": ("xyz", False),
-    **dict.fromkeys(formats.SUFFIXES["csv"], ("csv_table", True)),
-    **dict.fromkeys(formats.SUFFIXES["lammps-data"], ("lammps_data", True)),
-    **dict.fromkeys(formats.SUFFIXES["lammps-dump"], ("lammps_dump", False)),
-    **dict.fromkeys(formats.SUFFIXES["yade"], ("yade", True)),
+    ".gsd": ("gsd_file", "frames"),
+    ".pvd": ("vtk", "every"),
+    ".vtu": ("vtk", "one"),
+    ".xyz": ("xyz", "frames"),
+    **dict.fromkeys(formats.SUFFIXES["csv"], ("csv_table", "one")),
+    **dict.fromkeys(formats.SUFFIXES["lammps-data"], ("lammps_data", "one")),
+    **dict.fromkeys(formats.SUFFIXES["lammps-dump"], ("lammps_dump", "frames")),
+    **dict.fromkeys(formats.SUFFIXES["yade"], ("yade", "one")),
 }
 #: What a file name may end with.
 SUFFIXES = tuple(sorted(_WRITERS))
 
-#: Of one dataset, the files to write: content by path.
-Writer = Callable[[xr.Dataset, Path], dict[Path, bytes]]
+#: Of one dataset, the files to write: content by path. Writers of frames take the index of the only state too.
+Writer = Callable[..., dict[Path, bytes]]
 
 
 class ExportError(Exception):
     """A result that cannot be exported. The message is one line."""
 
 
-def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, state: int = -1) -> Path:
+def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, state: int | None = None) -> Path:
     """Write a stored result as a file for another program; returns its path.
 
     Parameters
     ----------
     result : netCDF file that ``granular-response run`` made.
     output : file to make; its suffix (one of ``SUFFIXES``) is the format.
-    state : index of the state that a file of one state holds, 0 at rest, -1 the last one.
+    state : index of the only state to write, 0 at rest, -1 the last one; if None all of them, or the last one in a file
+        of one state.
 
     Raises
     ------
     ExportError
-        For another suffix, a state that does not exist, or a missing library.
+        For another suffix, a state that does not exist or of a series of all, or a missing library.
     granular_response.store.files.StoreError, granular_response.store.result.ResultError
         If the result cannot be read, or is none.
     """
     output = Path(output)
     if output.suffix not in _WRITERS:
         raise ExportError(f"{output}: format {output.suffix!r} is unknown, must be {' or '.join(SUFFIXES)}")
+    name, states = _WRITERS[output.suffix]
+    if states == "every" and state is not None:
+        raise ExportError(
+            f"state = {state}: {output} is a series of all states, must be left out (.vtu holds one state)"
+        )
     dataset = read_result(result, sealed=False)
     count = dataset.sizes["state"]
-    if not -count <= state < count:
+    if state is not None and not -count <= state < count:
         raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, {result} holds {count} states")
-    name, single = _WRITERS[output.suffix]
-    chosen = dataset.isel(state=[0, state]) if single else dataset
+    # the first state stays: what a load adds is the difference from it
+    chosen = dataset.isel(state=[0, -1 if state is None else state]) if states == "one" else dataset
+    only = {} if states != "frames" or state is None else {"only": state % count}
     try:
         atomic.check_output(output, [result])
         output.parent.mkdir(parents=True, exist_ok=True)
         atomic.check_writable(output)
         writer: Writer = import_module(f".{name}", __name__).files
-        made = writer(chosen, output)
+        made = writer(chosen, output, **only)
         for path in made:
             atomic.check_writable(path, [result])
         for path, content in made.items():

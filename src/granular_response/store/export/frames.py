@@ -16,6 +16,7 @@ PREFIXES = ("contact", "wall")
 class Frame(NamedTuple):
     """One state as pictures need it."""
 
+    step: int  #: index of the state in the result
     factor: float  #: load factor
     position: FloatArray  #: (n, 2)
     angle: FloatArray  #: (n,)
@@ -23,14 +24,14 @@ class Frame(NamedTuple):
     coordination: np.ndarray  #: (n,) closed contacts
 
 
-def frames(dataset: xr.Dataset) -> Iterator[Frame]:
-    """The states in order."""
+def frames(dataset: xr.Dataset, only: int | None = None) -> Iterator[Frame]:
+    """The states in order, or the one with the index ``only``."""
     rest, _ = contact_force_sums(dataset.isel(state=0))
-    for index in range(dataset.sizes["state"]):
+    for index in range(dataset.sizes["state"]) if only is None else [only]:
         state = dataset.isel(state=index)
         force, count = contact_force_sums(state)
         factor = float(state["state_load_factor"])
-        yield Frame(factor, state["position"].values, state["angle"].values, force - rest, count)
+        yield Frame(index, factor, state["position"].values, state["angle"].values, force - rest, count)
 
 
 def contact_force_sums(state: xr.Dataset) -> tuple[FloatArray, np.ndarray]:

@@ -17,15 +17,15 @@ from ...state import OPEN
 from .frames import extent, frames, in_plane
 
 
-def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
-    """The file as bytes."""
+def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:
+    """The file as bytes, of all states or the one with the index ``only``."""
     import gsd.hoomd
 
     with tempfile.TemporaryDirectory() as folder:  # the library writes to disk only
         made = Path(folder, "export.gsd")
         with gsd.hoomd.open(str(made), "w") as file:
             width, height = extent(dataset)
-            for index, (factor, position, angle, force, count) in enumerate(frames(dataset)):
+            for index, factor, position, angle, force, count in frames(dataset, only):
                 frame = gsd.hoomd.Frame()
                 frame.configuration.step = index
                 frame.configuration.dimensions = 2
