@@ -71,12 +71,17 @@ def test_disks_that_need_more_memory_than_there_is_are_refused_once_they_are_cou
     check_memory(scene, 5)
 
 
-@pytest.mark.parametrize("name", ENDINGS)
-def test_what_is_exported_is_imported(result, tmp_path, name):
+def exported(result, folder, name):
+    """A result, the file of its disks, how precise that is, and what a scene has to add to it."""
     suffix, precision = ENDINGS[name]
     stored = store.read(result)[""]
-    path = export(result, tmp_path / f"disks{suffix}")
     width = {"width": stored.attrs["width"]} if name in ("csv", "yade") else {}
+    return stored, export(result, folder / f"disks{suffix}"), precision, width
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_what_is_exported_is_imported(result, tmp_path, name):
+    stored, path, precision, width = exported(result, tmp_path, name)
     for packing in (build(path, **width), build(path, format=name, **width)):
         scale = stored["radius"].values.mean()
         np.testing.assert_allclose(packing.radius * scale, stored["radius"], rtol=precision + 1e-15)
@@ -88,16 +93,13 @@ def test_what_is_exported_is_imported(result, tmp_path, name):
 
 @pytest.mark.parametrize("name", ENDINGS)
 def test_a_periodic_result_comes_back_periodic(periodic, tmp_path, name):
-    suffix, precision = ENDINGS[name]
-    stored = store.read(periodic)[""]
-    path = export(periodic, tmp_path / f"disks{suffix}")
-    width = {"width": stored.attrs["width"]} if name in ("csv", "yade") else {}
+    stored, path, precision, width = exported(periodic, tmp_path, name)
     packing = build(path, sides="periodic", **width)
     assert packing.periodic and packing.width == pytest.approx(stored.attrs["width"], rel=1e-14)
     apart = packing.position - stored["position"].values[-1]
     apart[:, 0] -= packing.width * np.round(apart[:, 0] / packing.width)
     np.testing.assert_allclose(apart, 0.0, atol=10 * precision + 1e-14)
-    if name in ("csv", "yade"):  # the others do not say
+    if name in ("csv", "yade"):  # which do not say
         assert formats.read(path, name).periodic is None
         return
     with pytest.raises(SceneError) as caught:

@@ -77,7 +77,7 @@ def solve_increment(
 
     ``guess`` (dof,) is a prediction of the displacements. ``passing`` : whether the state is only passed on the way, so
     that an unbalanced force of ``PASSED`` will do. ``stubborn`` : whether limits are held fixed where Newton's method
-    fails, which costs more than a shorter increment.
+    fails, which costs more than a shorter increment. ``patience`` : when they are given up.
     """
     enough = PASSED if passing else ENOUGH
     solve = partial(newton, system, known, external, enough=enough, runaway=patience.runaway)
