@@ -80,6 +80,11 @@ def test_smoothed_response_refuses_a_width_of_zero():
         smoothed_response([0.0], [0.0], [1.0], 0.0)
 
 
+@pytest.mark.parametrize("width", [2, np.float32(2.0), np.array(2.0)])
+def test_a_width_may_be_any_number(width):
+    assert smoothed_response([0.0], [0.0], [1.0], width) == smoothed_response([0.0], [0.0], [1.0], 2.0)
+
+
 def test_interior_leaves_out_ten_radii_at_both_walls():
     x = np.arange(-60.0, 61.0, 2.0)  # the floor disks of the default slab, from the loaded disk
     inside = x[interior_mask(x, 122.0, left_wall=-61.0)]

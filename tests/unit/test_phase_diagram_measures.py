@@ -20,11 +20,13 @@ from granular_response.paper.survey.crossover import (
     FOUND,
     Ensemble,
     agreement,
-    censored_median,
+    censored_medians,
     cross,
     crossover,
     folded,
+    grown,
     lean,
+    passed,
     ranked,
     shape,
     singles,
@@ -76,6 +78,20 @@ def test_crossover(shapes, expected) -> None:
     force, kind = crossover(np.array([1.0, 2.0, 4.0, 8.0]), np.array(shapes))
     np.testing.assert_allclose(force, expected[0])
     assert kind == expected[1]
+
+
+def test_crossovers_of_many_paths_are_those_of_each() -> None:
+    """With unknown shapes at the end of a path, in its middle and all along it."""
+    rng = np.random.default_rng(0)
+    force = np.array([1.0, 2.0, 3.0, 5.0, 8.0])
+    shapes = rng.normal(0.0, 0.1, (40, 5)).cumsum(axis=1)
+    shapes[::4, 3:], shapes[1::5, 1], shapes[7] = np.nan, np.nan, np.nan
+    many = passed(force, grown(shapes), 0.01)
+    for row, value, kind in zip(shapes, *many, strict=True):
+        known = np.isfinite(row)
+        expected = crossover(force[known], row[known], 0.01) if known.any() else (np.nan, ABOVE)
+        np.testing.assert_equal((value, kind), expected)
+    assert {FOUND, BELOW, ABOVE} == set(many[1].tolist())
 
 
 def make_ensemble(spread: float, size: int = 40) -> Ensemble:
@@ -194,7 +210,7 @@ def test_a_tolerance_moves_the_crossover() -> None:
 
 
 def test_bounds_are_ranked_beyond_all_forces() -> None:
-    assert ranked([(2.0, FOUND), (8.0, ABOVE), (1.0, BELOW)]).tolist() == [2.0, np.inf, -np.inf]
+    assert ranked(np.array([2.0, 8.0, 1.0]), np.array([FOUND, ABOVE, BELOW])).tolist() == [2.0, np.inf, -np.inf]
 
 
 def test_cases_of_as_many_realizations_are_drawn_alike() -> None:
@@ -222,7 +238,20 @@ def test_cases_of_as_many_realizations_are_drawn_alike() -> None:
     ],
 )
 def test_the_median_counts_censored_values_as_long_as_they_last(values, censored, expected) -> None:
-    assert censored_median(np.array(values), np.array(censored, bool)) == expected
+    once = np.ones((1, len(values)))
+    assert censored_medians(np.array(values), np.array(censored, bool), once).tolist() == [expected]
+
+
+def test_a_value_that_counts_several_times_is_as_many_values() -> None:
+    rng = np.random.default_rng(0)
+    values, censored = rng.integers(0, 6, 12).astype(float), rng.random(12) < 0.6
+    drawn = weights(12, 200, 0)
+    medians = censored_medians(values, censored, drawn)
+    for count, median in zip(drawn.astype(int), medians, strict=True):
+        there, beyond = np.repeat(values, count), np.repeat(censored, count)
+        once = np.ones((1, len(there)))
+        assert censored_medians(there, beyond, once).tolist() == [median]
+    assert np.isinf(medians).any() and np.isfinite(medians).any()
 
 
 def test_single_realizations_and_their_mean() -> None:

@@ -92,6 +92,10 @@ def test_stress_carries_the_load(result):
         ({"z": 3.0}, ValueError, r"^z = 3.0: must be a list of finite numbers$"),
         ({"z": [np.nan]}, ValueError, r"^z = \[nan\]: must be a list of finite numbers$"),
         ({"z": ["low"]}, ValueError, r"^z = \['low'\]: must be a list of finite numbers$"),
+        ({"width": "wide"}, ValueError, r"^width = 'wide': must be a finite number greater than 0$"),
+        ({"width": -1.0}, ValueError, r"^width = -1.0: must be a finite number greater than 0$"),
+        ({"width": np.inf}, ValueError, r"^width = inf: must be a finite number greater than 0$"),
+        ({"width": True}, ValueError, r"^width = True: must be a finite number greater than 0$"),
     ],
 )
 def test_mistakes_of_a_stress_are_one_line(result, arguments, error, said):

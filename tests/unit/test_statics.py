@@ -1,5 +1,6 @@
 """Static forces against the dynamics' kernels, and tangents against finite differences."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import LAWS
 from granular_response.solve import Dynamics, Problem
-from granular_response.solve.system import StaticSystem
+from granular_response.solve.system import DENSE, StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
@@ -202,7 +203,27 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
     q = known.q.copy()
     q[problem.n : problem.n + 2] -= np.array([1.0, 2.0]) * force / problem.stiffness
     trial = system.trial(replace(known, wall_spring=slides), q)
-    assert SLIDING in trial.wall_status
-    every = np.linalg.eigvals(system.tangent(trial, 1e-6).toarray()).real
+    assert SLIDING in trial.wall_status and (system.dof <= DENSE) == (rollers == 0)
+    values, vectors = np.linalg.eig(system.tangent(trial, 1e-6).toarray())
+    every = values.real
     assert (every < 0).sum() == 1 and every.min() < -1e-3 * problem.stiffness
     assert system.negative_modes(trial) == 1
+    lowest, found = system.deinterleave(vectors[:, np.argmin(every)].real), system.unstable_direction(trial)
+    lowest, found = (v[: 2 * problem.n] / v[1] for v in (lowest, found))  # along x of the disk on top
+    np.testing.assert_allclose(found, lowest, atol=1e-6)
+
+
+def test_disks_that_slide_alone_call_for_no_eigenvalues(monkeypatch):
+    """What they can do without a force leaves the rest of the tangent with a positive symmetric part."""
+    friction = {"contact__friction": 0.5, "wall__friction": 0.5}
+    problem, state = free_disks([(4.0 * i, 0.9995) for i in range(1, 8)], **friction)
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    trial = system.trial(replace(known, wall_spring=np.ones(len(known.wall_spring))), known.q)
+    assert (trial.wall_status == SLIDING).sum() == 7 and system.dof > DENSE
+
+    def none_asked(*_, **__):
+        raise AssertionError("eigenvalues were asked for")
+
+    monkeypatch.setattr(sys.modules[StaticSystem.__module__], "eigs", none_asked)
+    assert system.negative_modes(trial) == 0

@@ -45,6 +45,13 @@ def test_there_and_back(quantity):
     assert units.to_laboratory(quantity, units.to_reduced(quantity, 0.7)) == pytest.approx(0.7, rel=1e-14)
 
 
+@pytest.mark.parametrize("values", [[1.0, 2.0], (1, 2), [[0.5, 1.5]]])
+def test_lists_are_taken_as_arrays(values):
+    units = LaboratoryUnits()
+    for there in (units.to_reduced, units.to_laboratory):
+        np.testing.assert_array_equal(there("length", values), there("length", np.array(values, float)))
+
+
 def test_laws_hold_in_both_units():
     """A law of physics does not know its units: a spring's frequency, a falling disk, a weight on a line."""
     units = LaboratoryUnits(radius=0.02, thickness=0.1, density=2500.0, gravity=1.62)

@@ -6,7 +6,9 @@ from pathlib import Path
 import nbformat
 import pytest
 import reduced
+from jupyter_client import KernelManager
 from nbclient import NotebookClient
+from nbformat.v4 import new_code_cell
 
 from granular_response.paper import notebooks
 from granular_response.paper.groups import NAMES
@@ -16,15 +18,27 @@ ROOT = Path(__file__).parents[2]
 OWN = ROOT / "params.yaml"
 
 
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory):
+    """One for all notebooks: most of the time of a small one goes by until it has imported what it needs."""
+    folder = tmp_path_factory.mktemp("kernel")
+    paths = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
+    manager = KernelManager()
+    settings = {"PYTHONPATH": paths, "IPYTHONDIR": str(folder / "ipython")}
+    manager.start_kernel(cwd=str(folder), env={**os.environ, **settings})
+    yield manager
+    manager.shutdown_kernel(now=True)
+
+
 @pytest.mark.parametrize("group", NAMES)
-def test_a_notebook_runs_and_shows_every_figure(group, tmp_path, monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")]))
-    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+def test_a_notebook_runs_and_shows_every_figure(group, kernel, tmp_path):
     (path,) = notebooks.write(tmp_path / "notebooks", [group], own=OWN, reduced=reduced.PATH)
     notebook = nbformat.read(path, as_version=4)
     nbformat.validate(notebook)
     assert not any(cell.get("outputs") for cell in notebook.cells)
-    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    # nothing that a notebook before it has named
+    notebook.cells.insert(0, new_code_cell("%reset -f"))
+    NotebookClient(notebook, km=kernel, timeout=120).execute()
     shown = [output.get("data", {}) for output in notebook.cells[-1].outputs]
     pictures = [data for data in shown if "image/png" in data]
     assert pictures and len(pictures) == sum("text/markdown" in data for data in shown)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from granular_response.observe.positive import check_positive
+
 
 class EventNotBracketed(ValueError):
     """The predicate says the same at both ends, so no event is known to lie between them."""
@@ -48,8 +50,7 @@ def bisect_event(
     """
     if not low < high:
         raise ValueError(f"low: {low} given; it must be below high, which is {high}")
-    if not tolerance > 0.0:
-        raise ValueError(f"tolerance: {tolerance} given; it must be positive")
+    check_positive(tolerance=tolerance)
     evaluations = 0
     if at_low is None:
         at_low, evaluations = bool(predicate(low)), evaluations + 1

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from granular_response.observe.positive import check_positive
 from granular_response.state import FLOOR, FloatArray, State
 
 
@@ -46,8 +47,7 @@ def floor_response(rest: State, loaded: State, disks: NDArray[np.intp], total_fo
     vertical loads sums to 1 when the side walls carry no weight. Raises ``ValueError`` unless
     ``total_force`` is positive and finite.
     """
-    if not (np.isfinite(total_force) and total_force > 0.0):
-        raise ValueError(f"total_force: {total_force} given; it must be positive and finite")
+    check_positive(total_force=total_force)
     return (floor_force(loaded, disks) - floor_force(rest, disks)) / total_force
 
 
@@ -59,8 +59,7 @@ def smoothed_response(x_eval: ArrayLike, x_disk: ArrayLike, response: ArrayLike,
     (k,), ``response`` (..., k), ``x_eval`` (e,); returns (..., e). Within about ``width`` of a side wall part
     of the kernel lies outside the box. Raises ``ValueError`` unless ``width`` is positive.
     """
-    if not width > 0.0:
-        raise ValueError(f"width: {width} given; it must be positive")
+    check_positive(width=width)
     distance = (np.asarray(x_eval, dtype=float)[:, None] - np.asarray(x_disk, dtype=float)) / width
     kernel = np.exp(-(distance**2)) / (width * np.sqrt(np.pi))
     return np.asarray(response, dtype=float) @ kernel.T

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from granular_response.observe.positive import check_positive
 from granular_response.state import FloatArray
 
 #: A dip shallower than this fraction of the largest response does not separate two peaks. Responses of two
@@ -68,8 +69,7 @@ def find_peaks(
     prominence that is not positive.
     """
     x, r = _samples(x, response, interior)
-    if not relative_prominence > 0.0:
-        raise ValueError(f"relative_prominence: {relative_prominence} given; it must be positive")
+    check_positive(relative_prominence=relative_prominence)
     scale = float(np.max(np.abs(r)))
     threshold, tie = relative_prominence * scale, rounding * scale
     last = r.size - 1

@@ -9,6 +9,7 @@ import numpy as np
 
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.network import contact_centre
+from granular_response.observe.positive import check_positive
 from granular_response.state import FloatArray, State
 
 #: Distance of neighbouring rows of the triangular lattice, in lattice constants.
@@ -35,8 +36,7 @@ def force_profile(
     """
     if half_band is None:
         half_band = 0.25 * ROW_SPACING * lattice_constant
-    if not half_band > 0.0:
-        raise ValueError(f"half_band: {half_band} given; it must be positive")
+    check_positive(half_band=half_band)
     magnitude = np.linalg.norm(pair_force_difference(rest, loaded), axis=1)
     offset = contact_centre(rest) - rest.position[loaded_disk]
     touching = rest.pairs.touching | loaded.pairs.touching

@@ -33,6 +33,7 @@ from scipy.special import erf
 
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
 from granular_response.observe.floor import smoothed_response
+from granular_response.observe.positive import check_positive
 from granular_response.state import FloatArray, State
 
 #: Evaluations of a contact at a point that are held in memory at once.
@@ -90,7 +91,7 @@ def coarse_grained_stress(
     away from a point are left out; each would contribute less than exp(-cutoff^2) of its peak.
     Raises ``ValueError`` unless both are positive.
     """
-    _check(width, cutoff)
+    check_positive(width=width, cutoff=cutoff)
     flat = points.reshape(-1, 2)
     length = np.linalg.norm(contacts.branch, axis=1)
     direction = contacts.branch / np.where(length > 0.0, length, 1.0)[:, None]
@@ -146,12 +147,6 @@ def pressure(stress: FloatArray) -> FloatArray:
 def antisymmetric_part(stress: FloatArray) -> FloatArray:
     """``(sigma_xz - sigma_zx) / 2`` of ``stress`` (..., 2, 2), which tangential forces cause (Sec. V.C)."""
     return 0.5 * (stress[..., 0, 1] - stress[..., 1, 0])
-
-
-def _check(width: float, cutoff: float) -> None:
-    for name, value in (("width", width), ("cutoff", cutoff)):
-        if not value > 0.0:
-            raise ValueError(f"{name}: {value} given; it must be positive")
 
 
 def _near(

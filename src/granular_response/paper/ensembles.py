@@ -21,9 +21,15 @@ def smoothed(case: xr.Dataset, x: FloatArray, width: float) -> FloatArray:
     """
     place = case["x"].transpose("realization", "slot").values
     values = case["floor_response"].transpose("realization", "step", "slot").values
+    at_rest = case["outcome"].transpose("realization", "step").values == AT_REST
     found = np.full((*values.shape[:2], len(x)), np.nan)
-    for r, k in np.argwhere(case["outcome"].transpose("realization", "step").values == AT_REST):
-        here = np.isfinite(place[r]) & np.isfinite(values[r, k])
-        if here.any():
-            found[r, k] = smoothed_response(x, place[r, here], values[r, k, here], width)
+    for r in range(len(place)):
+        known = np.isfinite(place[r]) & np.isfinite(values[r])
+        steps = np.flatnonzero(at_rest[r] & known.any(axis=1))
+        while steps.size:  # mostly once: floor disks are the same at every step
+            here = known[steps[0]]
+            alike = (known[steps] == here).all(axis=1)
+            used = steps[alike]
+            found[r, used] = smoothed_response(x, place[r, here], values[r][np.ix_(used, here)], width)
+            steps = steps[~alike]
     return found

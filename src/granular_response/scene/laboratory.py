@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Final, TypeVar
+from typing import Final, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,10 +80,25 @@ class LaboratoryUnits:
         length, mass, time = _DIMENSIONS[quantity]
         return float(self.radius**length * self.mass**mass * self.time**time)
 
-    def to_reduced(self, quantity: str, value: Value) -> Value:
-        """``value`` in SI units as a multiple of the reduced unit; scalars or arrays of any shape."""
-        return value / self.unit(quantity)
+    @overload
+    def to_reduced(self, quantity: str, value: Value) -> Value: ...
+    @overload
+    def to_reduced(self, quantity: str, value: Sequence[float]) -> NDArray[np.float64]: ...
 
-    def to_laboratory(self, quantity: str, value: Value) -> Value:
-        """``value`` in reduced units as SI units; scalars or arrays of any shape."""
-        return value * self.unit(quantity)
+    def to_reduced(self, quantity, value):
+        """``value`` in SI units as a multiple of the reduced unit; scalars, lists or arrays of any shape."""
+        return _listed(value) / self.unit(quantity)
+
+    @overload
+    def to_laboratory(self, quantity: str, value: Value) -> Value: ...
+    @overload
+    def to_laboratory(self, quantity: str, value: Sequence[float]) -> NDArray[np.float64]: ...
+
+    def to_laboratory(self, quantity, value):
+        """``value`` in reduced units as SI units; scalars, lists or arrays of any shape."""
+        return _listed(value) * self.unit(quantity)
+
+
+def _listed(value):
+    """Lists and tuples as arrays; all else, labelled arrays too, as it is."""
+    return np.asarray(value, float) if isinstance(value, (list, tuple)) else value

@@ -7,11 +7,14 @@ digits.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 
 from ..kernels import statics
@@ -32,13 +35,19 @@ LEFT_OVER = 1e-6
 #: up for with little effort: below the softest modes of a packing of some hundred layers.
 SAME_SHIFT = 1e-7
 
-#: Relative accuracy of eigenvalues of which the sign is asked, where increments are as rough, or the direction; vectors
-#: among which a direction is looked for then.
+#: Relative accuracy of an eigenvalue of which the direction is asked, and vectors among which it is looked for.
 ROUGH, FEW = 1e-3, 6
 
-#: Eigenvalues that are looked for where one may be negative, and how far to the left of zero, in units of the normal
-#: stiffness: the first that the symmetric part allows.
-SOUGHT, LEFT_OF_ALL = 4, (1e-2, 1e-1, 1.0, 10.0)
+#: Stiffness that keeps disks that roll freely from counting as unstable.
+FREE = 1e-6
+
+#: Eigenvalues that are looked for where one is negative, vectors among which they are, and their accuracy, in parts of
+#: the shift that keeps what moves freely from counting.
+SOUGHT, AMONG, SIGN = 4, 14, 0.1
+
+#: How far to the left of zero they are looked for, in units of the normal stiffness: the first that the symmetric part
+#: allows.
+LEFT_OF_ALL = (1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
 
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
@@ -85,6 +94,10 @@ class Trial:
         """(m + w,) statuses, negative for contacts that slide against the tangent."""
         tangential = np.concatenate([self.pair_tangential, self.wall_tangential])
         return np.where((self.status == SLIDING) & (tangential < 0), -self.status, self.status)
+
+
+def _slides(trial: Trial) -> bool:
+    return SLIDING in trial.pair_status or SLIDING in trial.wall_status
 
 
 class StaticSystem:
@@ -472,48 +485,76 @@ class StaticSystem:
         disk, wall = box.near_walls(position, radius, 0.0)
         return bool(np.isin(disk * 3 + wall, self.wall_disk * 3 + self.wall, invert=True).any())
 
-    def negative_modes(self, trial: Trial, shift: float = 1e-6) -> int:
+    def negative_modes(self, trial: Trial) -> int:
         """Number of unstable directions of the tangent.
 
         Without sliding the tangent is symmetric (up to the turn of the contacts) and they are counted exactly.
         Sliding makes it unsymmetric. No eigenvalue has a smaller real part than the lowest eigenvalue of its symmetric
-        part (Bendixson). Is that negative, the ``SOUGHT`` nearest to a point still further to the left are computed,
-        and those with a negative real part counted: from there a real negative one is nearer than all that are not.
-        ``shift`` keeps disks that roll freely from counting.
+        part (Bendixson). Is that negative, the eigenvalue nearest to a point still further to the left is computed:
+        from there a real negative one is nearer than all that are not. Is it negative, the ``SOUGHT`` nearest are, and
+        those with a negative real part counted. The shift ``FREE`` keeps disks that roll freely from counting.
         """
-        modes = self._storage.negative_eigenvalues(self._symmetric_part(self.tangent(trial, shift)))
-        if modes == 0 or (SLIDING not in trial.pair_status and SLIDING not in trial.wall_status):
+        matrix = self._what_moves(trial)
+        modes = self._storage.negative_eigenvalues(self._symmetric_part(matrix))
+        if modes == 0 or not _slides(trial):
             return modes
         if self.dof <= DENSE:
-            return int((np.linalg.eigvals(self.tangent(trial, shift).toarray()).real < 0).sum())
-        left = self._left_of_all(trial, shift)
-        # eigenvalues of their own, at the shift, would only slow the search
-        bare = self.tangent(trial)
-        moves_nothing = np.add.reduceat(np.abs(bare.data), bare.indptr[:-1]) == 0.0
-        held = shift + self.problem.stiffness * moves_nothing
-        factor = self.factorise(trial, held - left)
-        values = eigs(
-            self.tangent(trial, held), k=SOUGHT, sigma=left, return_eigenvectors=False,
-            OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
-            v0=np.random.default_rng(0).standard_normal(self.dof), tol=0.0 if self._two_sided is None else ROUGH,
-        )  # fmt: skip
-        return int((values.real < 0).sum())
+            return int((np.linalg.eigvals(matrix.toarray()).real < 0).sum())
+        lowest = self._lowest(matrix)
+        if lowest(1)[0].real >= 0:
+            return 0
+        return int((lowest(SOUGHT)[0].real < 0).sum())
 
-    def _left_of_all(self, trial: Trial, shift: float) -> float:
-        """A number below the lowest eigenvalue of the symmetric part of the tangent with ``shift``, not far below."""
-        k = self.problem.stiffness
+    def _lowest(self, matrix: sp.csc_array) -> Callable[[int], tuple[NDArray[Any], NDArray[Any]]]:
+        """What finds so many eigenvalues (m,), the nearest to a point left of all, and their vectors (dof, m)."""
+        left = self._left_of_all(matrix)
+        self._kept = None  # two need not be in memory
+        self._steps.forget()
+        factor = self._storage.factor(self._with_shift(matrix, -left))
+        return partial(
+            eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (FREE / -left),
+            OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
+            v0=np.random.default_rng(0).standard_normal(self.dof),
+        )  # fmt: skip
+
+    def _what_moves(self, trial: Trial) -> sp.csc_array:
+        """The tangent shifted by ``FREE``, less the unknowns that change no force, such as the angle of a sliding disk.
+
+        Each of them is an eigenvector of eigenvalue 0, and the rest has all other eigenvalues. Their rows, which are
+        not zero, would make the symmetric part indefinite whatever the rest is.
+        """
+        matrix = self.tangent(trial)
+        idle = np.add.reduceat(np.abs(matrix.data), self._indptr[:-1]) == 0.0
+        matrix.data[idle[self._indices]] = 0.0
+        matrix.data[self._diagonal] += np.where(idle, self.problem.stiffness, FREE)
+        return matrix
+
+    def _with_shift(self, matrix: sp.csc_array, shift: float) -> sp.csc_array:
+        data = matrix.data.copy()
+        data[self._diagonal] += shift
+        return sp.csc_array((data, self._indices, self._indptr), shape=matrix.shape)
+
+    def _left_of_all(self, matrix: sp.csc_array) -> float:
+        """A number below the lowest eigenvalue of the symmetric part of a tangent, not far below."""
         self._definite_steps.forget()
+        symmetric = self._symmetric_part(matrix)
         for origin in LEFT_OF_ALL:
-            matrix = self._symmetric_part(self.tangent(trial, shift + origin * k))
-            if self._storage.rough_factor(matrix, definite=True) or self._storage.definite_factor(matrix):
+            shifted = self._with_shift(symmetric, origin * self.problem.stiffness)
+            if self._storage.rough_factor(shifted, definite=True) or self._storage.definite_factor(shifted):
                 break
-        return -origin * k
+        return -origin * self.problem.stiffness
 
     def unstable_direction(self, trial: Trial, *, rough: bool = False) -> FloatArray:
-        """(dof,) lowest eigenvector of the symmetric part of the tangent, of largest component 1.
+        """(dof,) eigenvector of the lowest eigenvalue of the tangent, of largest component 1.
 
-        ``rough`` : as accurate as a few solutions make it, which is enough to go downhill along it.
+        ``rough`` : as accurate as a few solutions make it, which is enough to go downhill along it, without friction.
         """
+        if _slides(trial):
+            matrix = self._what_moves(trial)
+            if self.dof <= DENSE:
+                values, every = np.linalg.eig(matrix.toarray())
+                return self._of_largest_one(every[:, np.argmin(values.real)].real)
+            return self._of_largest_one(self._lowest(matrix)(1)[1][:, 0].real)
         if self.dof <= DENSE:
             _, every = np.linalg.eigh(self._symmetric_part(self.tangent(trial)).toarray())
             return self._of_largest_one(every[:, 0])

@@ -26,7 +26,7 @@ and Meier, which counts them as long as they last.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -89,29 +89,51 @@ def lean(response: FloatArray) -> FloatArray:
     return np.asarray(np.abs(response - response[..., ::-1]).max(axis=-1) / response.max(axis=-1))
 
 
+def grown(shapes: FloatArray) -> FloatArray:
+    """Least-squares non-decreasing fits of shapes (..., k) along the last axis; nan where they are."""
+    fits = np.full(shapes.shape, np.nan)
+    for path in np.ndindex(shapes.shape[:-1]):
+        known = np.isfinite(shapes[path])
+        if known.any():
+            fits[path][known] = isotonic_regression(shapes[path][known]).x
+    return fits
+
+
+def passed(force: FloatArray, fits: FloatArray, tolerance: float = 0.0) -> tuple[FloatArray, NDArray[np.int8]]:
+    """Where fits (..., k) along ``force`` (k,) pass a tolerance, and whether that was FOUND or is a bound: two (...).
+
+    Fits that are nan everywhere give nan and ABOVE.
+    """
+    above = fits > tolerance
+    at = np.where(np.isfinite(fits), np.arange(len(force)), -1)
+    last = at.max(axis=-1)
+    found = above.any(axis=-1)
+    k = np.where(found, np.argmax(above, axis=-1), last)
+    below = np.where(at < k[..., None], at, -1).max(axis=-1)  # the one before it that is known
+    kind = np.where(found, np.where(below < 0, BELOW, FOUND), ABOVE).astype(np.int8)
+
+    def of(index: NDArray[np.intp]) -> FloatArray:
+        return np.take_along_axis(fits, index[..., None], axis=-1)[..., 0] - tolerance
+
+    between = kind == FOUND
+    low = np.where(between, below, 0)
+    part = np.divide(of(low), of(low) - of(k), out=np.zeros(k.shape), where=between)
+    inside = np.exp(np.log(force[low]) + part * np.log(force[k] / force[low]))
+    return np.where(between, inside, np.where(last < 0, np.nan, force[k])), kind
+
+
 def crossover(force: FloatArray, shapes: FloatArray, tolerance: float = 0.0) -> tuple[float, int]:
     """Crossover force of a path, and whether it was FOUND or is a bound (BELOW, ABOVE).
 
     ``shapes`` (k,) may be nan from some force on; nan everywhere gives nan and ABOVE.
     """
-    known = np.isfinite(shapes)
-    if not known.any():
-        return float("nan"), ABOVE
-    force = force[known]
-    fit = isotonic_regression(shapes[known]).x - tolerance
-    double = np.flatnonzero(fit > 0.0)
-    if not double.size:
-        return float(force[-1]), ABOVE
-    k = int(double[0])
-    if k == 0:
-        return float(force[0]), BELOW
-    part = fit[k - 1] / (fit[k - 1] - fit[k])
-    return float(np.exp(np.log(force[k - 1]) + part * np.log(force[k] / force[k - 1]))), FOUND
+    value, kind = passed(force, grown(shapes), tolerance)
+    return float(value), int(kind)
 
 
-def ranked(found: Iterable[tuple[float, int]]) -> FloatArray:
+def ranked(force: FloatArray, kind: NDArray[np.int8]) -> FloatArray:
     """Crossovers as numbers in their order: a bound lies beyond every force, -inf or inf."""
-    return np.array([{FOUND: force, BELOW: -np.inf, ABOVE: np.inf}[kind] for force, kind in found])
+    return np.where(kind == FOUND, force, np.where(kind == BELOW, -np.inf, np.inf))
 
 
 def weights(realizations: int, draws: int, seed: int) -> FloatArray:
@@ -138,17 +160,18 @@ def agreement(
     return result
 
 
-def censored_median(values: FloatArray, censored: NDArray[np.bool_]) -> float:
-    """Median of Kaplan and Meier: values (r,) of which ``censored`` ones are only known to lie higher.
+def censored_medians(values: FloatArray, censored: NDArray[np.bool_], weights: FloatArray) -> FloatArray:
+    """(d,) medians of Kaplan and Meier: values (r,) of which ``censored`` ones are only known to lie higher.
 
-    A value -inf lies below all others. inf where fewer than half are known to be reached.
+    ``weights`` (d, r) is how often each counts. A value -inf lies below all others. inf where fewer than half are known
+    to be reached.
     """
     order = np.lexsort((censored, values))
-    values, censored = values[order], censored[order]
-    left = len(values) - np.arange(len(values))
-    survival = np.cumprod(np.where(censored, 1.0, 1.0 - 1.0 / left))
-    reached = np.flatnonzero(survival <= 0.5 + 1e-12)
-    return float(values[reached[0]]) if reached.size else float("inf")
+    values, censored, count = values[order], censored[order], weights[:, order]
+    left = count[:, ::-1].cumsum(axis=1)[:, ::-1]
+    ends = np.divide(count, left, out=np.zeros(count.shape), where=(left > 0.0) & ~censored)
+    reached = (np.cumprod(1.0 - ends, axis=1) <= 0.5 + 1e-12) & (count > 0.0)
+    return np.where(reached.any(axis=1), values[np.argmax(reached, axis=1)], np.inf)
 
 
 @dataclass(frozen=True)
@@ -194,9 +217,10 @@ def cross(
     """The crossover of an ensemble of symmetric responses, by this tolerance and by others."""
     shapes = shape(x, ensemble.mean(), width)
     drawn = shape(x, ensemble.means(weights(len(ensemble.response), draws, seed)), width)
+    fits = grown(drawn)
 
     def at(limit: float) -> tuple[float, int, FloatArray]:
-        return *crossover(ensemble.force, shapes, limit), ranked(crossover(ensemble.force, row, limit) for row in drawn)
+        return *crossover(ensemble.force, shapes, limit), ranked(*passed(ensemble.force, fits, limit))
 
     force, kind, found = at(tolerance)
     used = ensemble.force[np.isfinite(shapes)]
@@ -239,13 +263,11 @@ def singles(
     def deviation(squares: FloatArray, mean: FloatArray) -> FloatArray:
         return np.asarray(np.sqrt(np.maximum(squares - mean**2, 0.0)).mean(axis=-1))
 
-    found = [crossover(ensemble.force, row, tolerance) for row in shapes]
-    kind = np.array([what for _, what in found], np.int8)
-    value = np.where(kind == BELOW, -np.inf, np.array([force for force, _ in found]))
+    force, kind = passed(ensemble.force, grown(shapes), tolerance)
+    value = np.where(kind == BELOW, -np.inf, force)
     usable = np.isfinite(value) | (kind == BELOW)
     value, censored = np.where(usable, value, ensemble.force[0]), kind == ABOVE
-    rows = [np.repeat(np.arange(len(value)), one.astype(int)) for one in drawn]
-    medians = np.array([censored_median(value[row], censored[row]) for row in rows])
+    everybody = np.ones((1, len(value)))
     return Singles(
         shapes,
         lean(ensemble.response),
@@ -254,10 +276,10 @@ def singles(
         quantiles(deviation(square.means(drawn), means)).T,
         float(largest_step(shape(x, folded(mean), width), lean(mean))),
         quantiles(largest_step(shape(x, folded(means), width), lean(means))),
-        np.array([force for force, _ in found]),
+        force,
         kind,
-        censored_median(value, censored),
-        quantiles(medians),
+        float(censored_medians(value, censored, everybody)[0]),
+        quantiles(censored_medians(value, censored, drawn)),
     )
 
 
