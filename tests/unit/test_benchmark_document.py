@@ -50,6 +50,29 @@ def test_a_missed_goal_and_a_missing_benchmark_are_said(document):
     assert rows["Speed over LAMMPS, friction, 908 disks"]["measured"] == "not measured"
 
 
+@pytest.mark.parametrize(
+    ("file", "rows", "said"),
+    [
+        ({"measured_on": "A"}, [{}, {}], "A"),
+        ({"measured_on": "A"}, [{"measured_on": "A"}, {"measured_on": "B"}], "A and B"),
+        ({"measured_on": "A"}, [{"measured_on": "A"}, {}], "A and a processor that was not recorded"),
+        ({}, [{}], "a processor that was not recorded"),
+    ],
+)
+def test_a_section_says_what_it_was_measured_on(document, file, rows, said):
+    """Also where some rows were kept from an earlier measurement."""
+    assert document.measured_on({**file, "runs": rows}) == said
+    assert "Measured on " in document.text({"machine": document.read()["machine"], "scale": document.read()["scale"]})
+
+
+def test_what_was_measured_is_written_with_the_processor(script, tmp_path):
+    timing = script("timing")
+    timing.write(str(tmp_path / "a.json"), {"runs": [1.23456789]})
+    assert json.loads((tmp_path / "a.json").read_text()) == {"measured_on": timing.processor(), "runs": [1.23457]}
+    timing.write(str(tmp_path / "b.json"), {"goals": []}, measured=False)
+    assert json.loads((tmp_path / "b.json").read_text()) == {"goals": []}
+
+
 def test_every_stored_benchmark_is_drawn_and_named(document):
     found = document.read()
     assert set(found) <= {*document.TEXTS, "machine"}

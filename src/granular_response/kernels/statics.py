@@ -35,6 +35,7 @@ class Pairs(NamedTuple):
     second: NDArray[Any]
     dx: Floats  #: separation
     dz: Floats
+    distance: Floats
     gap: Floats
     shape: Floats | None  #: what the law needs of the radii
     law: Any
@@ -109,12 +110,11 @@ def _pair_at(q, n, pairs, c):
     uz = q[n + i] - q[n + j]
     dx0 = pairs.dx[c]
     dz0 = pairs.dz[c]
-    d0 = math.sqrt(dx0 * dx0 + dz0 * dz0)
     dx = dx0 + ux
     dz = dz0 + uz
     d = math.sqrt(dx * dx + dz * dz)
     # |d| - |d0| without cancellation
-    stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (d + d0)
+    stretch = (2.0 * (dx0 * ux + dz0 * uz) + ux * ux + uz * uz) / (d + pairs.distance[c])
     return i, j, ux, uz, dx, dz, d, -(pairs.gap[c] + stretch)
 
 

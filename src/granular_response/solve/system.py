@@ -84,12 +84,12 @@ class Trial:
     pair_tangent: FloatArray  #: (m, 3, 3)
     wall_tangent: FloatArray  #: (w, 3, 3)
 
-    @property
+    @cached_property
     def status(self) -> np.ndarray:
         """(m + w,) statuses of all candidates."""
         return np.concatenate([self.pair_status, self.wall_status])
 
-    @property
+    @cached_property
     def sense(self) -> np.ndarray:
         """(m + w,) statuses, negative for contacts that slide against the tangent."""
         tangential = np.concatenate([self.pair_tangential, self.wall_tangential])
@@ -122,9 +122,10 @@ class StaticSystem:
         self.gap0 = np.hypot(d[:, 0], d[:, 1]) - (radius[self.first] + radius[self.second])
         self.wall_gap0 = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
         self.wall_normals = wall_normals(self.wall)
+        distance = np.sqrt(self.dx0 * self.dx0 + self.dz0 * self.dz0)  # rounded as that of a trial where nothing moves
         self._pairs = statics.Pairs(
-            self.first, self.second, self.dx0, self.dz0, self.gap0, problem.pair_shapes(self.first, self.second),
-            problem.pair_law,
+            self.first, self.second, self.dx0, self.dz0, distance, self.gap0,
+            problem.pair_shapes(self.first, self.second), problem.pair_law,
         )  # fmt: skip
         self._walls = statics.Walls(
             self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law

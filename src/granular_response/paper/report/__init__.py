@@ -56,7 +56,11 @@ def write(
     target = Path(output)
     folders = (Path(root) / name for name in ("figures", "data", "benchmarks"))
     used = [file for folder in folders for file in folder.rglob("*") if file.suffix != ".html"]
-    atomic.check_output(target, [*used, Path(root) / "requirements.lock", *keep])
+    inputs = [*used, Path(root) / "requirements.lock", *keep]
+    if target.parent.is_dir():  # before the work; else it is made when there is a page
+        atomic.check_writable(target, inputs)
+    else:
+        atomic.check_output(target, inputs)
     made = page(Path(root), target.parent).encode()
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, made)

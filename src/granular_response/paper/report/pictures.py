@@ -11,6 +11,7 @@ from pathlib import Path
 
 from PIL import Image
 
+from granular_response.machine import threads
 from granular_response.paper import captions
 
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
@@ -104,9 +105,12 @@ def collect(folder: Path) -> Pictures:
     numbered: dict[int, list[Picture]] = {number: [] for number in range(1, captions.NUMBER_OF_FIGURES + 1)}
     further = []
     said = _said(folder)
-    for path in sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name)):
-        caption, alternative = said.get((path.parent.name, path.stem), ("", ""))
-        picture = replace(embed(path), caption=caption, alternative=alternative)
+    paths = sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name))
+    with threads.using(threads.cores()), threads.mapping() as several:  # encoding is most of the time of a page
+        embedded = several(embed, paths)
+    for plain in embedded:
+        caption, alternative = said.get((plain.group, plain.stem), ("", ""))
+        picture = replace(plain, caption=caption, alternative=alternative)
         if picture.number is None:
             further.append(picture)
         else:

@@ -43,6 +43,7 @@ class TwoSided:
     ):
         disks = len(arms)
         self._pairs, self._walls, self._arms = pairs, walls, arms
+        self._touched = pairs, np.stack([walls, walls], axis=1)
         self._b, self._diagonal, self._stale = half_width, diagonal, STALE * stiffness
         core = min(-(-half_width // FREEDOMS), disks)
         first = min(max(centre - core // 2, 0), disks - core)
@@ -64,10 +65,7 @@ class TwoSided:
         changed = np.zeros(2, np.int64)
         if not self._all:
             changed += len(self._arms)
-            alone = np.stack([self._walls, self._walls], axis=1)
-            for disks, tangent, known in zip(
-                (self._pairs, alone), (pair_tangent, wall_tangent), self._tangents, strict=True
-            ):
+            for disks, tangent, known in zip(self._touched, (pair_tangent, wall_tangent), self._tangents, strict=True):
                 _find(disks, tangent, known, self._stale, end, len(self._arms), changed)
             if (changed == len(self._arms)).all():
                 return False
