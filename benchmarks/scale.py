@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from timing import write
+from timing import processor, write
 
 from granular_response.machine.threads import cores
 from granular_response.scene import Scene
@@ -68,6 +68,7 @@ def measure(layers: int, per_row: int, method: str, friction: float, force: floa
         data = store.read(result)[""]
         size = result.stat().st_size
     return {
+        "measured_on": processor(),
         "method": method,
         "threads": threads,
         "layers": layers,
@@ -88,9 +89,11 @@ def measure(layers: int, per_row: int, method: str, friction: float, force: floa
 def exponents(rows: list[dict]) -> list[dict]:
     """Slopes of log time and log memory against log N.
 
-    Over slabs of more than 10,000 disks: with fewer a process spends its time on starting.
+    Over slabs of more than 10,000 disks, since with fewer a process spends its time on starting, and on the processor
+    of the last measurement alone.
     """
     found = []
+    rows = [row for row in rows if row.get("measured_on") == processor()]
     for method in dict.fromkeys(row["method"] for row in rows):
         of = [row for row in rows if row["method"] == method]
         large = [row for row in of if row["disks"] > 10_000] if method != "dynamics" else of

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import platform
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -38,8 +40,20 @@ def interleaved(
     return seconds.min(axis=0).tolist()
 
 
-def write(path: str, metrics: dict[str, Any]) -> None:
-    """A JSON file with numbers of six digits: more is noise."""
+def processor() -> str:
+    """The kind of processor, as the system calls it; no name of the machine."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+def write(path: str, metrics: dict[str, Any], *, measured: bool = True) -> None:
+    """A JSON file with numbers of six digits, since more is noise, and what they were ``measured`` on."""
+    if measured:
+        metrics = {"measured_on": processor(), **metrics}
 
     def rounded(value: Any) -> Any:
         if isinstance(value, dict):
