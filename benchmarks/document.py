@@ -404,15 +404,9 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
         add("scale", "Its memory", memory, None, 16.0, lambda v: f"{v:.2g} GiB", earlier=earlier)
     for method, what in (("minimise", "without friction"), ("path", "with friction")):
         row = next(iter(pick(found.get("scale", {}).get("exponents", []), method=method)), {})
-        value = row.get("exponent_of_cpu_seconds")
-        add(
-            "scale",
-            f"Processor time grows as the number of disks to the power, {what}",
-            value,
-            None,
-            1.5,
-            lambda v: f"{v:.2f}",
-        )
+        extent = f", {row['from_disks']:,} to {row['to_disks']:,}" if row else ""
+        what = f"Processor time grows as the number of disks to the power, {what}{extent}"
+        add("scale", what, row.get("exponent_of_cpu_seconds"), None, 1.5, lambda v: f"{v:.2f}")
     residuals = [row["force_residual"] for row in runs if row["method"] != "dynamics"]
     add(
         "scale", "Unbalanced force of static results", max(residuals, default=None), None, 1e-9, lambda v: f"{v:.1g} mg"
