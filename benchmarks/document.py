@@ -431,11 +431,10 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
 
 
 def measured_on(metrics: Metrics) -> str:
-    """Kinds of processors of a benchmark: that of the file, or of each of its rows where they have one."""
-    rows = [row["measured_on"] for row in metrics.get("runs", []) if "measured_on" in row]
-    kept = len(rows) < len(metrics.get("runs", [])) if rows else "measured_on" not in metrics
-    named = list(dict.fromkeys(rows or ([] if kept else [metrics["measured_on"]])))
-    return " and ".join([*named, *(["a processor that was not recorded"] if kept else [])])
+    """Kinds of processors of a benchmark: those of its rows where they say one, else that of the file."""
+    each = [row.get("measured_on") for row in metrics.get("runs", [])]
+    found = each if any(each) else [metrics.get("measured_on")]
+    return " and ".join(dict.fromkeys(name or "a processor that was not recorded" for name in found))
 
 
 def text(found: dict[str, Metrics]) -> str:

@@ -62,7 +62,11 @@ def test_a_missed_goal_and_a_missing_benchmark_are_said(document):
 def test_a_section_says_what_it_was_measured_on(document, file, rows, said):
     """Also where some rows were kept from an earlier measurement."""
     assert document.measured_on({**file, "runs": rows}) == said
-    assert "Measured on " in document.text({"machine": document.read()["machine"], "scale": document.read()["scale"]})
+
+
+def test_the_page_says_what_its_sections_were_measured_on(document):
+    found = document.read()
+    assert "Measured on " in document.text({"machine": found["machine"], "scale": found["scale"]})
 
 
 def test_what_was_measured_is_written_with_the_processor(script, tmp_path):
