@@ -36,12 +36,14 @@ TEXTS = {
         "difference falls like one over the ramp time, below and above the loads at which a simple follower stops "
         "(29.3 for a friction of 0.2, 62.3 for 1). Lines: the symmetric part of the difference; dotted: all of it, "
         "where that is more. The packing and its path are symmetric, but with a friction of 1 and large loads a slow "
-        "ramp amplifies what rounding adds to the antisymmetric part.",
+        "ramp amplifies what rounding adds to the antisymmetric part, and under 65 the symmetric part of the slowest "
+        "rises again.",
     ),
     "trajectory": (
         "Error of trajectories against the time step",
-        "A smooth motion shows the order of each integrator. In the fall of a slab every contact that opens, closes or "
-        "starts to slide breaks the smoothness, and no integrator is of more than first order.",
+        "A smooth motion shows the order of each integrator; leapfrog's is the first, since its dashpots see the "
+        "velocity of half a step before. In the fall of a slab every contact that opens, closes or starts to slide "
+        "breaks the smoothness, and no integrator is of more than first order.",
     ),
     "kernel": (
         "Speed of the kernels",

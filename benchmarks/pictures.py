@@ -21,6 +21,7 @@ METHODS = {
     "minimise": (style.BLUE, "*"),
     "beeman": (style.GREEN, "o"),
     "verlet": (style.ORANGE, "s"),
+    "leapfrog": (style.SKY, "D"),
     "gear": (style.PURPLE, "^"),
     "dynamics": (style.GREEN, "o"),
     "lammps": (style.VERMILION, "X"),
@@ -129,7 +130,7 @@ def trajectory(metrics: Metrics) -> Figure:
     figure, axes = style.figure(1, 2, width="double", height=2.7)
     titles = {"swing": "a disk swings on the floor", "fall": "a slab with friction falls"}
     for panel, (problem, title) in zip(axes[0], titles.items(), strict=True):
-        for method in ("beeman", "verlet", "gear"):
+        for method in dict.fromkeys(row["integrator"] for row in metrics["runs"]):
             runs = sorted(pick(metrics["runs"], problem=problem, integrator=method), key=lambda row: row["time_step"])
             (fit,) = pick(metrics["orders"], problem=problem, integrator=method) or [None]
             label = name(method) + (f", order {fit['measured_order']:.1f}" if fit else "")
