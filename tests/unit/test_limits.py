@@ -130,3 +130,18 @@ def test_a_response_that_is_rounding_says_so(tmp_path, force, stiffness, said):
         warnings.simplefilter("always")
         granular_response.solve(scene)
     assert any(line in str(warning.message) for warning in caught) is said
+
+
+def test_a_setting_without_effect_is_said_on_the_terminal_and_in_python(tmp_path):
+    scene = {
+        "packing": {"kind": "slab", "layers": 3, "disks_per_row": 5},
+        "contact": {"friction": 0.0},
+        "protocol": {"path_tolerance": 1e-5},
+    }
+    (tmp_path / "scene.yaml").write_text(Scene.from_dict(scene).to_yaml())
+    finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
+    line = "protocol.path_tolerance = 1e-05 has no effect (no friction: equilibrium is a minimum of the energy)"
+    assert finished.returncode == 0
+    assert finished.stderr == f"granular-response: result.nc: {line}\n"
+    with pytest.warns(UserWarning, match="protocol.path_tolerance = 1e-05 has no effect"):
+        granular_response.solve(scene)

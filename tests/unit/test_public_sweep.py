@@ -24,7 +24,6 @@ DISORDERED = SCENE.updated(
         "packing.lattice_constant": "touching-largest",
         "protocol.integrator": "verlet",
         "protocol.time_step": "auto",
-        "protocol.stop_kinetic_energy": 1e-9,
     }
 )
 
@@ -345,3 +344,12 @@ def test_progress_in_a_notebook_is_a_line_of_text():
             progress(done, 3, "scenes")
     assert stream.getvalue().startswith("\rscenes: 0 of 3, 0 s ")
     assert stream.getvalue().endswith("\rscenes: 3 of 3, 0 s \n")
+
+
+def test_what_solve_warns_of_is_said_once():
+    with pytest.warns(UserWarning) as said:
+        gr.sweep(SCENE, {"protocol.path_tolerance": [None, 1e-5], "packing.layers": [3, 4]}, workers=1, progress=False)
+    lines = [str(warning.message) for warning in said]
+    assert [line.partition(" (")[0] for line in lines] == [
+        "2 of 4 combinations: protocol.path_tolerance = 1e-05 has no effect"
+    ]

@@ -1,5 +1,6 @@
 """From a scene to its solution: which method, what comes out."""
 
+import numpy as np
 import pytest
 from small_scenes import scene
 
@@ -43,6 +44,37 @@ def test_method_and_certificates(changes, rest, load):
         assert state.certificate.force_residual < 1e-9
         assert state.certificate.stable
     assert reports and all(0.0 <= part <= 1.0 for part, _ in reports)
+
+
+RUBS, SMOOTH = {"contact__friction": 0.3}, {"contact__friction": 0.0}
+UNEVEN = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching-largest"}
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "value", "idle"),
+    [
+        (RUBS, "preparation__ramp_time", 3.0, True),
+        (RUBS | {"preparation__gravity": "slow"}, "preparation__ramp_time", 3.0, False),
+        (SMOOTH | {"preparation__gravity": "slow"}, "preparation__ramp_time", 3.0, True),
+        (SMOOTH, "preparation__gravity", "slow", True),
+        (SMOOTH | UNEVEN, "preparation__gravity", "slow", False),
+        (RUBS, "protocol__path_tolerance", 1e-5, False),
+        (RUBS | {"protocol__method": "dynamics"}, "protocol__path_tolerance", 1e-5, True),
+        (RUBS, "protocol__inertia", "rings", True),
+        (SMOOTH, "protocol__friction_law", "literal", True),
+        (RUBS, "protocol__stop_kinetic_energy", 1e-9, False),
+        (RUBS | UNEVEN, "protocol__stop_kinetic_energy", 1e-10, True),
+        (RUBS | UNEVEN, "protocol__stop_kinetic_energy", 1e-8, False),
+        (SMOOTH | {"loads": []}, "protocol__load_factors", [0.5, 1.0], True),
+    ],
+)
+def test_a_setting_without_effect_is_named_and_has_none(changes, key, value, idle):
+    found = [solve_scene(scene(**{"loads": LOAD, **changes, **more})) for more in ({}, {key: value})]
+    said = [line for line in found[1].remarks if line.startswith(key.replace("__", "."))]
+    assert [" has no effect (" in line for line in said] == [True] * idle
+    positions = [[state.position for state in (one.rest, *one.loaded)] for one in found]
+    same = all(np.array_equal(a, b) for a, b in zip(*positions, strict=True))
+    assert same is idle
 
 
 def test_gravity_alone_has_no_loaded_states():

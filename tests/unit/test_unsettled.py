@@ -6,6 +6,7 @@ import xarray as xr
 from small_scenes import scene
 from test_cli import call
 
+import granular_response
 from granular_response.scene import Scene
 from granular_response.solve import certify, solve_scene
 from granular_response.solve.timestep import resolve_time_step
@@ -44,6 +45,8 @@ def test_run_says_so_and_fails_unless_asked(tmp_path):
         assert stored.attrs["settled"] == "no"
     finished = call("run", "scene.yaml", "-o", "result.nc", "--allow-unsettled", folder=tmp_path)
     assert (finished.returncode, finished.stderr) == (0, said)
+    with pytest.warns(UserWarning, match=moving):
+        granular_response.solve(tmp_path / "scene.yaml")
 
 
 @pytest.mark.parametrize(

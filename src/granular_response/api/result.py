@@ -304,15 +304,16 @@ def solve(
     granular_response.solve.NotSettled, DynamicsError, EquilibriumError, PathError
         For one that has no such states, each with one line that says what to change.
 
-    Warns (UserWarning) where a load is so small that rounding is seen in its response.
+    Warns (UserWarning) of states that are still moving (``protocol.static_finish: false``), of a load so small that
+    rounding is seen in its response, and of each setting that has no effect in this scene.
     """
     return _vouched(solve_scene(described(scene), load_factors=load_factors, progress=progress))
 
 
 def _vouched(solution: Solution) -> Result:
-    """The result, with a warning where digits are lost."""
-    if solution.rounded_off:
-        warnings.warn(solution.rounded_off, stacklevel=3)
+    """The result, with a warning for each remark on it."""
+    for remark in solution.remarks:
+        warnings.warn(remark, stacklevel=3)
     return Result(solution)
 
 

@@ -8,6 +8,7 @@ import itertools
 import numbers
 import os
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,11 +16,11 @@ import numpy as np
 
 from ..scene import Scene
 from ..scene.errors import show
-from ..solve import SOLVE_ERRORS
+from ..solve import SOLVE_ERRORS, solve_scene
 from ..solve.solution import load_programme
 from ..sweeps.errors import SweepError
 from ..sweeps.tasks import Progress, map_tasks
-from .result import Result, described, solve
+from .result import Result, described
 from .terminal import TerminalProgress
 
 if TYPE_CHECKING:
@@ -74,7 +75,8 @@ def sweep(
     each combination, ``load_factor``.
 
     A combination without equilibrium is NaN throughout; the variable ``error`` then has its message, empty for the
-    others, and a warning says how many there are.
+    others, and a warning says how many there are. What :func:`solve` warns of is said once, with the number of
+    combinations.
 
     Raises
     ------
@@ -97,7 +99,10 @@ def sweep(
             task, scenes, workers=workers, scheduler=scheduler, checkpoint=checkpoint, progress=progress or None,
             what="scenes",
         )  # fmt: skip
-    return _gridded(values, found)
+    remarks = Counter(remark for _, remarks in found for remark in remarks)
+    for remark, count in remarks.items():
+        warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
+    return _gridded(values, [measured for measured, _ in found])
 
 
 def _values(axes: Any) -> dict[str, list[Any]]:
@@ -137,13 +142,13 @@ def _comparable(value: Any) -> Any:
 
 def _measured(
     scene: Scene, *, measure: Callable[[Result], Measured], load_factors: Sequence[float] | None
-) -> xr.Dataset | str:
-    """What is measured on a scene, or why it has no equilibrium."""
+) -> tuple[xr.Dataset | str, list[str]]:
+    """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
     try:
-        result = solve(scene, load_factors=load_factors)
+        solution = solve_scene(scene, load_factors=load_factors)
     except SOLVE_ERRORS as error:
-        return " ".join(str(error).split())
-    return _dataset(measure(result))
+        return " ".join(str(error).split()), []
+    return _dataset(measure(Result(solution))), solution.remarks
 
 
 def _dataset(measured: Measured) -> xr.Dataset:

@@ -100,12 +100,10 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
 
     store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
     typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
-    if solution.unsettled:
-        typer.echo(f"granular-response: {output}: {solution.unsettled}", err=True)
-        if not allow_unsettled:
-            raise typer.Exit(1)
-    elif solution.rounded_off:
-        typer.echo(f"granular-response: {output}: {solution.rounded_off}", err=True)
+    for remark in solution.remarks:
+        typer.echo(f"granular-response: {output}: {remark}", err=True)
+    if solution.unsettled and not allow_unsettled:
+        raise typer.Exit(1)
 
 
 def _print_version(asked: bool) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..contact import CUT
 from ..scene import SceneError
+from ..scene.errors import show
 from .problem import Problem
 
 
@@ -101,3 +102,32 @@ def stop_energy(problem: Problem) -> float:
     if not problem.packing.ordered:
         return max(protocol.stop_kinetic_energy, 1e-9)
     return protocol.stop_kinetic_energy
+
+
+def idle_settings(problem: Problem) -> list[str]:
+    """Settings of preparation and protocol that differ from their default and change nothing, each with the reason."""
+    scene = problem.scene
+    preparation, protocol = scene.preparation, scene.protocol
+    rest = rest_method(problem)
+    load = load_method(problem) if scene.loads else Choice("none", "loads is empty")
+    slow, falls = preparation.gravity == "slow", rest.method == "dynamics"
+    hand_over = stop_energy(problem)
+    reasons = {
+        "preparation.gravity": rest.reason if slow and not falls else "",
+        "preparation.ramp_time": "" if slow and falls else rest.reason if slow else "preparation.gravity is not slow",
+        "protocol.load_factors": "" if scene.loads else load.reason,
+        "protocol.inertia": "" if load.method == "stages" else load.reason,
+        "protocol.path_tolerance": "" if load.method == "path" else load.reason,
+        "protocol.friction_law": "" if problem.rotations else "no friction",
+        "protocol.stop_kinetic_energy": ""
+        if hand_over == protocol.stop_kinetic_energy
+        else f"statics takes over at {hand_over:g} already",
+    }
+    idle = []
+    for key, reason in reasons.items():
+        part, name = key.split(".")
+        section = getattr(scene, part)
+        value = getattr(section, name)
+        if reason and value != type(section).model_fields[name].default:
+            idle.append(f"{key} = {show(value)} has no effect ({reason})")
+    return idle

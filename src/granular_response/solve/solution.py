@@ -13,7 +13,7 @@ import numpy as np
 from ..contact import Linear
 from ..scene import Scene, SceneError
 from ..state import Crossing, FloatArray, State
-from .choice import Choice, finishes_statically, load_method, rest_method, stop_energy
+from .choice import Choice, finishes_statically, idle_settings, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
 from .equilibrium import EquilibriumError, certify, check_overlaps, finish, reaction
@@ -78,6 +78,11 @@ class Solution:
         if self.rounding <= ROUNDED:
             return ""
         return f"up to {self.rounding:.1g} of the response to the smallest load may be rounding; take larger loads"
+
+    @property
+    def remarks(self) -> list[str]:
+        """What whoever asked must know: settings without effect, states that still move, digits that are lost."""
+        return [line for line in (*idle_settings(self.problem), self.unsettled or self.rounded_off) if line]
 
     @property
     def unsettled(self) -> str:

@@ -120,6 +120,14 @@ def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, 
     }
     gravity = str(g.choice(["at-once", "slow", "frictionless"], p=[0.7, 0.15, 0.15]))
     preparation = {"gravity": gravity, "ramp_time": 5.0}
+    if g.random() < 0.25:
+        protocol["integrator"] = "leapfrog"
+    if g.random() < 0.3:
+        protocol["inertia"] = "rings"
+    if g.random() < 0.3:
+        protocol["path_tolerance"] = _log_uniform(g, 1e-6, 1e-2)
+    if g.random() < 0.05:
+        protocol["friction_law"] = "unloading"
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
 

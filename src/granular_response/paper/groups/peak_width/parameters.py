@@ -59,13 +59,6 @@ class Case(Description):
         return self
 
 
-class Fall(Description):
-    """How disordered packings of the survey fall."""
-
-    integrator: Integrator = Field(description="protocol.integrator.")
-    inertia: Literal["disks", "rings"] = Field(description="protocol.inertia.")
-
-
 class Parameters(SurveyedGroup):
     """Section ``peak_width``."""
 
@@ -89,7 +82,9 @@ class Parameters(SurveyedGroup):
     )
     disks_per_layer: Count = Field(description="Disks of a row over number of rows, and one more.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and loads.")
-    survey_fall: Fall | None = Field(None, description="Null: as the others.")
+    survey_integrator: Integrator | None = Field(
+        None, description="Of disordered packings of the survey; null: as of the others."
+    )
     loads: Count = Field(description="Small loads on a disordered packing, one after another; one on a lattice.")
     margin: Positive = Field(description="Of these loads from the side walls, in heights.")
     width: Positive = Field(description="w of the Gaussian along x, in radii.")

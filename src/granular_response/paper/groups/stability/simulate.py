@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
@@ -28,6 +28,7 @@ from granular_response.paper.groups.stability.parameters import (
 from granular_response.paper.trials import closed_forms, random_scenes, time_steps
 from granular_response.paper.trials.rounding import Disturbed, disturb
 from granular_response.scene import Scene
+from granular_response.scene.protocol import Integrator
 from granular_response.solve import Problem
 from granular_response.solve.timestep import stability_limit
 from granular_response.store.result import FORCE, variable
@@ -315,7 +316,7 @@ def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
         "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
         "kind": (("slab", "pile", "file"), "packing"),
         "method": (random_scenes.METHODS, "method asked for"),
-        "integrator": (("beeman", "verlet", "gear"), "integrator"),
+        "integrator": (get_args(Integrator), "integrator"),
     }
     for name, (values, text) in words.items():
         codes = np.array([values.index(getattr(t, name)) for t in trials], np.int8)
