@@ -125,3 +125,17 @@ def test_what_cannot_be_told_apart_has_no_name():
         with pytest.raises(Indistinct) as refused:
             digest(value)
         assert "\n" not in str(refused.value)
+
+
+def test_what_a_function_of_the_script_refers_to_counts(tmp_path):
+    """The same file, but the value of its global comes from the command line."""
+    lines = ["import sys", "from granular_response.sweeps.digest import digest", "WIDTH = float(sys.argv[1])"]
+    lines += ["def measure(result):", "    return WIDTH", "print(digest(measure))"]
+    (tmp_path / "script.py").write_text("\n".join(lines))
+    names = [
+        subprocess.run(
+            [sys.executable, tmp_path / "script.py", width], check=True, capture_output=True, text=True
+        ).stdout
+        for width in ("1", "3", "1")
+    ]
+    assert names[0] == names[2] != names[1]

@@ -7,7 +7,7 @@ import pytest
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import Linear
-from granular_response.scene import SceneError
+from granular_response.scene import Scene, SceneError
 from granular_response.solve import Problem
 from granular_response.solve.problem import carry_springs, static_contacts
 from granular_response.solve.system import StaticSystem
@@ -121,3 +121,18 @@ def test_a_torque_that_nothing_can_balance_is_refused(smooth):
     loads = [{"disk": 3, "force": [0.0, -1.0], "torque": 0.5}]
     with pytest.raises(SceneError, match=r"loads\[0\]\.torque = 0\.5: must be 0 without friction and tangential"):
         scene(loads=loads).updated(smooth)
+
+
+def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused(tmp_path):
+    """Such pairs were one contact on the nearer side, and a contact could jump from one side to the other."""
+    (tmp_path / "two.csv").write_text("x,z,radius\n1,1,1\n3.1,1,1\n")
+
+    def problem(width):
+        packing = {"kind": "file", "path": "two.csv", "width": width, "sides": "periodic"}
+        return Problem.from_scene(Scene.from_dict({"packing": packing, "loads": []}, folder=tmp_path))
+
+    for width in (4.1, 5.1):
+        said = rf"packing.width: the period is {width} mean radii, must be at least 5.2 for disks of this size"
+        with pytest.raises(SceneError, match=said):
+            problem(width)
+    assert problem(5.3).n == 2

@@ -156,3 +156,29 @@ def test_a_scene_is_made_again_from_its_text(changes):
     scene = gr.Scene().updated(changes)
     assert eval(repr(scene), {"Scene": gr.Scene}) == scene
     assert "method" not in repr(scene)
+
+
+def test_periodic_sides_are_crossed_the_shortest_way():
+    """The loaded disk left of the middle was a period off, and the picture's stress lacked what is beyond the sides."""
+    packing = {"packing.layers": 5, "packing.disks_per_row": 11, "packing.sides": "periodic", "wall.friction": 0.3}
+    result = gr.solve(gr.Scene().updated({**packing, "loads.0.disk": {"row": "top", "offset": -4}}))
+    disk = int(result.to_dataset()["loaded_disk"][0])
+    assert 0.0 <= result.origin < 22.0
+    answers = result.influence(sliding="stick")
+    assert abs(answers["disk_x"].values).max() <= 11.0
+    assert answers["disk_x"].values[disk] == pytest.approx(0.0, abs=1e-9)
+    stress = result.stress()
+    assert stress["x"].values[[0, -1]] == pytest.approx([-11.0, 11.0])
+    np.testing.assert_allclose(stress.isel(x=0), stress.isel(x=-1), atol=1e-12)
+    mesh = gr.plot.stress(result).collections[0]
+    places = mesh.get_coordinates()
+    drawn = mesh.get_array().reshape(places.shape[:2])
+    expected = result.stress(places[0, :, 0], places[:, 0, 1]).sel(force="z", branch="z")
+    np.testing.assert_allclose(drawn, expected, atol=1e-12)
+
+
+def test_what_is_done_to_what_a_result_gives_does_not_change_it(result):
+    before = result.to_dataset()
+    for given in (result.floor_response, result.contacts["contact_force"], result.to_dataset()["position"]):
+        given.values[...] = 0.0
+    assert result.to_dataset().identical(before)

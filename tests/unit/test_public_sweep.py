@@ -353,3 +353,39 @@ def test_what_solve_warns_of_is_said_once():
     assert [line.partition(" (")[0] for line in lines] == [
         "2 of 4 combinations: protocol.path_tolerance = 1e-05 has no effect"
     ]
+
+
+@pytest.mark.parametrize(
+    "axes", [{"protocol.method": ["path", "minimise"]}, {"loads.0.force": [[0.0, -1.0], [0.0, -1e9]]}]
+)
+def test_a_combination_that_is_no_scene_is_refused_before_anything_is_solved(axes):
+    def measure(result):
+        raise AssertionError("solved")
+
+    scene = SCENE.updated({"contact.friction": 0.2})
+    with pytest.raises(SceneError, match="must be"):
+        gr.sweep(scene, axes, measure, workers=1, progress=False)
+
+
+def test_floor_disks_that_differ_are_in_order_along_x():
+    changes = {"packing.polydispersity": 0.3, "packing.disks_per_row": 6, "contact.friction": 0.2}
+    found = gr.sweep(DISORDERED.updated(changes), {"packing.realization": range(4)}, workers=1, progress=False)
+    assert "floor_disk" not in found.coords  # other disks in each
+    for place, row in enumerate(found["x"].values):
+        known = np.isfinite(row)
+        assert (np.diff(row[known]) > 0).all() and known[: known.sum()].all()
+        one = gr.solve(DISORDERED.updated({**changes, "packing.realization": place})).floor_response
+        np.testing.assert_array_equal(found["floor_disk_index"].values[place][known], one["floor_disk"])
+        np.testing.assert_array_equal(found["floor_response"].values[place][known], one)
+
+
+def test_a_sweep_has_the_attributes_that_all_results_share():
+    def measure(result):
+        return xr.Dataset({"one": 1.0}, attrs={"shared": [1, 2], "friction": result.scene.contact.friction})
+
+    found = gr.sweep(SCENE, {"contact.friction": [0.0, 0.1]}, measure, workers=1, progress=False)
+    assert list(found.attrs) == ["shared"]
+
+
+def test_a_sweep_without_axes_is_one_result():
+    assert gr.sweep(SCENE, {}, lambda result: 1, workers=1, progress=False)["measure"].item() == 1

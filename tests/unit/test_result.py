@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
+import granular_response
+from granular_response.scene import Scene
 from granular_response.solve import solve_scene
 from granular_response.state import Contacts, Crossing
 from granular_response.store import files as store
-from granular_response.store.result import scene_of, solution_from, state_from, to_dataset
+from granular_response.store.result import ResultError, scene_of, solution_from, state_from, to_dataset
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.3], ids=["frictionless", "frictional"])
@@ -83,3 +85,52 @@ def test_stretches_that_dynamics_crossed_are_stored(solution, tmp_path):
     again = solution_from(dataset)
     assert again.loaded[0].reached.crossings == crossings
     assert to_dataset(again).identical(to_dataset(crossed))
+
+
+CHANGING = {
+    "packing.layers": 4,
+    "packing.disks_per_row": 7,
+    "packing.polydispersity": 0.3,
+    "packing.lattice_constant": "touching-largest",
+    "packing.realization": 4,
+    "contact.normal_stiffness": 1000.0,
+    "contact.friction": 0.1,
+    "protocol.time_step": "auto",
+    "loads.0.force": [10, -25],
+}
+
+
+@pytest.mark.parametrize("changes", [{}, {"protocol.method": "stages"}, {"contact.friction": 0.0}])
+def test_a_stored_result_goes_on_with_the_bits_of_a_run_that_was_not_cut(changes, tmp_path):
+    """Dynamics on the way lists other candidates: each stored state keeps its own list."""
+    scene = Scene().updated({**CHANGING, **changes})
+    whole = granular_response.solve(scene, load_factors=[1, 2, 0.2])
+    granular_response.solve(scene, load_factors=[1, 2]).save(tmp_path / "cut.nc")
+    cut = granular_response.open_result(tmp_path / "cut.nc")
+    assert {"contact_own_place", "wall_own_place"} <= set(cut.to_dataset().variables)
+    goes_on = cut.continued([0.2])
+    for name in ("position", "angle"):
+        np.testing.assert_array_equal(getattr(goes_on.loaded[-1], name), getattr(whole.loaded[-1], name))
+    for name in ("first", "second", "spring", "normal_force"):
+        np.testing.assert_array_equal(getattr(goes_on.loaded[0].pairs, name), getattr(whole.loaded[0].pairs, name))
+        np.testing.assert_array_equal(getattr(goes_on.rest.walls, name), getattr(whole.rest.walls, name))
+
+
+def test_a_box_that_has_changed_since_is_noticed(tmp_path):
+    disks = [(x, 1.0) for x in (1.0, 3.0, 5.0, 7.0)] + [(x, 1.0 + 3**0.5) for x in (2.0, 4.0, 6.0)]
+
+    def write(width):
+        lines = ["disks", "", f"{len(disks)} atoms", "1 atom types", "", f"0.0 {width} xlo xhi", "0.0 10 ylo yhi"]
+        lines += ["-1 1 zlo zhi", "", "Atoms # sphere", ""]
+        lines += [f"{k} 1 2.0 1.0 {x} {z} 0.0" for k, (x, z) in enumerate(disks, 1)]
+        (tmp_path / "disks.data").write_text("\n".join(lines) + "\n")
+
+    write(12.0)
+    packing = {"kind": "file", "path": "disks.data"}
+    load = {"disk": 5, "force": [0.0, -1.0]}
+    rough = {"contact": {"friction": 1.0}, "wall": {"friction": 1.0}}
+    scene = Scene.from_dict({"packing": packing, "loads": [load], **rough}, folder=tmp_path)
+    granular_response.solve(scene).save(tmp_path / "result.nc")
+    write(8.5)
+    with pytest.raises(ResultError, match="table of disks has changed"):
+        granular_response.open_result(tmp_path / "result.nc", folder=tmp_path).continued([2.0])

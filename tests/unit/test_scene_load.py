@@ -117,3 +117,12 @@ def test_selectors_in_a_scene_file():
         Load(disk=RowSelector(row="top", offset=-3), force=(0.0, -1.0)),
         Load(disk=877, force=(1.0, 0.0), torque=-2.0),
     )
+
+
+def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():
+    loads = [{"disk": k, "force": [force, 0.0]} for k, force in ((3, 0.1), (4, 0.2), (5, -0.3))]
+    assert sum(load["force"][0] for load in loads) != 0.0
+    Scene().updated({"packing.sides": "periodic", "loads": loads})
+    loads[0]["force"] = [0.1001, 0.0]
+    with pytest.raises(SceneError, match="must sum to 0"):
+        Scene().updated({"packing.sides": "periodic", "loads": loads})

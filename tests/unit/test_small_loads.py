@@ -121,3 +121,18 @@ def test_what_contacts_with_the_floor_answer_is_the_influence(changes):
     assert found[:, disks] == pytest.approx(expected, abs=1e-9)
     with pytest.raises(ValueError, match="sliding = 'slip': must be refuse or stick"):
         contact_answers(solution.problem, rest, loads, sliding="slip")
+
+
+def test_a_displacement_holds_a_periodic_packing_along_x():
+    loads = [{"disk": "top-centre", "displacement": [0.0, None]}]
+    changes = {"packing.layers": 4, "packing.disks_per_row": 7, "packing.sides": "periodic", "contact.friction": 0.0}
+    changes["packing.lattice_constant"] = 1.999  # pressed together, so that small forces open no contact
+    free = gr.solve(Scene().updated(changes)).influence().sel(component="x")
+    assert np.isnan(free).all()
+    scene = Scene().updated({**changes, "loads": loads})
+    result = gr.solve(scene)
+    size, disk = 1e-5, 10
+    more = gr.solve(scene.updated({"loads": [*loads, {"disk": disk, "force": [size, 0.0]}]}))
+    forces = [one.to_dataset()["floor_force"].values for one in (result, more)]
+    found = result.influence().sel(component="x").isel(disk=disk)
+    np.testing.assert_allclose(found, (forces[1] - forces[0]) / size, atol=1e-4)

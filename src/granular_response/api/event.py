@@ -63,7 +63,7 @@ def find_event(
         raise ValueError(f"low = {low}: must be greater than 0, a factor of the scene's loads")
     tolerance = 1e-3 * (high - low) if tolerance is None else tolerance
     states: dict[float, Result] = {}
-    total = 2 + max(math.ceil(math.log2((high - low) / tolerance)), 0) if tolerance > 0 else 2
+    total = 2 + max(math.ceil(math.log2(high - low) - math.log2(tolerance)), 0) if tolerance > 0 else 2
 
     def at(value: float) -> Result:
         if key != "load":

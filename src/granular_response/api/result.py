@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..observe.floor import origin_of
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
 from ..scene.errors import show
@@ -87,7 +88,7 @@ class Result:
         Dimension ``floor_disk`` with ``x``, its place from the loaded disk in mean radii; before it one for the load
         where there are several.
         """
-        return self._data["floor_response"]
+        return self._data["floor_response"].copy()
 
     @property
     def reaction(self) -> xr.DataArray:
@@ -98,7 +99,7 @@ class Result:
         """
         if "reaction" not in self._data:
             raise ValueError("reaction: there is none, no load of this scene has a displacement")
-        return self._data["reaction"]
+        return self._data["reaction"].copy()
 
     @property
     def contacts(self) -> xr.Dataset:
@@ -107,7 +108,9 @@ class Result:
         ``contact_status`` and ``wall_status`` are 0 open, 1 sticking, 2 sliding.
         """
         data = self._data
-        return data[[name for name in map(str, data.data_vars) if name.startswith(("contact_", "wall_"))]]
+        return data[[name for name in map(str, data.data_vars) if name.startswith(("contact_", "wall_"))]].copy(
+            deep=True
+        )
 
     def stress(
         self,
@@ -148,13 +151,16 @@ class Result:
         added = state > 0 if added is None else added
         if added and state == 0:
             raise ValueError("added: a load adds nothing to the state at rest, must be False for state 0")
-        origin = self.origin
-        box, top = self.rest.box.width, float(self.rest.position[:, 1].max()) + 1.0
-        across = np.arange(-origin, box - origin + 0.5) if x is None else _places("x", x)
+        origin, box = self.origin, self.rest.box
+        top = float(self.rest.position[:, 1].max()) + 1.0
+        # rounded: the same places in results whose loaded disk is at the same place but for its last digits
+        left = round(-0.5 * box.width if box.periodic else -origin, 9)
+        across = np.arange(left, left + box.width + 0.5) if x is None else _places("x", x)
+        place = np.mod(across + origin, box.width) if box.periodic else across + origin
         up = np.arange(0.0, top) if z is None else _places("z", z)
         rest, now = (state_from(self._data, k) for k in (0, state))  # on one list of candidates
         forces = load_forces(rest, now) if added else contact_forces(now)
-        tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
+        tensor = coarse_grained_stress(forces, grid_points(place, up), width)
         names = np.array(["x", "z"])
         return xr.DataArray(
             tensor,
@@ -198,12 +204,13 @@ class Result:
         data = self._data
         disks = data["floor_disk"].values
         found = influence(solution.problem, chosen, disks, sliding=sliding)
+        across = chosen.box.separation(chosen.position, np.array([self.origin, 0.0]))[:, 0]
         return xr.DataArray(
             found,
             {
                 "floor_disk": data["floor_disk"],
                 "x": ("floor_disk", data["x"].values, data["x"].attrs),
-                "disk_x": ("disk", chosen.position[:, 0] - self.origin, {"units": "mean radii"}),
+                "disk_x": ("disk", across, {"units": "mean radii"}),
                 "disk_z": ("disk", chosen.position[:, 1], {"units": "mean radii"}),
                 "component": ["x", "z", "torque"][: found.shape[2]],
             },
@@ -223,12 +230,11 @@ class Result:
     @property
     def origin(self) -> float:
         """Distance from the left end of the box to where ``x`` is 0: the loaded disk, or the middle of the box."""
-        data = self._data
-        return float(data["position"].values[0, int(data["floor_disk"][0]), 0] - data["x"].values[0])
+        return origin_of(self._data)
 
     def to_dataset(self) -> xr.Dataset:
         """Everything as one labelled dataset: what a stored file holds."""
-        return self._data.copy()
+        return self._data.copy(deep=True)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Store as netCDF-4, whole or not at all; :func:`open_result` and ``xarray.open_dataset`` read it.
@@ -305,7 +311,7 @@ def solve(
         For one that has no such states, each with one line that says what to change.
 
     Warns (UserWarning) of states that are still moving (``protocol.static_finish: false``), of a load so small that
-    rounding is seen in its response, and of each setting that has no effect in this scene.
+    rounding is seen in its response, and of settings for another method, which have no effect.
     """
     return _vouched(solve_scene(described(scene), load_factors=load_factors, progress=progress))
 

@@ -17,7 +17,7 @@ import numpy as np
 from ..scene import Scene
 from ..scene.errors import show
 from ..solve import SOLVE_ERRORS, solve_scene
-from ..solve.solution import load_programme
+from ..solve.solution import checked_problem, load_programme
 from ..sweeps.errors import SweepError
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
@@ -70,9 +70,10 @@ def sweep(
     One dimension for each key, in the order of ``axes``, then those of what was measured. A dimension has the last part
     of its key as name (``friction``, ``realization``), or the whole with ``_`` where two keys end alike; its values as
     coordinate, with the attribute ``key``; values that are neither numbers nor text are numbered, in the order given.
-    What has no coordinate of its own and another length in each result, such as the floor disks, is filled up with NaN.
-    Load programmes that differ are put side by side step by step: ``load`` then has no labels, but ``step`` and, for
-    each combination, ``load_factor``.
+    What has no coordinate of its own and another length in each result is filled up with NaN. So are floor disks that
+    differ: they are then numbered from the left, and ``floor_disk_index`` says which each is. Load programmes that
+    differ are put side by side step by step: ``load`` then has no labels, but ``step`` and, for each combination,
+    ``load_factor``. Attributes are those that all results share.
 
     A combination without equilibrium is NaN throughout; the variable ``error`` then has its message, empty for the
     others, and a warning says how many there are. What :func:`solve` warns of is said once, with the number of
@@ -91,6 +92,8 @@ def sweep(
     values = _values(axes)
     load_factors = None if load_factors is None else load_programme(load_factors)
     scenes = [base.updated(dict(zip(values, point, strict=True))) for point in itertools.product(*values.values())]
+    for each in scenes:
+        checked_problem(each if load_factors is None else each.updated({"protocol.load_factors": load_factors}))
     task = functools.partial(_measured, measure=measure, load_factors=load_factors)
     with contextlib.ExitStack() as stack:
         if progress is True:
@@ -208,7 +211,7 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
             continue
         whole = _spread(variable.values, place, len(found))
         dimensions = (*names.values(), *variable.dims[1:])
-        variables[str(name)] = (dimensions, whole.reshape(*shape, *whole.shape[1:]), variable.attrs)
+        variables[str(name)] = (dimensions, whole.reshape((*shape, *whole.shape[1:])), variable.attrs)
     for key, name in names.items():
         variables[name] = (name, _coordinate(values[key]), {"key": key})
     if any(errors):
@@ -221,7 +224,9 @@ def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str])
             stacklevel=3,
         )
     inside = [name for name in side_by_side.coords if name in variables]
-    gridded = xr.Dataset(variables, attrs=good[0][1].attrs)
+    first, *others = (one.attrs for _, one in good)
+    shared = {key: value for key, value in first.items() if all(_alike(value, one.get(key)) for one in others)}
+    gridded = xr.Dataset(variables, attrs=shared)
     gridded = gridded.set_coords([*names.values(), *inside, *(name for name in coordinates if name in variables)])
     # as for a single result, sel() takes the factor, or the step where factors repeat or differ
     for name in ("load_factor", "step"):
@@ -244,9 +249,17 @@ def _labelled_alike(results: Sequence[xr.Dataset]) -> list[xr.Dataset]:
             continue
         if dim == "load":
             plain = [_without_load_labels(one) for one in plain]
+        elif dim == "floor_disk":  # in order along x, which indices of disks are not
+            plain = [_without_floor_labels(one) for one in plain]
         elif not all(one is None or one.is_unique for one in labels):
             raise SweepError(f"measure: {dim} has a label twice, must have different ones or the same in each result")
     return plain
+
+
+def _without_floor_labels(one: xr.Dataset) -> xr.Dataset:
+    if "floor_disk" not in one.coords:
+        return one
+    return one.assign_coords(floor_disk_index=one["floor_disk"].variable.to_base_variable()).drop_vars("floor_disk")
 
 
 def _without_load_labels(one: xr.Dataset) -> xr.Dataset:
@@ -299,6 +312,10 @@ def _spread(measured: np.ndarray, place: np.ndarray, count: int) -> np.ndarray:
     whole = np.full((count, *measured.shape[1:]), "" if kind.kind in "SU" else np.nan, kind)
     whole[place] = measured
     return whole
+
+
+def _alike(one: Any, other: Any) -> bool:
+    return np.array_equal(np.asarray(one), np.asarray(other))
 
 
 def _same(measured: np.ndarray) -> bool:

@@ -6,12 +6,16 @@ Forces are in mean disk weights, lengths in mean radii.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from granular_response.observe.positive import check_positive
 from granular_response.state import FLOOR, FloatArray, State
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[np.intp]:
@@ -76,3 +80,12 @@ def interior_mask(x: ArrayLike, width: float, margin: float = 10.0, *, left_wall
         raise ValueError(f"margin: {margin} given; it must be at least 0 and less than half the width {width}")
     distance = np.asarray(x, dtype=float) - left_wall
     return (distance >= margin) & (distance <= width - margin)
+
+
+def origin_of(dataset: xr.Dataset) -> float:
+    """Of the dataset of a result: where ``x`` is 0, from the left end of the box (mean radii).
+
+    That is the loaded disk, or the middle of the box.
+    """
+    origin = float(dataset["position"].values[0, int(dataset["floor_disk"][0]), 0] - dataset["x"].values[0])
+    return origin % float(dataset.attrs["width"]) if dataset.attrs.get("sides") == "periodic" else origin

@@ -34,7 +34,7 @@ from scipy.special import erf
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
 from granular_response.observe.floor import smoothed_response
 from granular_response.observe.positive import check_positive
-from granular_response.state import FloatArray, State
+from granular_response.state import Box, FloatArray, State
 
 #: Evaluations of a contact at a point that are held in memory at once.
 _CHUNK = 2_000_000
@@ -74,12 +74,20 @@ def given_forces(state: State, pair_force: FloatArray, wall_force: FloatArray) -
     carries = np.any(force != 0.0, axis=1)
     point = np.concatenate([position[pairs.first], at_wall])[carries]
     branch = np.concatenate([state.pair_separation(), at_wall - on_wall])[carries]
-    force = force[carries]
-    if state.box.periodic:  # what lies beyond the sides counts too
-        shift = np.array([state.box.width, 0.0])
-        point = np.concatenate([point - shift, point, point + shift])
-        branch, force = np.tile(branch, (3, 1)), np.tile(force, (3, 1))
-    return ContactForces(point=point, branch=branch, force=force)
+    return across_sides(ContactForces(point=point, branch=branch, force=force[carries]), state.box)
+
+
+def across_sides(forces: ContactForces, box: Box) -> ContactForces:
+    """What a point within the box feels: with periodic sides the forces beyond them too."""
+    if not box.periodic:
+        return forces
+    shift = np.array([box.width, 0.0])
+    point = np.stack([np.mod(forces.point[:, 0], box.width), forces.point[:, 1]], axis=1)
+    return ContactForces(
+        point=np.concatenate([point - shift, point, point + shift]),
+        branch=np.tile(forces.branch, (3, 1)),
+        force=np.tile(forces.force, (3, 1)),
+    )
 
 
 def coarse_grained_stress(

@@ -20,7 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
-from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
+from ..observe.floor import origin_of
+from ..observe.stress import ContactForces, across_sides, coarse_grained_stress, grid_points
 from ..state import OPEN, SLIDING, Box, FloatArray, wall_normals
 from ..store import atomic
 from . import network, style
@@ -56,10 +57,12 @@ class Shown:
             result = result.to_dataset()
         if not {"position", "contact_force", "wall_force", "state_load_factor"} <= set(result.variables):
             raise PictureError("result: the dataset holds no states of a packing (open_result reads older files)")
+        if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
+            raise PictureError(f"state = {state!r}: must be an integer, 0 for the state at rest")
         count = result.sizes["state"]
         if not -count <= state < count:
             raise PictureError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
-        return cls(result, state % count)
+        return cls(result, int(state) % count)
 
     def values(self, name: str, index: int | None = None) -> np.ndarray:
         """A variable in this state, or in another one."""
@@ -88,7 +91,7 @@ class Shown:
     @property
     def origin(self) -> float:
         """Where ``x`` of the response is 0."""
-        return float(self.values("position", 0)[int(self.data["floor_disk"][0]), 0] - self.data["x"].values[0])
+        return origin_of(self.data)
 
     @property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
@@ -285,6 +288,8 @@ def stress(
     added = shown.index > 0 if added is None else added
     if component not in ("xx", "xz", "zx", "zz"):
         raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
+    if largest is not None and not (np.isfinite(largest) and largest > 0.0):
+        raise PictureError(f"largest = {largest}: must be a number greater than 0")
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
     separation = shown.box.separation(shown.position[first], shown.position[second])
@@ -294,21 +299,23 @@ def stress(
         force=np.concatenate(shown.forces(added)),
     )
     step = max(0.5, shown.box.width / 240.0)
-    x = np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
+    left = -0.5 * shown.box.width if shown.box.periodic else -shown.origin
+    x = left + np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
+    place = np.mod(x + shown.origin, shown.box.width) if shown.box.periodic else x + shown.origin
     z = np.linspace(0.0, shown.top, round(shown.top / step) + 1)
-    tensor = coarse_grained_stress(carried, grid_points(x, z), width)
+    tensor = coarse_grained_stress(across_sides(carried, shown.box), grid_points(place, z), width)
     field = tensor[..., "xz".index(component[0]), "xz".index(component[1])]
     end = float(np.abs(field).max()) if largest is None else largest
     with style.context():
         axes = _axes(ax, _aspect(shown))
         norm = root_norm(end if end > 0.0 else 1.0, signed=True)
-        image = draw_field(axes, x - shown.origin, z, field, norm=norm, cmap=style.SIGNED)
+        image = draw_field(axes, x, z, field, norm=norm, cmap=style.SIGNED)
         near: dict[str, Any] = {"color": style.MUTED, "linewidth": 0.5, "linestyle": ":"}
         axes.axhline(width, **near)
         for side in () if shown.box.periodic else (width, shown.box.width - width):
             axes.axvline(side - shown.origin, **near)
-        network.draw_box(axes, shown.box, shown.top, shift=-shown.origin)
-        _loads(axes, shown, shift=-shown.origin)
+        network.draw_box(axes, shown.box, shown.top, shift=left)
+        _loads(axes, shown, origin=shown.origin)
         axes.set(ylim=(-0.03 * shown.top, None), xlabel=style.POSITION, ylabel=style.HEIGHT)
         axes.tick_params(top=False, right=False)
         what = "added " if added else ""
@@ -502,11 +509,16 @@ def _packing(axes: Axes, shown: Shown, **disks: Any) -> Any:
     return drawn
 
 
-def _loads(axes: Axes, shown: Shown, *, shift: float = 0.0) -> None:
-    """Loaded disks, and an arrow for each force that ends at the disk it pushes, the largest a fifth of the height."""
+def _loads(axes: Axes, shown: Shown, *, origin: float | None = None) -> None:
+    """Loaded disks, and an arrow for each force that ends at the disk it pushes, the largest a fifth of the height.
+
+    ``origin`` : from where the picture counts x, the shortest way.
+    """
     largest = max((float(np.hypot(*force)) for _, force, _ in shown.loads), default=0.0)
     for disk, force, torque in shown.loads:
-        centre, radius = shown.position[disk] + (shift, 0.0), float(shown.radius[disk])
+        centre, radius = shown.position[disk], float(shown.radius[disk])
+        if origin is not None:
+            centre = shown.box.separation(centre, np.array([origin, 0.0]))
         network.draw_loaded_disk(axes, centre, radius)
         size = float(np.hypot(*force))
         if size > 0.0:

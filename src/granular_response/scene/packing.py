@@ -16,7 +16,9 @@ IntArray = NDArray[np.int32]
 
 def exact_mean(values: FloatArray) -> float:
     """Mean with one rounding only, so that it is the same on every machine."""
-    return math.fsum(values) / len(values)
+    largest = float(np.abs(values).max())
+    scale = largest if largest > 1e300 else 1.0  # a sum of these may overflow
+    return math.fsum(np.asarray(values) / scale) / len(values) * scale
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -91,7 +91,8 @@ class Scene(Description):
     def _check_sideways_loads(self) -> Scene:
         sideways = sum(load.force[0] for load in self.loads)
         held = any(load.holds(0) for load in self.loads)
-        if self.packing.periodic and not self.resolved_wall.rubs and sideways != 0 and not held:
+        rounding = 1e-12 * sum(abs(load.force[0]) for load in self.loads)
+        if self.packing.periodic and not self.resolved_wall.rubs and abs(sideways) > rounding and not held:
             raise Problem(
                 "forces along x must sum to 0 with periodic sides on a smooth floor, which hold nothing",
                 key=("loads",),
@@ -172,6 +173,8 @@ class Scene(Description):
             raise SceneError(f"{path}: is not a text file in UTF-8") from None
         except OSError as error:
             raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+        except ValueError as error:  # no name of a file
+            raise SceneError(f"{str(path)!r}: cannot be read: {error}") from None
 
     def to_dict(self) -> dict[str, Any]:
         """All keys as nested dicts, lists, numbers and text."""

@@ -62,9 +62,12 @@ class FilePacking(Description):
 
     @model_validator(mode="after")
     def _remember_folder(self, info: ValidationInfo) -> FilePacking:
-        if info.context and info.context.get("folder") is not None:
-            self._folder = str(info.context["folder"])
-        return self
+        folder = info.context.get("folder") if info.context else None
+        if folder is None or str(folder) == self._folder:
+            return self
+        own = self.model_copy()  # another scene may have the same packing
+        own._folder = str(folder)
+        return own
 
     @property
     def disk_count(self) -> int:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..contact import LAWS, RULES, Law
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
-from ..scene import Contact, Packing, Scene, resolve_disk
+from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
 from ..state import Contacts, FloatArray, State
 from .held import NOTHING, Held
 
@@ -58,6 +58,18 @@ class Candidates:
         return f"Candidates({len(self.first)} pairs, {len(self.wall_disk)} at walls, limit={self.limit:g})"
 
 
+def _check_period(packing: Packing) -> None:
+    """Refuse periodic sides between which two disks may meet on both sides: a pair is one contact."""
+    if not packing.periodic or len(packing.radius) < 2:
+        return
+    least = 2.0 * (float(np.sort(packing.radius)[-2:].sum()) + SKIN)
+    if packing.width < least:
+        raise SceneError(
+            f"packing.width: the period is {packing.width:.4g} mean radii, must be at least {least:.4g} for disks of "
+            "this size, so that no two meet on both sides"
+        )
+
+
 @dataclass(frozen=True, repr=False)
 class Problem:
     """A scene with its packing, in the form the kernels take.
@@ -89,9 +101,11 @@ class Problem:
             )  # fmt: skip
             return whole if m.rubs else whole.without_friction()
 
+        packing = scene.packing.build() if packing is None else packing
+        _check_period(packing)
         return cls(
             scene=scene,
-            packing=scene.packing.build() if packing is None else packing,
+            packing=packing,
             pair_law=law(scene.contact, DISKS),
             wall_law=law(scene.resolved_wall, AT_WALL),
             rule=RULES[protocol.friction_law],

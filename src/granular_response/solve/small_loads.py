@@ -64,7 +64,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
         y += factor.solve(right - transposed @ y)  # the tangent was held by a tiny stiffness
         result[row] = system.deinterleave(y).reshape(freedoms, n).T
     result[:, state.contact_count() < 2] = np.nan
-    if problem.packing.periodic and not problem.wall_friction:
+    if problem.packing.periodic and not problem.wall_friction and not (problem.held.axis == 0).any():
         result[:, :, 0] = np.nan
     return result
 

@@ -132,10 +132,7 @@ def solve_scene(
     if load_factors is not None:  # what is stored is the scene that was solved
         scene = scene.updated({"protocol.load_factors": load_programme(load_factors)})
     factors = scene.protocol.load_factors
-    check_memory(scene, scene.packing.disk_count)
-    problem = Problem.from_scene(scene)
-    check_memory(scene, problem.n)  # a file's disks are counted by now
-    _check_loads(problem.with_loads(problem.packing.position), factors)
+    problem = checked_problem(scene)
     rest = rest_state(problem, progress=progress)
     problem = problem.with_loads(rest.position)
     rest_choice = rest_method(problem)
@@ -146,6 +143,24 @@ def solve_scene(
     for state in (rest, *states):
         check_overlaps(problem, state)
     return Solution(scene, problem, rest, tuple(states), rest_choice, choice)
+
+
+def checked_problem(scene: Scene) -> Problem:
+    """The problem of a scene, once all is refused that can be before anything moves.
+
+    Raises
+    ------
+    SceneError
+        For a packing or a load that is not allowed, too many disks for the memory, or a method that is none for it.
+    """
+    check_memory(scene, scene.packing.disk_count)
+    problem = Problem.from_scene(scene)
+    check_memory(scene, problem.n)  # a file's disks are counted by now
+    _check_loads(problem.with_loads(problem.packing.position), scene.protocol.load_factors)
+    rest_method(problem)
+    if scene.loads:
+        load_method(problem)
+    return problem
 
 
 def _check_loads(problem: Problem, factors: Sequence[float]) -> None:
@@ -171,7 +186,7 @@ def continue_solution(
     Raises
     ------
     SceneError
-        When the scene has no loads, its last state is not at rest, or the factors are none or not finite.
+        When the scene has no loads, or the factors are none or not finite.
     NotSettled, DynamicsError, EquilibriumError, PathError
         As of ``solve_scene``.
     """
@@ -190,7 +205,10 @@ def load_programme(factors: Any) -> list[float]:
     given: list[Any] = list(factors) if np.iterable(factors) and not isinstance(factors, (str, bytes)) else [None]
     if not all(isinstance(factor, Real) and not isinstance(factor, (bool, np.bool_)) for factor in given):
         raise SceneError(f"load factors {factors!r}: must be a list of one or more numbers")
-    programme = [float(factor) for factor in given]
+    try:
+        programme = [float(factor) for factor in given]
+    except OverflowError:
+        raise SceneError(f"load factors {factors!r:.60}: must be finite") from None
     if not programme:
         raise SceneError("load factors: none given, must be one or more numbers")
     if not all(np.isfinite(programme)):

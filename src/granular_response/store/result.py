@@ -291,7 +291,8 @@ def to_labelled(solution: Solution) -> Labelled:
     """
     problem = solution.problem
     packing = problem.packing
-    states = common_candidates([solution.rest, *solution.loaded], packing.radius)
+    own = [solution.rest, *solution.loaded]
+    states = common_candidates(own, packing.radius)
     rest, loaded = states[0], states[1:]
     disks = floor_disks(states, np.flatnonzero(packing.row == 0))
     origin = float(rest.position[problem.load_disk[0], 0]) if len(problem.load_disk) == 1 else 0.5 * packing.width
@@ -330,6 +331,7 @@ def to_labelled(solution: Solution) -> Labelled:
             f"total magnitude of the applied forces {FORCE}",
         ),
         **(_reaction(solution) if loaded and len(problem.held) else {}),
+        **_listed(own, states),
         **_certificates(states, "state"),
         **_reached(states),
         **_crossings(loaded),
@@ -359,6 +361,42 @@ def to_labelled(solution: Solution) -> Labelled:
         "units": UNITS,
     }
     return Labelled(data, COORDINATES & set(data), attributes)
+
+
+def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
+    """(m,) place of each common candidate in a state's own list, -1 for those that it has not."""
+    places = np.full(len(common.first), -1, np.int32)
+    size = int(common.second.max(initial=0)) + 1
+    key, whole = (c.first.astype(np.int64) * size + c.second for c in (own, common))
+    order = np.argsort(whole)
+    places[order[np.searchsorted(whole, key, sorter=order)]] = np.arange(len(key))
+    return places
+
+
+def _listed(own: Sequence[State], states: Sequence[State]) -> dict[str, Values]:
+    """Which of the common candidates each state listed itself and in what order, where that is not the common one."""
+    found = {}
+    for kind, (dim, prefix) in _KINDS.items():
+        common = getattr(states[0], kind)
+        places = np.stack([_own_places(getattr(state, kind), common) for state in own])
+        if (places != np.arange(places.shape[1])).any():
+            text = "place among the candidates of the state when it was solved, -1 for none of them"
+            found[f"{prefix}_own_place"] = described(("state", dim), places, text)
+    return found
+
+
+def _as_solved(dataset: xr.Dataset, index: int) -> State:
+    """A stored state with its own lists of candidates."""
+    state = state_from(dataset, index)
+
+    def own(contacts: Contacts, prefix: str) -> Contacts:
+        if f"{prefix}_own_place" not in dataset:
+            return contacts
+        places = dataset[f"{prefix}_own_place"].values[index]
+        kept = np.argsort(places, kind="stable")[np.count_nonzero(places < 0) :]
+        return Contacts(*(getattr(contacts, field.name)[kept] for field in fields(Contacts)))
+
+    return replace(state, pairs=own(state.pairs, "contact"), walls=own(state.walls, "wall"))
 
 
 def _reaction(solution: Solution) -> dict[str, Values]:
@@ -438,9 +476,10 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     scene = scene_of(dataset, folder=folder)
     problem = Problem.from_scene(scene).with_loads(rest.position)
     packed = problem.packing
-    if not all(np.array_equal(getattr(packed, name), dataset[name].values) for name in ("radius", "mass")):
+    same = all(np.array_equal(getattr(packed, name), dataset[name].values) for name in ("radius", "mass"))
+    if not same or packed.box != rest.box:
         raise ResultError("the table of disks has changed since the result was made")
-    loaded = [state_from(dataset, k) for k in range(1, dataset.sizes["state"])]
+    rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
     if loaded and "crossing_start" in dataset:
         columns = [dataset[f"crossing_{field.name}"].values.tolist() for field in fields(Crossing)]
         crossings = tuple(Crossing(*values) for values in zip(*columns, strict=True))

@@ -35,8 +35,8 @@ def digest(*values: Any) -> str:
     """32 hexadecimal digits for values, the same in every process: equal values, equal names.
 
     Knows numbers, text, arrays, containers, dataclasses, scenes (with the table that they name) and functions: those
-    that can be imported by their name and the file they stand in, others (lambdas, of a notebook) by their code and all
-    that it refers to.
+    that can be imported by their name and the file they stand in, others (lambdas, of a notebook or of the running
+    script) by their code and all that it refers to.
 
     Raises
     ------
@@ -134,8 +134,12 @@ def _class(kind: type) -> bytes:
 
 
 def _function(function: Any, within: tuple[int, ...]) -> bytes:
-    """A function by its name and file if it can be imported, else by its code and what this refers to."""
-    if (named := _importable(function)) is not None:
+    """A function by its name and file if it can be imported, else by its code and what this refers to.
+
+    One of the running script counts by both: what it refers to may be another value in each run.
+    """
+    named = _importable(function)
+    if named is not None and not (function.__module__ == "__main__" and isinstance(function, types.FunctionType)):
         return named
     if not isinstance(function, types.FunctionType):
         raise Indistinct(f"{function!r} cannot be told from other functions by its content")
@@ -153,7 +157,7 @@ def _function(function: Any, within: tuple[int, ...]) -> bytes:
         cells,
         [(name, function.__globals__[name]) for name in used],
     )
-    return b"".join(_packed(_described(part, within)) for part in parts)
+    return (named or b"") + b"".join(_packed(_described(part, within)) for part in parts)
 
 
 def _codes(code: types.CodeType) -> Iterator[types.CodeType]:

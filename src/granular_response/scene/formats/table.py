@@ -35,7 +35,7 @@ class Table:
 def number(text: str, name: str, place: str) -> float:
     """A finite number. Raises FormatError with the name of its column."""
     try:
-        value = float(text)
+        value = math.nan if "_" in text else float(text)  # 1_0 is Python's, and no table's
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
