@@ -230,7 +230,8 @@ class Result:
     @property
     def origin(self) -> float:
         """Distance from the left end of the box to where ``x`` is 0: the loaded disk, or the middle of the box."""
-        return origin_of(self._data)
+        data = self._data
+        return origin_of(self.rest.position, data["floor_disk"].values, data["x"].values, self.rest.box)
 
     def to_dataset(self) -> xr.Dataset:
         """Everything as one labelled dataset: what a stored file holds."""

@@ -6,16 +6,12 @@ Forces are in mean disk weights, lengths in mean radii.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from granular_response.observe.positive import check_positive
-from granular_response.state import FLOOR, FloatArray, State
-
-if TYPE_CHECKING:
-    import xarray as xr
+from granular_response.state import FLOOR, Box, FloatArray, State
 
 
 def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[np.intp]:
@@ -82,10 +78,10 @@ def interior_mask(x: ArrayLike, width: float, margin: float = 10.0, *, left_wall
     return (distance >= margin) & (distance <= width - margin)
 
 
-def origin_of(dataset: xr.Dataset) -> float:
-    """Of the dataset of a result: where ``x`` is 0, from the left end of the box (mean radii).
+def origin_of(position: FloatArray, disks: NDArray[np.intp], x: FloatArray, box: Box) -> float:
+    """Where the places ``x`` (k,) of floor ``disks`` at rest are counted from, from the left end of the box (mean radii).
 
-    That is the loaded disk, or the middle of the box.
+    That is the loaded disk, or the middle of the box. ``position`` (n, 2) of all disks at rest.
     """
-    origin = float(dataset["position"].values[0, int(dataset["floor_disk"][0]), 0] - dataset["x"].values[0])
-    return origin % float(dataset.attrs["width"]) if dataset.attrs.get("sides") == "periodic" else origin
+    origin = float(position[disks[0], 0] - x[0])
+    return origin % box.width if box.periodic else origin

@@ -91,7 +91,7 @@ class Shown:
     @property
     def origin(self) -> float:
         """Where ``x`` of the response is 0."""
-        return origin_of(self.data)
+        return origin_of(self.values("position", 0), self.values("floor_disk"), self.values("x"), self.box)
 
     @property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
