@@ -156,11 +156,10 @@ class Result:
         # rounded: the same places in results whose loaded disk is at the same place but for its last digits
         left = round(-0.5 * box.width if box.periodic else -origin, 9)
         across = np.arange(left, left + box.width + 0.5) if x is None else _places("x", x)
-        place = np.mod(across + origin, box.width) if box.periodic else across + origin
         up = np.arange(0.0, top) if z is None else _places("z", z)
         rest, now = (state_from(self._data, k) for k in (0, state))  # on one list of candidates
         forces = load_forces(rest, now) if added else contact_forces(now)
-        tensor = coarse_grained_stress(forces, grid_points(place, up), width)
+        tensor = coarse_grained_stress(forces, grid_points(across + origin, up), width)
         names = np.array(["x", "z"])
         return xr.DataArray(
             tensor,

@@ -79,7 +79,7 @@ def interior_mask(x: ArrayLike, width: float, margin: float = 10.0, *, left_wall
 
 
 def origin_of(position: FloatArray, disks: NDArray[np.intp], x: FloatArray, box: Box) -> float:
-    """Where the places ``x`` (k,) of floor ``disks`` at rest are counted from, from the left end of the box (mean radii).
+    """Where the places ``x`` (k,) of floor ``disks`` are counted from, from the left end of the box (mean radii).
 
     That is the loaded disk, or the middle of the box. ``position`` (n, 2) of all disks at rest.
     """

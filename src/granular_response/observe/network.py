@@ -53,7 +53,11 @@ def sliding_count(state: State, *, walls: bool = True) -> int:
 
 
 def contact_centre(state: State) -> FloatArray:
-    """(m, 2) middle between the centres of the two disks of each pair."""
+    """(m, 2) middle between the centres of the two disks of each pair; with periodic sides within one period."""
+    if state.box.periodic:
+        middle = state.position[state.pairs.second] + 0.5 * state.pair_separation()
+        middle[:, 0] %= state.box.width
+        return middle
     return 0.5 * (state.position[state.pairs.first] + state.position[state.pairs.second])
 
 

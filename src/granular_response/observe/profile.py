@@ -38,7 +38,7 @@ def force_profile(
         half_band = 0.25 * ROW_SPACING * lattice_constant
     check_positive(half_band=half_band)
     magnitude = np.linalg.norm(pair_force_difference(rest, loaded), axis=1)
-    offset = contact_centre(rest) - rest.position[loaded_disk]
+    offset = rest.box.separation(contact_centre(rest), rest.position[loaded_disk])
     touching = rest.pairs.touching | loaded.pairs.touching
     chosen = np.flatnonzero(touching & (np.abs(-offset[:, 1] - depth) < half_band))
     chosen = chosen[np.lexsort((-offset[chosen, 1], offset[chosen, 0]))]

@@ -22,6 +22,7 @@ Forces in mean disk weights, lengths in mean radii, so stress in weights per rad
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -34,8 +35,10 @@ from scipy.special import erf
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
 from granular_response.observe.floor import smoothed_response
 from granular_response.observe.positive import check_positive
-from granular_response.state import Box, FloatArray, State
+from granular_response.state import FloatArray, State
 
+#: Widths of the Gaussian beyond which images of a force on a line are left out.
+LINE_CUTOFF = 7.0
 #: Evaluations of a contact at a point that are held in memory at once.
 _CHUNK = 2_000_000
 
@@ -47,6 +50,7 @@ class ContactForces:
     point: FloatArray  #: centre of the disk the force acts on
     branch: FloatArray  #: from the partner (centre of the other disk, or point on the wall) to ``point``
     force: FloatArray  #: force on that disk
+    period: float | None = None  #: of x, with periodic sides
 
 
 def contact_forces(state: State) -> ContactForces:
@@ -74,20 +78,22 @@ def given_forces(state: State, pair_force: FloatArray, wall_force: FloatArray) -
     carries = np.any(force != 0.0, axis=1)
     point = np.concatenate([position[pairs.first], at_wall])[carries]
     branch = np.concatenate([state.pair_separation(), at_wall - on_wall])[carries]
-    return across_sides(ContactForces(point=point, branch=branch, force=force[carries]), state.box)
+    return ContactForces(point=point, branch=branch, force=force[carries], period=state.box.period)
 
 
-def across_sides(forces: ContactForces, box: Box) -> ContactForces:
-    """What a point within the box feels: with periodic sides the forces beyond them too."""
-    if not box.periodic:
-        return forces
-    shift = np.array([box.width, 0.0])
-    point = np.stack([np.mod(forces.point[:, 0], box.width), forces.point[:, 1]], axis=1)
-    return ContactForces(
-        point=np.concatenate([point - shift, point, point + shift]),
-        branch=np.tile(forces.branch, (3, 1)),
-        force=np.tile(forces.force, (3, 1)),
+def _images(contacts: ContactForces, reach: float) -> tuple[ContactForces, int]:
+    """The contacts with their images that are nearer than ``reach`` to a point of one period, and how many of each."""
+    period = contacts.period
+    if period is None:
+        return contacts, 1
+    copies = range(-math.ceil(reach / period), math.ceil(reach / period) + 1)
+    inside = np.stack([np.mod(contacts.point[:, 0], period), contacts.point[:, 1]], axis=1)
+    whole = ContactForces(
+        point=np.concatenate([inside + np.array([copy * period, 0.0]) for copy in copies]),
+        branch=np.tile(contacts.branch, (len(copies), 1)),
+        force=np.tile(contacts.force, (len(copies), 1)),
     )
+    return whole, len(copies)
 
 
 def coarse_grained_stress(
@@ -102,6 +108,10 @@ def coarse_grained_stress(
     check_positive(width=width, cutoff=cutoff)
     flat = points.reshape(-1, 2)
     length = np.linalg.norm(contacts.branch, axis=1)
+    if contacts.period is not None:
+        flat = np.stack([np.mod(flat[:, 0], contacts.period), flat[:, 1]], axis=1)
+        contacts, count = _images(contacts, cutoff * width + float(length.max(initial=0.0)))
+        length = np.tile(length, count)
     direction = contacts.branch / np.where(length > 0.0, length, 1.0)[:, None]
     # Outer product with the unit branch vector: the length is in the line integral.
     tensor = contacts.force[:, :, None] * direction[:, None, :]
@@ -139,7 +149,13 @@ def line_stress(contacts: ContactForces, height: float, x: FloatArray, width: fl
     The forces that cross the line (:func:`line_forces`) under the Gaussian ``exp(-(x/width)^2) / (width sqrt(pi))``:
     the stress above, averaged over no height. Raises ``ValueError`` unless ``width`` is positive.
     """
-    return smoothed_response(x, *line_forces(contacts, height), width)
+    at, force = line_forces(contacts, height)
+    if contacts.period is not None:
+        x, at = np.mod(x, contacts.period), np.mod(at, contacts.period)
+        copies = np.arange(-(reach := math.ceil(LINE_CUTOFF * width / contacts.period)), reach + 1)
+        at = np.add.outer(copies * contacts.period, at).ravel()
+        force = np.tile(force, len(copies))
+    return smoothed_response(x, at, force, width)
 
 
 def grid_points(x: FloatArray, z: FloatArray) -> FloatArray:

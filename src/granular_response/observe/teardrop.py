@@ -21,7 +21,7 @@ from scipy.spatial import cKDTree
 
 from granular_response.observe.difference import require_same_candidates
 from granular_response.observe.network import contact_centre, contact_changes
-from granular_response.state import FLOOR, FloatArray, State
+from granular_response.state import FLOOR, Box, FloatArray, State
 
 BoolArray = NDArray[np.bool_]
 
@@ -78,12 +78,14 @@ def open_region(
     inside = np.zeros(opened.shape, dtype=bool)
     candidate = np.flatnonzero(opened)
     centre = contact_centre(state)
+    if state.box.periodic:  # the shortest way from the origin
+        centre = origin + state.box.separation(centre, origin)
     may_begin = opened & (np.linalg.norm(centre - origin, axis=1) <= start_distance * lattice_constant)
     begin = np.flatnonzero(may_begin if start is None else may_begin & start)
     if begin.size == 0:
         return OpenRegion(contacts=inside, depth=0.0, width=0.0, reaches_floor=False)
 
-    label = _components(centre[candidate], reach * lattice_constant)
+    label = _components(centre[candidate], reach * lattice_constant, state.box)
     distance = np.linalg.norm(centre[begin] - origin, axis=1)
     nearest = begin[distance <= distance.min() + 0.01 * lattice_constant]
     chosen = np.isin(label, label[np.searchsorted(candidate, nearest)])
@@ -93,16 +95,24 @@ def open_region(
     on_floor = np.zeros(state.position.shape[0], dtype=bool)
     on_floor[state.walls.first[(state.walls.second == FLOOR) & state.walls.touching]] = True
     first, second = state.pairs.first[region], state.pairs.second[region]
+    ends = state.position[first], state.position[second]
+    if state.box.periodic:
+        half = 0.5 * state.pair_separation()[region]
+        ends = centre[region] + half, centre[region] - half
     return OpenRegion(
         contacts=inside,
         depth=float(origin[1] - centre[region, 1].min()),
-        width=_largest_row(state.position[first], state.position[second], np.sqrt(3.0) / 8.0 * lattice_constant),
+        width=_largest_row(*ends, np.sqrt(3.0) / 8.0 * lattice_constant),
         reaches_floor=bool(np.any(on_floor[first] & on_floor[second])),
     )
 
 
-def _components(points: FloatArray, reach: float) -> NDArray[np.int32]:
-    edges = cKDTree(points).query_pairs(reach, output_type="ndarray")
+def _components(points: FloatArray, reach: float, box: Box) -> NDArray[np.int32]:
+    if box.periodic:
+        tree = cKDTree(np.stack([points[:, 0] % box.width, points[:, 1]], axis=1), boxsize=(box.width, 0.0))
+    else:
+        tree = cKDTree(points)
+    edges = tree.query_pairs(reach, output_type="ndarray")
     size = points.shape[0]
     graph = coo_array((np.ones(len(edges), dtype=np.int8), (edges[:, 0], edges[:, 1])), shape=(size, size))
     return connected_components(graph, directed=False)[1]

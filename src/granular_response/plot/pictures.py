@@ -21,7 +21,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from ..observe.floor import origin_of
-from ..observe.stress import ContactForces, across_sides, coarse_grained_stress, grid_points
+from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
 from ..state import OPEN, SLIDING, Box, FloatArray, wall_normals
 from ..store import atomic
 from . import network, style
@@ -297,13 +297,13 @@ def stress(
         point=np.concatenate([shown.position[first], at_wall]),
         branch=np.concatenate([separation, at_wall - shown.box.on_wall(at_wall, wall)]),
         force=np.concatenate(shown.forces(added)),
+        period=shown.box.period,
     )
     step = max(0.5, shown.box.width / 240.0)
     left = -0.5 * shown.box.width if shown.box.periodic else -shown.origin
     x = left + np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
-    place = np.mod(x + shown.origin, shown.box.width) if shown.box.periodic else x + shown.origin
     z = np.linspace(0.0, shown.top, round(shown.top / step) + 1)
-    tensor = coarse_grained_stress(across_sides(carried, shown.box), grid_points(place, z), width)
+    tensor = coarse_grained_stress(carried, grid_points(x + shown.origin, z), width)
     field = tensor[..., "xz".index(component[0]), "xz".index(component[1])]
     end = float(np.abs(field).max()) if largest is None else largest
     with style.context():

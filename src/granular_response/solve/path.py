@@ -56,6 +56,8 @@ STABILITY_STEP = 1.0
 MOST_WORK = 1000
 #: Unbalanced force (mean disk weights), beside so many units of rounding of an overlap, up to which a start is at rest.
 BALANCED, ROUNDING = 1e-8, 16.0
+#: Displacement after which candidate contacts are listed again (mean radii), below half of the largest gap listed.
+LISTED_AGAIN = 0.25
 #: Displacement after which an equilibrium that was displaced a little counts as left.
 LEFT = 2e-5
 #: Least time of such a trial, in sqrt(R/g): it starts at rest, so that nothing moves at first on any slope.
@@ -266,8 +268,18 @@ class _Path:
             self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
             self._cross(target, "rearrangement")
             return
-        if new == target or self._may_have_become_unstable():
+        far = new != target and np.abs(self.known.q[: 2 * self.problem.n]).max() > LISTED_AGAIN
+        if new == target or far or self._may_have_become_unstable():
             self._look_at_stability()
+        if far and self.factor == new:
+            self._list_again(target)
+
+    def _list_again(self, target: float) -> None:
+        """Disks have moved so far that others may be near: list candidates anew, and go on from there."""
+        if self.system.meets_unlisted(self.known.q):
+            self._cross(_towards(self.factor, target, self.crossing), "rearrangement")
+            return
+        self._begin(self.problem.relisted(self.system.state(self.trial, self.factor)))
 
     def _next(self, target: float) -> float:
         """Load factor at the end of the next increment; an increment whose error must be known is not the last one."""
@@ -357,9 +369,15 @@ class _Path:
         self.stable_at, self.stable_known, self.stable_trial = self.factor, self.known, self.trial
 
     def _leaves(self) -> bool:
-        """Whether the present equilibrium, slightly displaced, moves away for good."""
+        """Whether the present equilibrium, slightly displaced, moves away for good.
+
+        With sliding contacts the tangent is that of one direction of sliding, so a state may leave in one sense alone.
+        """
+        return self._leaves_towards(1.0) or self._leaves_towards(-1.0)
+
+    def _leaves_towards(self, sense: float) -> bool:
         state = self._state()
-        beside = nudged(self.problem, state, self.system, self.trial)
+        beside = nudged(self.problem, state, self.system, self.trial, sense)
         time_step = TRIAL_STEP * stability_limit(self.problem, TRIAL_INTEGRATOR, smallest=True)
         dynamics = Dynamics(self.problem, beside, TRIAL_INTEGRATOR, time_step)
         self.record.stability_trials += 1

@@ -148,10 +148,10 @@ def _statics(problem: Problem, settled: State, how: HandOver) -> State:
     return replace(found, reached=found.reached.after(settled.reached))
 
 
-def nudged(problem: Problem, state: State, system: StaticSystem, trial: Trial) -> State:
-    """An equilibrium displaced a little along the most unstable direction of its tangent."""
+def nudged(problem: Problem, state: State, system: StaticSystem, trial: Trial, sense: float = 1.0) -> State:
+    """An equilibrium displaced a little along the most unstable direction of its tangent; ``sense`` is 1 or -1."""
     n = problem.n
-    shift = NUDGE * system.unstable_direction(trial)[: 2 * n].reshape(2, n).T
+    shift = sense * NUDGE * system.unstable_direction(trial)[: 2 * n].reshape(2, n).T
     return problem.with_static_forces(replace(state, position=state.position + shift))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -27,6 +28,9 @@ from .timestep import resolve_time_step
 
 #: Load that the contacts of one disk bear at most without an overlap of a radius, over the stiffness of one.
 MOST_BORNE = 4.0
+
+#: Longest step of a displaced disk between two minimisations (mean radii).
+LONGEST_WAY = 0.1
 
 #: Part of a response that may be rounding, from which on that is said.
 ROUNDED = 1e-3
@@ -272,7 +276,11 @@ def loaded_states(
 
 
 def _by_minimisation(problem: Problem, before: State, factor: float, progress: Progress | None) -> State:
+    way = float(np.abs(problem.held.travel).max(initial=0.0)) * abs(factor - before.load_factor)
     try:
+        # what is held goes its way in short steps, so that it meets what is on it
+        for part in np.linspace(before.load_factor, factor, math.ceil(way / LONGEST_WAY) + 1)[1:-1]:
+            before = problem.relisted(minimise(problem, before, load_factor=float(part)))
         return minimise(problem, before, load_factor=factor)
     except EquilibriumError:
         # the packing collapses or rearranges here: its motion decides where it comes to rest

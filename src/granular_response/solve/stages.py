@@ -141,7 +141,7 @@ def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]
             system = StaticSystem(problem, state)
             known, rate = system.start(state), None
             trial = system.trial(known, known.q)
-    if trial is None:
+    if trial is None or system.meets_unlisted(trial.configuration.q):
         return state, False
     modes = system.negative_modes(trial)
     if modes:

@@ -51,6 +51,8 @@ LEFT_OF_ALL = (1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
 
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
+#: Part of a distance by which rounding may part two disks that touch.
+TOUCHING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -481,6 +483,10 @@ class StaticSystem:
         position = self.reference + q[: 2 * n].reshape(2, n).T
         first, second = close_pairs(position, radius, 0.0, box.period)
         listed = self.first * n + self.second
+        if box.periodic:  # a listed pair may have met on its other side
+            d = position[self.first] - position[self.second] - self.reference[self.first] + self.reference[self.second]
+            apart = np.hypot(d[:, 0] + self.dx0, d[:, 1] + self.dz0)
+            listed = listed[apart < (radius[self.first] + radius[self.second]) * (1.0 + TOUCHING)]
         if np.isin(first.astype(np.int64) * n + second, listed, invert=True).any():
             return True
         disk, wall = box.near_walls(position, radius, 0.0)

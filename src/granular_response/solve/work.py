@@ -14,6 +14,7 @@ import numpy as np
 
 from ..kernels import statics
 from ..state import Contacts, FloatArray, State, wall_normals
+from .equilibrium import reaction
 from .problem import Problem
 
 
@@ -36,13 +37,17 @@ def stored(problem: Problem, state: State) -> float:
 def work(problem: Problem, before: State, after: State) -> float:
     """Work of the loads from one state to the next: mean of their forces times the way of their disks.
 
+    What displaced disks are held with counts as a force.
     Exact where ways are proportional to the change of the load; else the error is of third order in that change.
     """
     disk = problem.load_disk
     factor = 0.5 * (before.load_factor + after.load_factor)
     way = after.position[disk] - before.position[disk]
     turn = after.angle[disk] - before.angle[disk]
-    return factor * float(np.sum(problem.load[:, :2] * way) + problem.load[:, 2] @ turn)
+    total = factor * float(np.sum(problem.load[:, :2] * way) + problem.load[:, 2] @ turn)
+    if len(problem.held):
+        total += float(np.sum(0.5 * (reaction(problem, before) + reaction(problem, after)) * way))
+    return total
 
 
 @dataclass(frozen=True)
