@@ -1,6 +1,7 @@
 """Displacement-controlled loads: disks that are moved and held, and the force that this takes."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from granular_response.solve.dynamics import Dynamics
 from granular_response.solve.equilibrium import certify, external_force, newton, reaction
 from granular_response.solve.path import PathRecord, follow
 from granular_response.solve.system import StaticSystem
+from granular_response.solve.work import slid, stored, work
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
 from granular_response.store.summary import summarise
@@ -275,3 +277,69 @@ def test_two_loads_cannot_hold_one_coordinate():
     apart = [{"disk": 31, "displacement": [None, -1e-4]}, {"disk": 31, "displacement": [1e-4, None]}]
     both = solve_scene(scene(4, 9, loads=apart, contact__friction=0.2))
     assert travel(both, both.loaded[0]) == pytest.approx([1e-4, -1e-4], abs=1e-14)
+
+
+def of_table(folder, rows, *, width, loads, friction, **more) -> gr.Result:
+    """Disks of a table, solved."""
+    (folder / "disks.csv").write_text("\n".join(["x,z,radius", *rows]))
+    packing = {"kind": "file", "path": "disks.csv", "width": width, "sides": more.pop("sides", "walls")}
+    rubs = {"contact": {"friction": friction}, "wall": {"friction": friction}}
+    return gr.solve(Scene.from_dict({"packing": packing, "loads": loads, **rubs, **more}, folder=folder))
+
+
+@pytest.mark.parametrize(("method", "friction"), [("auto", 0.0), ("path", 0.0), ("stages", 0.0), ("path", 0.5)])
+@pytest.mark.parametrize(("other", "way"), [(6.0, 8.0), (4.3, 5.0)], ids=["far away", "listed at rest"])
+def test_a_displaced_disk_pushes_what_is_on_its_way(other, way, friction, method, tmp_path):
+    """It passed through disks: contacts were listed once, and minimisation moved it in one jump."""
+    result = of_table(
+        tmp_path, ["2,1,1", f"{other},1,1"], width=20.0, friction=friction, protocol={"method": method},
+        loads=[{"disk": 0, "displacement": [way, None]}],
+    )  # fmt: skip
+    first, second = result.loaded[-1].position[:, 0]
+    assert first == pytest.approx(2.0 + way)
+    assert second > first + 2.0 - 1e-3  # in front of it, or rolled on
+
+
+@pytest.mark.parametrize("method", ["path", "stages", "dynamics"])
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_two_disks_may_meet_across_a_side_after_they_were_neighbours_within(friction, method, tmp_path):
+    """Statics kept to the side on which the pair was listed."""
+    loads = [{"disk": 0, "displacement": [-0.9, None]}, {"disk": 1, "displacement": [0.0, None]}]
+    result = of_table(
+        tmp_path, ["0.01,1,1", "2.56,1,1"], width=5.3, sides="periodic", friction=friction, loads=loads,
+        protocol={"method": method},
+    )  # fmt: skip
+    pressed = 3000.0 * (2.0 - (5.3 - 2.55 - 0.9))  # k_N times the overlap across the side
+    assert result.reaction.values[:, 0] == pytest.approx([-pressed, pressed], abs=0.5)
+
+
+def test_stages_find_contacts_that_the_list_of_the_fall_has_not(tmp_path):
+    """Two disks pressed into each other were certified as apart."""
+    radius, off = 0.92, 0.22
+    z = 1.0 + ((1.0 + radius) ** 2 - (1.0 - off) ** 2) ** 0.5
+    rows = ["1,1,1", "3,1,1", "5,1,1", f"{2 - off},{z},{radius}", f"{4 + off},{z},{radius}"]
+    loads = [{"disk": 3, "displacement": [0.098, 0.065]}, {"disk": 4, "displacement": [-0.098, 0.065]}]
+    result = of_table(
+        tmp_path, rows, width=6.0, friction=0.5, loads=loads, preparation={"gravity": "slow"},
+        protocol={"method": "stages", "maximum_steps": 300_000},
+    )  # fmt: skip
+    last = result.loaded[-1]
+    reach = 2.0 * result.to_dataset()["radius"].values[3]
+    overlap = reach - np.hypot(*(last.position[3] - last.position[4]))
+    assert overlap > 0.01
+    listed = {(i, j): f for i, j, f in zip(last.pairs.first, last.pairs.second, last.pairs.normal_force, strict=True)}
+    assert listed[3, 4] == pytest.approx(3000.0 * overlap, rel=1e-6)
+
+
+def test_the_work_of_displaced_disks_is_stored_or_has_slid():
+    solution = solve_scene(
+        pushed([0.0005, -0.001], contact__friction=0.2, protocol__method="path"),
+        load_factors=[*np.linspace(0.0, 1.0, 101)[1:], *np.linspace(1.0, 0.2, 81)[1:]],
+    )
+    problem, states = solution.problem, [solution.rest, *solution.loaded]
+    assert not any(state.reached.crossings for state in states)
+    done = sum(work(problem, *two) for two in pairwise(states))
+    lost = sum(slid(problem, *two).total for two in pairwise(states))
+    kept = stored(problem, states[-1]) - stored(problem, states[0])
+    assert lost > 1e-5
+    assert done == pytest.approx(kept + lost, rel=2e-3)

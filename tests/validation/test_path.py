@@ -18,6 +18,7 @@ from granular_response.solve import (
     path,
     relax,
     rest_state,
+    solve_scene,
 )  # fmt: skip
 from granular_response.solve.increment import HASTY, PATIENT, solve_increment
 from granular_response.state import OPEN
@@ -185,3 +186,23 @@ def test_only_the_shortest_increment_has_patience_before_dynamics_takes_over(set
     follow(problem, rest, [1.0], longest_step=0.2, record=record)
     assert asked[:4] == [HASTY, HASTY, PATIENT, HASTY]
     assert record.crossings[0].reason == "no equilibrium" and record.crossings[0].start == 0.0
+
+
+def test_a_state_that_leaves_in_one_sense_alone_is_left_in_its_mirror_image_too():
+    """With sliding contacts the tangent is that of one sense: it was tried, the other one was not."""
+    peaks = []
+    for sense, offset in ((1.0, 0), (-1.0, 1)):
+        load = {"disk": {"row": "top", "offset": offset}, "force": [sense * 2.0641953231117673, -40.0]}
+        solution = solve_scene(
+            scene(
+                5, 6, packing__lattice_constant=2.01, contact__friction=1.0, loads=[load], protocol__method="path",
+                protocol__time_step="auto",
+            ),
+            load_factors=[0.594866],
+        )  # fmt: skip
+        (state,) = solution.loaded
+        assert [crossing.reason for crossing in state.reached.crossings] == ["unstable"]
+        assert state.certificate.stable
+        added = floor_force(state, np.arange(6)) - floor_force(solution.rest, np.arange(6))
+        peaks.append(added if sense > 0 else added[::-1])
+    np.testing.assert_allclose(peaks[0], peaks[1], atol=1e-6)

@@ -5,7 +5,16 @@ import pytest
 
 from granular_response.kernels.neighbours import close_pairs
 from granular_response.observe.floor import floor_disks, floor_force
-from granular_response.observe.stress import coarse_grained_stress, load_forces
+from granular_response.observe.profile import force_profile
+from granular_response.observe.stress import (
+    coarse_grained_stress,
+    contact_forces,
+    grid_points,
+    line_forces,
+    line_stress,
+    load_forces,
+)
+from granular_response.observe.teardrop import teardrop
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import Problem, solve_scene
 from granular_response.store.result import to_labelled
@@ -113,3 +122,50 @@ def test_without_walls_the_elastic_slab_is_near():
     periodic, walls = distance_to_the_elastic_slab("periodic", 20), distance_to_the_elastic_slab("walls", 21)
     assert periodic < 1e-3
     assert walls > 20.0 * periodic
+
+
+def test_forces_across_a_line_and_their_stress_are_those_of_one_period():
+    solution = solve_scene(
+        Scene().updated(
+            {"packing.layers": 5, "packing.disks_per_row": 8, "packing.sides": "periodic", "wall.friction": 0.3}
+        )
+    )
+    forces = contact_forces(solution.rest)
+    assert line_forces(forces, 0.5)[1].sum() == pytest.approx(solution.problem.n)  # the weight above
+    width = solution.rest.box.width
+    x = np.linspace(0.0, width, 161)[:-1]
+    for smooth in (2.0, 8.0):  # wider than the box at last
+        line = line_stress(forces, 0.5, x, smooth)
+        assert line.mean() * width == pytest.approx(solution.problem.n)
+        np.testing.assert_allclose(line, line_stress(forces, 0.5, x + width, smooth), atol=1e-10)
+        area = coarse_grained_stress(forces, grid_points(x, np.array([4.0])), smooth)
+        again = coarse_grained_stress(forces, grid_points(x - 3 * width, np.array([4.0])), smooth)
+        np.testing.assert_allclose(area, again, atol=1e-10)
+
+
+def test_what_is_measured_of_contacts_does_not_depend_on_where_the_side_is():
+    """Contacts across the side counted as half a box away."""
+    found = []
+    for offset in (0, -5, -10, 10):
+        load = {"disk": {"row": "top", "offset": offset}, "force": [0.0, -40.0]}
+        solution = solve_scene(
+            Scene().updated(
+                {
+                    "packing.layers": 8,
+                    "packing.disks_per_row": 21,
+                    "packing.sides": "periodic",
+                    "packing.lattice_constant": 1.9995,
+                    "contact.friction": 0.0,
+                    "loads": [load],
+                }
+            )
+        )
+        disk = int(solution.problem.load_disk[0])
+        region = teardrop(solution.rest, solution.loaded[0], disk)
+        profile = force_profile(solution.rest, solution.loaded[0], disk, 2.5 * 3**0.5)
+        inside = np.abs(profile[0]) < 20.0  # those half a box away are on either side
+        found.append((int(region.contacts.sum()), region.width, region.depth, *(part[inside] for part in profile)))
+    assert found[0][0] > 5
+    for other in found[1:]:
+        for one, value in zip(found[0], other, strict=True):
+            np.testing.assert_allclose(value, one, atol=1e-4)
