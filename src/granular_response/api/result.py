@@ -182,7 +182,7 @@ class Result:
         -------
         Dimensions ``floor_disk``, ``disk`` and ``component``: per unit force along "x" and "z" and, where disks turn,
         per unit "torque". With ``x`` of the floor disks from the loaded disk, and ``disk_x``, ``disk_z`` of all disks.
-        NaN where nothing bears the load.
+        NaN for disks with fewer than two contacts, and along x where nothing holds the packing as a whole.
 
         Raises
         ------
