@@ -310,7 +310,7 @@ def solve(
     granular_response.solve.NotSettled, DynamicsError, EquilibriumError, PathError
         For one that has no such states, each with one line that says what to change.
 
-    Warns (UserWarning) of states that are still moving (``protocol.static_finish: false``), of a load so small that
+    Warns (UserWarning) of states that are still moving where no static finish is asked for, of a load so small that
     rounding is seen in its response, and of settings for another method, which have no effect.
     """
     return _vouched(solve_scene(described(scene), load_factors=load_factors, progress=progress))
