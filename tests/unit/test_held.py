@@ -10,7 +10,7 @@ from small_scenes import free_disks, scene
 
 import granular_response as gr
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.paper.trials.random_scenes import check, contradiction, rounding_of
+from granular_response.paper.trials.random_scenes import check, contradiction, rounding_of, write_table
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solve import Problem, continue_solution, rest_state, solve_scene
 from granular_response.solve.dynamics import Dynamics
@@ -279,9 +279,9 @@ def test_two_loads_cannot_hold_one_coordinate():
     assert travel(both, both.loaded[0]) == pytest.approx([1e-4, -1e-4], abs=1e-14)
 
 
-def of_table(folder, rows, *, width, loads, friction, **more) -> gr.Result:
-    """Disks of a table, solved."""
-    (folder / "disks.csv").write_text("\n".join(["x,z,radius", *rows]))
+def of_table(folder, disks, *, width, loads, friction, **more) -> gr.Result:
+    """Disks of a table (x, z, radius of each), solved."""
+    write_table(folder / "disks.csv", np.array(disks, float))
     packing = {"kind": "file", "path": "disks.csv", "width": width, "sides": more.pop("sides", "walls")}
     rubs = {"contact": {"friction": friction}, "wall": {"friction": friction}}
     return gr.solve(Scene.from_dict({"packing": packing, "loads": loads, **rubs, **more}, folder=folder))
@@ -292,7 +292,7 @@ def of_table(folder, rows, *, width, loads, friction, **more) -> gr.Result:
 def test_a_displaced_disk_pushes_what_is_on_its_way(other, way, friction, method, tmp_path):
     """It passed through disks: contacts were listed once, and minimisation moved it in one jump."""
     result = of_table(
-        tmp_path, ["2,1,1", f"{other},1,1"], width=20.0, friction=friction, protocol={"method": method},
+        tmp_path, [(2, 1, 1), (other, 1, 1)], width=20.0, friction=friction, protocol={"method": method},
         loads=[{"disk": 0, "displacement": [way, None]}],
     )  # fmt: skip
     first, second = result.loaded[-1].position[:, 0]
@@ -306,7 +306,7 @@ def test_two_disks_may_meet_across_a_side_after_they_were_neighbours_within(fric
     """Statics kept to the side on which the pair was listed."""
     loads = [{"disk": 0, "displacement": [-0.9, None]}, {"disk": 1, "displacement": [0.0, None]}]
     result = of_table(
-        tmp_path, ["0.01,1,1", "2.56,1,1"], width=5.3, sides="periodic", friction=friction, loads=loads,
+        tmp_path, [(0.01, 1, 1), (2.56, 1, 1)], width=5.3, sides="periodic", friction=friction, loads=loads,
         protocol={"method": method},
     )  # fmt: skip
     pressed = 3000.0 * (2.0 - (5.3 - 2.55 - 0.9))  # k_N times the overlap across the side
@@ -317,10 +317,10 @@ def test_stages_find_contacts_that_the_list_of_the_fall_has_not(tmp_path):
     """Two disks pressed into each other were certified as apart."""
     radius, off = 0.92, 0.22
     z = 1.0 + ((1.0 + radius) ** 2 - (1.0 - off) ** 2) ** 0.5
-    rows = ["1,1,1", "3,1,1", "5,1,1", f"{2 - off},{z},{radius}", f"{4 + off},{z},{radius}"]
+    disks = [(1, 1, 1), (3, 1, 1), (5, 1, 1), (2 - off, z, radius), (4 + off, z, radius)]
     loads = [{"disk": 3, "displacement": [0.098, 0.065]}, {"disk": 4, "displacement": [-0.098, 0.065]}]
     result = of_table(
-        tmp_path, rows, width=6.0, friction=0.5, loads=loads, preparation={"gravity": "slow"},
+        tmp_path, disks, width=6.0, friction=0.5, loads=loads, preparation={"gravity": "slow"},
         protocol={"method": "stages", "maximum_steps": 300_000},
     )  # fmt: skip
     last = result.loaded[-1]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from granular_response.paper.trials.random_scenes import write_table
 from granular_response.scene import FilePacking, Scene, SceneError, SlabPacking
 
 
@@ -93,8 +94,7 @@ def test_files_that_cannot_be_read(tmp_path):
 def test_a_packing_in_two_scenes_is_read_where_each_is(tmp_path):
     for folder, count in (("a", 2), ("b", 3)):
         (tmp_path / folder).mkdir()
-        rows = [f"{2 * k + 1},1,1" for k in range(count)]
-        (tmp_path / folder / "disks.csv").write_text("\n".join(["x,z,radius", *rows]))
+        write_table(tmp_path / folder / "disks.csv", np.array([(2 * k + 1, 1, 1) for k in range(count)], float))
     shared = Scene.from_dict({"packing": {"kind": "file", "path": "disks.csv", "width": 10.0}, "loads": []}).packing
     scenes = [Scene.from_dict({"packing": shared, "loads": []}, folder=tmp_path / folder) for folder in "ab"]
     assert [scene.packing.build().n for scene in scenes] == [2, 3]

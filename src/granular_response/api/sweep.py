@@ -90,11 +90,12 @@ def sweep(
     """
     base = described(scene)
     values = _values(axes)
-    load_factors = None if load_factors is None else load_programme(load_factors)
-    scenes = [base.updated(dict(zip(values, point, strict=True))) for point in itertools.product(*values.values())]
+    programme = {} if load_factors is None else {"protocol.load_factors": load_programme(load_factors)}
+    points = (dict(zip(values, point, strict=True)) for point in itertools.product(*values.values()))
+    scenes = [base.updated(point).updated(programme) for point in points]
     for each in scenes:
-        checked_problem(each if load_factors is None else each.updated({"protocol.load_factors": load_factors}))
-    task = functools.partial(_measured, measure=measure, load_factors=load_factors)
+        checked_problem(each)
+    task = functools.partial(_measured, measure=measure)
     with contextlib.ExitStack() as stack:
         if progress is True:
             progress = stack.enter_context(TerminalProgress())
@@ -143,12 +144,10 @@ def _comparable(value: Any) -> Any:
     return "other", repr(value)
 
 
-def _measured(
-    scene: Scene, *, measure: Callable[[Result], Measured], load_factors: Sequence[float] | None
-) -> tuple[xr.Dataset | str, list[str]]:
+def _measured(scene: Scene, *, measure: Callable[[Result], Measured]) -> tuple[xr.Dataset | str, list[str]]:
     """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
     try:
-        solution = solve_scene(scene, load_factors=load_factors)
+        solution = solve_scene(scene)
     except SOLVE_ERRORS as error:
         return " ".join(str(error).split()), []
     return _dataset(measure(Result(solution))), solution.remarks
