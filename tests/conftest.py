@@ -1,7 +1,10 @@
 """Settings that every test shares."""
 
+import multiprocessing
 import os
+from multiprocessing import forkserver
 
+import xdist
 from hypothesis import settings
 
 from granular_response.machine import floating_point
@@ -9,6 +12,17 @@ from granular_response.machine import floating_point
 floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.pop("DASK_SCHEDULER_ADDRESS", None)  # a sweep in a test runs where the test says
+
+#: What most worker processes and commands of tests import.
+IMPORTED = ["granular_response.api.sweep", "granular_response.cli.main", "granular_response.store.result"]
+
+
+def pytest_sessionstart(session):
+    """Processes are forked from one that has imported this much, which each would else import by itself."""
+    if not xdist.is_xdist_controller(session):
+        multiprocessing.get_context("forkserver").set_forkserver_preload(IMPORTED)
+        forkserver.ensure_running()
+
 
 # Properties are tried on the same examples every time. GRANULAR_RESPONSE_FUZZ=5000 tries as many new ones of each.
 settings.register_profile("default", derandomize=True, deadline=None, max_examples=100)

@@ -11,6 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from forked import call
 
 from granular_response.paper.archive import ArchiveError, crate, lock
 from granular_response.paper.archive.restore import restore
@@ -224,9 +225,8 @@ def test_damaged_archives_are_refused(archived, checkout, tmp_path, damage):
 
 
 def test_the_command_line_says_it_in_one_line(archived, checkout):
-    command = [sys.executable, "-m", "granular_response"]
-    run = subprocess.run([*command, "restore", archived, "--root", checkout], capture_output=True, text=True)
+    run = call("restore", archived, "--root", checkout)
     assert run.returncode == 0 and str(checkout / "data" / "a.nc") in run.stdout, run.stderr
     for archive, said in ((checkout / "LICENSE", "is no zip file"), (checkout / "none.zip", "No such file")):
-        run = subprocess.run([*command, "restore", archive, "--root", checkout], capture_output=True, text=True)
+        run = call("restore", archive, "--root", checkout)
         assert (run.returncode, run.stderr.count("\n")) == (2, 1) and said in run.stderr

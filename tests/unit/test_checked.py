@@ -1,12 +1,11 @@
 """Results as others read them, as the version before wrote them, and sealed files that are no results."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from forked import call
 from small_scenes import scene
 
 import granular_response as gr
@@ -29,11 +28,6 @@ def path(solution, tmp_path_factory):
     path = tmp_path_factory.mktemp("checked") / "result.nc"
     store.write(path, to_dataset(solution))
     return path
-
-
-def call(*arguments, folder, **options):
-    command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, **options)
 
 
 def test_a_load_is_found_by_its_factor(path):

@@ -1,4 +1,7 @@
-"""The command line as a user has it: a process of its own, its output, its exit code."""
+"""The command line as a user has it: a process of its own, its output, its exit code.
+
+How a process begins is tried by new ones (``process``), what commands say and do by forked ones (``call``).
+"""
 
 import gc
 import io
@@ -19,6 +22,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from forked import call
 from rich.console import Console
 
 from granular_response import __version__
@@ -44,9 +48,9 @@ loads: [{disk: top-centre, force: [0.0, -1.0]}]
 """
 
 
-def call(*arguments, folder=None, **options):
+def process(*arguments, folder=None):
     command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True)
 
 
 def assert_one_line_error(finished, *parts):
@@ -64,7 +68,7 @@ def test_help_answers_within_half_a_second():
     durations = []  # of the processor, so that other work on the machine does not count
     for _ in range(3):
         before = processor_time()
-        assert call("--help").returncode == 0
+        assert process("--help").returncode == 0
         durations.append(processor_time() - before)
     assert min(durations) < 0.5
 
@@ -81,11 +85,12 @@ def test_every_help_has_examples(command):
 
 
 def test_no_command_shows_the_help():
-    assert "Commands:" in call().stdout + call().stderr
+    shown = process()
+    assert "Commands:" in shown.stdout + shown.stderr
 
 
 def test_version():
-    assert call("version").stdout == f"granular-response {__version__}\n"
+    assert process("version").stdout == f"granular-response {__version__}\n"
     assert call("--version").stdout == f"granular-response {__version__}\n"
 
 
@@ -119,7 +124,7 @@ def test_codemeta_says_what_the_package_and_its_citation_say():
 
 def test_run_and_show(tmp_path):
     (tmp_path / "scene.yaml").write_text(SCENE)
-    finished = call("run", "scene.yaml", "-o", "out/result.nc", folder=tmp_path)
+    finished = process("run", "scene.yaml", "-o", "out/result.nc", folder=tmp_path)
     assert finished.returncode == 0, finished.stderr
     assert finished.stderr == ""  # no progress where nobody looks
     assert "out/result.nc: 14 disks" in finished.stdout
@@ -129,7 +134,7 @@ def test_run_and_show(tmp_path):
     result = store.read(tmp_path / "out" / "result.nc")[""]
     assert float(result["floor_response"].sum()) == pytest.approx(1.0, abs=1e-8)
 
-    shown = call("show", "out/result.nc", folder=tmp_path)
+    shown = process("show", "out/result.nc", folder=tmp_path)
     assert shown.returncode == 0, shown.stderr
     assert re.search(r"1\.0000000\d\d|0\.999999999", shown.stdout)
     for part in ("certificate", "force residual", "layers: 3", "minimise"):

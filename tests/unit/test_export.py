@@ -3,13 +3,13 @@
 import base64
 import re
 import struct
-import subprocess
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from forked import call
 
 import granular_response as gr
 from granular_response.scene import Scene
@@ -208,14 +208,14 @@ def test_a_missing_library_is_named(result, tmp_path, monkeypatch):
 
 
 def test_on_the_command_line(result, tmp_path):
-    command = [sys.executable, "-m", "granular_response", "export", str(result), "-o"]
-    done = subprocess.run([*command, "sub/result.xyz"], cwd=tmp_path, capture_output=True, text=True)
+    command = ["export", result, "-o"]
+    done = call(*command, "sub/result.xyz", folder=tmp_path)
     assert (done.returncode, done.stdout.strip()) == (0, "sub/result.xyz"), done.stderr
-    one = subprocess.run([*command, "rest.xyz", "--state", "0"], cwd=tmp_path, capture_output=True, text=True)
+    one = call(*command, "rest.xyz", "--state", 0, folder=tmp_path)
     assert one.returncode == 0, one.stderr
     assert (tmp_path / "rest.xyz").read_text().count("load_factor=0.0") == 1
     assert "load_factor=1.0" not in (tmp_path / "rest.xyz").read_text()
-    wrong = subprocess.run([*command, "result.abc"], cwd=tmp_path, capture_output=True, text=True)
+    wrong = call(*command, "result.abc", folder=tmp_path)
     assert wrong.returncode == 2
     assert wrong.stderr.count("\n") == 1
     assert "format '.abc' is unknown" in wrong.stderr

@@ -1,11 +1,10 @@
 """Packings from other programs, and back."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from forked import call
 
 from granular_response.machine import memory
 from granular_response.scene import FilePacking, Scene, SceneError, formats
@@ -301,7 +300,6 @@ def test_on_the_command_line(result, tmp_path):
     (tmp_path / "a.data").write_text(DATA)
     (tmp_path / "scene.yaml").write_text("packing: {kind: file, path: a.data}\ncontact: {friction: 0.2}\nloads: []\n")
     for arguments in (["run", "scene.yaml", "-o", "a.nc"], ["export", "a.nc", "-o", "b.lmp"]):
-        command = [sys.executable, "-m", "granular_response", *arguments]
-        finished = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        finished = call(*arguments, folder=tmp_path)
         assert finished.returncode == 0, finished.stderr
     assert "3 atoms" in (tmp_path / "b.lmp").read_text()

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from forked import call
 
 from granular_response.cli import main as cli
 from granular_response.paper.archive import crate
@@ -40,7 +41,7 @@ COMMANDS = {
 }
 
 
-def call(*arguments, folder, **options):
+def process(*arguments, folder, **options):
     command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
 
@@ -166,19 +167,21 @@ def test_a_locale_of_plain_letters_and_a_home_that_is_not_there(inputs, tmp_path
     changes = {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": "C", "HOME": "/nonexistent"}
     shutil.copy(inputs / "scene.yaml", tmp_path / "größe.yaml")
     for arguments in (["run", "größe.yaml", "-o", "größe.nc"], ["show", "größe.nc"]):
-        finished = call(*arguments, folder=tmp_path, encoding="utf-8", env={**os.environ, **changes})
+        finished = process(*arguments, folder=tmp_path, encoding="utf-8", env={**os.environ, **changes})
         assert finished.returncode == 0, finished.stderr
         assert finished.stderr == ""
     assert (tmp_path / "größe.nc").exists()
     (tmp_path / "table.yaml").write_text(TABLE.replace("disks.nc", "größe.csv"), encoding="utf-8")
-    finished = call("run", "table.yaml", "-o", "a.nc", folder=tmp_path, encoding="utf-8", env={**os.environ, **changes})
+    finished = process(
+        "run", "table.yaml", "-o", "a.nc", folder=tmp_path, encoding="utf-8", env={**os.environ, **changes}
+    )
     assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
 
 
 def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
     (tmp_path / "huge.yaml").write_text("packing: {kind: slab, layers: 10000, disks_per_row: 200}\n")
     little = 9 * 10**9
-    finished = call(
+    finished = process(
         "run", "huge.yaml", "-o", "a.nc", folder=tmp_path,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (little, little)),
     )  # fmt: skip

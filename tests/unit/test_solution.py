@@ -61,6 +61,7 @@ UNEVEN = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching
         (RUBS, "protocol__path_tolerance", 1e-5, False),
         (RUBS | {"protocol__method": "dynamics"}, "protocol__path_tolerance", 1e-5, True),
         (RUBS, "protocol__inertia", "rings", True),
+        (RUBS, "protocol__stage_damping", 0.5, True),
         (SMOOTH, "protocol__friction_law", "literal", True),
         (RUBS, "protocol__stop_kinetic_energy", 1e-9, False),
         (RUBS | UNEVEN, "protocol__stop_kinetic_energy", 1e-10, True),

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from forked import call
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -56,10 +57,7 @@ def command(folder: str, arguments: list[str]) -> None:
 
 @pytest.fixture(scope="module")
 def processes():
-    context = multiprocessing.get_context("forkserver")  # starts in milliseconds, with everything imported
-    modules = ("cli.main", "solve", "store.result")
-    context.set_forkserver_preload([f"granular_response.{module}" for module in modules])
-    return context
+    return multiprocessing.get_context("forkserver")  # starts in milliseconds, with everything imported
 
 
 def killed_at_random(processes, folder: Path, arguments: list[str], output: Path, kills: int) -> list[int]:
@@ -120,9 +118,7 @@ def solution():
 
 
 def one_line(arguments: list[str], folder: Path) -> str:
-    run = subprocess.run(
-        [sys.executable, "-m", "granular_response", *arguments], cwd=folder, capture_output=True, text=True
-    )
+    run = call(*arguments, folder=folder)
     assert run.returncode == 2
     assert run.stdout == ""
     assert run.stderr.startswith("granular-response: ")

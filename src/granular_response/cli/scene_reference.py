@@ -33,6 +33,7 @@ UNITS = {
     "ramp_time": "sqrt(R/g)",
     "load_factors": "",
     "path_tolerance": "",
+    "stage_damping": "",
     "stop_kinetic_energy": "disk weight × mean radius",
 }
 #: No key accepts this.

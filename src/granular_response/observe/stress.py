@@ -81,11 +81,8 @@ def given_forces(state: State, pair_force: FloatArray, wall_force: FloatArray) -
     return ContactForces(point=point, branch=branch, force=force[carries], period=state.box.period)
 
 
-def _images(contacts: ContactForces, reach: float) -> tuple[ContactForces, int]:
+def _images(contacts: ContactForces, period: float, reach: float) -> tuple[ContactForces, int]:
     """The contacts with their images that are nearer than ``reach`` to a point of one period, and how many of each."""
-    period = contacts.period
-    if period is None:
-        return contacts, 1
     copies = range(-math.ceil(reach / period), math.ceil(reach / period) + 1)
     inside = np.stack([np.mod(contacts.point[:, 0], period), contacts.point[:, 1]], axis=1)
     whole = ContactForces(
@@ -110,7 +107,7 @@ def coarse_grained_stress(
     length = np.linalg.norm(contacts.branch, axis=1)
     if contacts.period is not None:
         flat = np.stack([np.mod(flat[:, 0], contacts.period), flat[:, 1]], axis=1)
-        contacts, count = _images(contacts, cutoff * width + float(length.max(initial=0.0)))
+        contacts, count = _images(contacts, contacts.period, cutoff * width + float(length.max(initial=0.0)))
         length = np.tile(length, count)
     direction = contacts.branch / np.where(length > 0.0, length, 1.0)[:, None]
     # Outer product with the unit branch vector: the length is in the line integral.

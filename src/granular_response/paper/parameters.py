@@ -62,7 +62,6 @@ Integrators = Annotated[
 
 
 Path = Annotated[str, Field(strict=True, min_length=1), allowed("must be the path of a file")]
-Part = Annotated[float, Field(strict=True, gt=0, le=1), allowed("must be a number above 0, at most 1")]
 
 
 class Common(Description):

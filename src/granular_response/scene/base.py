@@ -77,6 +77,7 @@ Stiffness = Annotated[
     float, Field(strict=True, gt=0, le=MOST_STIFFNESS), allowed("must be a number greater than 0, at most 1e12")
 ]
 Fraction = Annotated[float, Field(strict=True, ge=0, lt=1), allowed("must be a number, 0 or greater and less than 1")]
+Part = Annotated[float, Field(strict=True, gt=0, le=1), allowed("must be a number above 0, at most 1")]
 Count = Annotated[int, Field(strict=True, ge=1), allowed("must be a whole number, 1 or greater")]
 Index = Annotated[
     int,

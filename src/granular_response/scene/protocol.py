@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from .base import Count, Description, Flag, NonNegative, Positive, allowed
+from .base import Count, Description, Flag, NonNegative, Part, Positive, allowed
 
 TimeStep = Annotated[
     Annotated[float, Field(strict=True, gt=0)] | Literal["auto"],
@@ -69,6 +69,11 @@ class Protocol(Description):
         description="Inertia in the dynamics of stages, which only tends to the quasi-static limit. disks: that of the "
         "disks; rings: mean mass, and moment of inertia of a ring of the disk's radius, for every disk, while weights "
         "stay as they are. Turning limits the time step less then, and the step grows with the limit.",
+    )
+    stage_damping: Part = Field(
+        default=1.0,
+        description="Part of all dashpots that is left in the dynamics of stages, which only tends to the quasi-static "
+        "limit. The time step grows with its limit: with a quarter of the dashpots it is more than twice as long.",
     )
     path_tolerance: Positive | None = Field(
         default=None,

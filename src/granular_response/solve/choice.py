@@ -117,6 +117,7 @@ def idle_settings(problem: Problem) -> list[str]:
         "preparation.ramp_time": "" if slow and falls else rest.reason if slow else "preparation.gravity is not slow",
         "protocol.load_factors": "" if scene.loads else load.reason,
         "protocol.inertia": "" if load.method == "stages" else load.reason,
+        "protocol.stage_damping": "" if load.method == "stages" else load.reason,
         "protocol.path_tolerance": "" if load.method == "path" else load.reason,
         "protocol.friction_law": "" if problem.rotations else "no friction",
         "protocol.stop_kinetic_energy": ""

@@ -373,11 +373,11 @@ class _Path:
 
         With sliding contacts the tangent is that of one direction of sliding, so a state may leave in one sense alone.
         """
-        return self._leaves_towards(1.0) or self._leaves_towards(-1.0)
+        state, direction = self._state(), self.system.unstable_direction(self.trial)
+        return self._leaves_towards(state, direction) or self._leaves_towards(state, -direction)
 
-    def _leaves_towards(self, sense: float) -> bool:
-        state = self._state()
-        beside = nudged(self.problem, state, self.system, self.trial, sense)
+    def _leaves_towards(self, state: State, direction: FloatArray) -> bool:
+        beside = nudged(self.problem, state, direction)
         time_step = TRIAL_STEP * stability_limit(self.problem, TRIAL_INTEGRATOR, smallest=True)
         dynamics = Dynamics(self.problem, beside, TRIAL_INTEGRATOR, time_step)
         self.record.stability_trials += 1

@@ -70,6 +70,20 @@ def _check_period(packing: Packing) -> None:
         )
 
 
+def _laws(scene: Scene, dashpots: float = 1.0) -> tuple[Law, Law]:
+    """The laws of a scene between disks and at walls; ``dashpots`` multiplies both parts of their dashpots."""
+    least = -np.inf if scene.protocol.tensile_dashpot else 0.0
+
+    def law(m: Contact, reduced_radius: float) -> Law:
+        whole = LAWS[scene.contact.law].of(
+            m.normal_stiffness, dashpots * m.normal_damping, m.tangential_stiffness, dashpots * m.tangential_damping,
+            m.friction, least, reduced_radius,
+        )  # fmt: skip
+        return whole if m.rubs else whole.without_friction()
+
+    return law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+
+
 @dataclass(frozen=True, repr=False)
 class Problem:
     """A scene with its packing, in the form the kernels take.
@@ -91,27 +105,24 @@ class Problem:
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
         """Build the packing (unless given) and the laws of a scene; raises ``SceneError`` for a bad packing."""
-        protocol = scene.protocol
-        least = -np.inf if protocol.tensile_dashpot else 0.0
-
-        def law(m: Contact, reduced_radius: float) -> Law:
-            whole = LAWS[scene.contact.law].of(
-                m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping, m.friction,
-                least, reduced_radius,
-            )  # fmt: skip
-            return whole if m.rubs else whole.without_friction()
-
         packing = scene.packing.build() if packing is None else packing
         _check_period(packing)
+        pair_law, wall_law = _laws(scene)
         return cls(
             scene=scene,
             packing=packing,
-            pair_law=law(scene.contact, DISKS),
-            wall_law=law(scene.resolved_wall, AT_WALL),
-            rule=RULES[protocol.friction_law],
+            pair_law=pair_law,
+            wall_law=wall_law,
+            rule=RULES[scene.protocol.friction_law],
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
         )
+
+    def in_stages(self) -> Problem:
+        """The same problem with the inertia and the dashpots of the dynamics of stages; its statics is the same."""
+        protocol = self.scene.protocol
+        pair_law, wall_law = _laws(self.scene, protocol.stage_damping)
+        return replace(self, rings=protocol.inertia == "rings", pair_law=pair_law, wall_law=wall_law)
 
     @property
     def n(self) -> int:

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ..state import State
+from ..state import FloatArray, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
 from .equilibrium import NEWTON_ITERATIONS, EquilibriumError, finish
 from .problem import Problem
-from .system import StaticSystem, Trial
+from .system import StaticSystem
 from .timestep import resolve_time_step
 
 #: Displacement along an unstable direction, of the disk that it moves most (mean radii).
@@ -148,14 +148,14 @@ def _statics(problem: Problem, settled: State, how: HandOver) -> State:
     return replace(found, reached=found.reached.after(settled.reached))
 
 
-def nudged(problem: Problem, state: State, system: StaticSystem, trial: Trial, sense: float = 1.0) -> State:
-    """An equilibrium displaced a little along the most unstable direction of its tangent; ``sense`` is 1 or -1."""
+def nudged(problem: Problem, state: State, direction: FloatArray) -> State:
+    """An equilibrium displaced a little along ``direction`` (dof,), with or against the most unstable one."""
     n = problem.n
-    shift = sense * NUDGE * system.unstable_direction(trial)[: 2 * n].reshape(2, n).T
+    shift = NUDGE * direction[: 2 * n].reshape(2, n).T
     return problem.with_static_forces(replace(state, position=state.position + shift))
 
 
 def _displaced(problem: Problem, state: State) -> State:
     system = StaticSystem(problem, state)
     known = system.start(state)
-    return nudged(problem, state, system, system.trial(known, known.q))
+    return nudged(problem, state, system.unstable_direction(system.trial(known, known.q)))

@@ -5,8 +5,8 @@ by statics costs far more than it is worth when responses are averaged over an e
 one load to the next, begins with static increments by plain Newton iterations. When these fail, or end in an
 unstable state, the paper's protocol (Sec. III.C) carries the packing over what is left of the stage: a linear ramp,
 relaxation, and the static finish. The dynamic part tends to the quasi-static path like the inverse of the ramp's
-duration. In that limit inertia does not matter, so it may be chosen for the longest stable step
-(``protocol.inertia``).
+duration. In that limit neither inertia nor dashpots matter, so they may be chosen for the longest stable step
+(``protocol.inertia``, ``protocol.stage_damping``).
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from .equilibrium import certify, external_force, newton
 from .problem import Problem
 from .settle import STAGE, settle
 from .system import StaticSystem
+from .timestep import stage_time_step
 
 #: First and shortest static increment, in mean disk weights.
 FIRST_STEP, SHORTEST_STEP = 2.0, 1.0
@@ -108,8 +109,10 @@ def _dynamic(problem: Problem, start: State, factor: float, ramp_time: float, lo
             raise Collapsed(factor, height)
 
     ramp = (start.load_factor, factor, ramp_time)
-    problem = replace(problem, rings=protocol.inertia == "rings")
-    return settle(problem, start, STAGE, stop, what=f"load {factor:g}", load=ramp, watch=watch)
+    return settle(
+        problem.in_stages(), start, STAGE, stop,
+        what=f"load {factor:g}", load=ramp, watch=watch, time_step=stage_time_step(problem),
+    )  # fmt: skip
 
 
 def _static(problem: Problem, state: State, target: float) -> tuple[State, bool]:

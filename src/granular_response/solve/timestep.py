@@ -17,7 +17,8 @@ moment of inertia 1/2 (radius 1), so that a tangential spring of stiffness k_T t
 
 With ``protocol.inertia: rings`` disks have mass 1 and the moment of inertia of rings, 1, in the stages between loads:
 all rates of turning are half as large, and no disk is lighter than others; neighbours then count as the mean of six and
-of as many as fit around the largest disk.
+of as many as fit around the largest disk. ``protocol.stage_damping`` leaves a part of the dashpots there, which limit
+the step more than the springs do.
 
 The study ``stability`` measures the limit of kicked packings against this one: they settle at 0.95 of it, and cycle
 or blow up between 1.05 and 1.7 times the limit.
@@ -26,7 +27,6 @@ or blow up between 1.05 and 1.7 times the limit.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -163,18 +163,12 @@ def stability_limit(problem: Problem, integrator: str | None = None, *, smallest
 def resolve_time_step(problem: Problem) -> float:
     """The scene's time step, or the one that is taken where it gives none (see :func:`time_step_reason`).
 
-    For rings, in place of the disks that the scene has, it is the same part of the limit.
-
     Raises
     ------
     UnstableTimeStep
         When the given step exceeds the limit.
     """
     step = problem.scene.protocol.time_step
-    if problem.rings:
-        disks = replace(problem, rings=False)
-        longer = stability_limit(problem) / stability_limit(disks, smallest=True)
-        return longer * resolve_time_step(disks)
     if step is None and stability_limit(problem) >= PAPERS_TIME_STEP:
         return PAPERS_TIME_STEP
     if step is None or step == "auto":
@@ -186,6 +180,15 @@ def resolve_time_step(problem: Problem) -> float:
             f"must be at most {limit:.3g} for this scene, or auto"
         )
     return float(step)
+
+
+def stage_time_step(problem: Problem) -> float:
+    """That of the dynamics of stages: the same part of its limit as the scene's time step is of the scene's own.
+
+    Raises what :func:`resolve_time_step` raises.
+    """
+    longer = stability_limit(problem.in_stages(), smallest=True) / stability_limit(problem, smallest=True)
+    return longer * resolve_time_step(problem)
 
 
 def time_step_reason(problem: Problem) -> str:

@@ -128,6 +128,8 @@ def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, 
         protocol["path_tolerance"] = _log_uniform(g, 1e-6, 1e-2)
     if g.random() < 0.05:
         protocol["friction_law"] = "unloading"
+    if g.random() < 0.3:
+        protocol["stage_damping"] = float(g.choice([0.1, 0.25, 0.5]))
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
 

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 
 from granular_response.paper.parameters import UNIT_LOAD, Growing, SceneGroup, over, some
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Fraction, Positive, Ratio
+from granular_response.scene.base import Description, Fraction, Part, Positive, Ratio
 
 
 class Lattice(Description):
@@ -30,6 +30,7 @@ class Stages(Description):
     """How disordered slabs are settled and loaded."""
 
     ramp_time: Positive = Field(description="Of a stage between two forces.")
+    damping: Part = Field(description="Part of the dashpots that is left in a stage.")
     stop_kinetic_energy: Positive
     collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a slab counts as collapsed.")
 

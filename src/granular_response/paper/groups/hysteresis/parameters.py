@@ -6,9 +6,9 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, SurveyedGroup, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, over, some
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
+from granular_response.scene.base import Count, Description, Fraction, Part, Positive, Ratio
 
 #: Keys of the scenes that cases decide.
 OF_CASES = ("packing.polydispersity", "packing.realization", "contact.friction", "loads")

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Growing, Part, Positives, SurveyedGroup, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Growing, Positives, SurveyedGroup, over, some
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio, allowed
+from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio, allowed
 from granular_response.scene.errors import Problem
 
 Rows = Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")]

@@ -6,11 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Counts, Part, SurveyedGroup, growing, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Counts, SurveyedGroup, growing, over, some
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
+from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
 from granular_response.scene.errors import Problem
-from granular_response.scene.protocol import Integrator
 
 #: Least number of realizations that are drawn from for an interval.
 LEAST_REALIZATIONS = 3
@@ -82,9 +81,6 @@ class Parameters(SurveyedGroup):
     )
     disks_per_layer: Count = Field(description="Disks of a row over number of rows, and one more.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and loads.")
-    survey_integrator: Integrator | None = Field(
-        None, description="Of disordered packings of the survey; null: as of the others."
-    )
     loads: Count = Field(description="Small loads on a disordered packing, one after another; one on a lattice.")
     margin: Positive = Field(description="Of these loads from the side walls, in heights.")
     width: Positive = Field(description="w of the Gaussian along x, in radii.")

@@ -200,8 +200,6 @@ def task(parameters: Parameters, c: int, h: int, realization: int) -> Task:
             "preparation.gravity": case.gravity,
         }
     )
-    if layers in case.surveyed and case.polydispersity > 0.0 and parameters.survey_integrator:
-        scene = scene.updated({"protocol.integrator": parameters.survey_integrator})
     force = None if case.force is None else case.force * scale**2
     asked = parameters
     return Task(scene, force, asked.loads, asked.margin, asked.lines, asked.width, grid(asked))

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from granular_response.paper.parameters import Part, Path, Positives, some
-from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
+from granular_response.paper.parameters import Path, Positives, some
+from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
 
 Names = Annotated[tuple[str, ...], AfterValidator(some)]
 

@@ -7,9 +7,9 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import UNIT_LOAD, Coefficients, Growing, Part, Positives, SceneGroup, over, some
+from granular_response.paper.parameters import UNIT_LOAD, Coefficients, Growing, Positives, SceneGroup, over, some
 from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
+from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
 from granular_response.scene.errors import Problem
 from granular_response.scene.lattice import LatticeConstant
 

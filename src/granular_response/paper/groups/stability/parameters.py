@@ -6,9 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.paper.parameters import Integrators, Numbers, Part, Positives, over, some
+from granular_response.paper.parameters import Integrators, Numbers, Positives, over, some
 from granular_response.scene import Scene, SceneError
-from granular_response.scene.base import Count, Description, Finite, Index, NonNegative, Positive, Ratio
+from granular_response.scene.base import Count, Description, Finite, Index, NonNegative, Part, Positive, Ratio
 from granular_response.scene.errors import Problem
 
 #: Scenes of trials start from the default one; which method a trial takes is its own matter.
