@@ -50,6 +50,7 @@ reproduce: setup ## Run what is not up to date: simulations, figures, claims, re
 	    < /dev/null & \
 	done; wait
 	"$(BIN)/dvc" repro
+	@test -z "$(REPRO)" || "$(BIN)/dvc" repro $(REPRO) --single-item claims report < /dev/null
 	@$(MAKE) --no-print-directory quote
 
 # Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand.

@@ -73,7 +73,8 @@ class Protocol(Description):
     stage_damping: Part = Field(
         default=1.0,
         description="Part of all dashpots that is left in the dynamics of stages, which only tends to the quasi-static "
-        "limit. The time step grows with its limit: with a quarter of the dashpots it is more than twice as long.",
+        "limit. The time step grows with its limit: with a quarter of the dashpots it is more than twice as long. "
+        "Swings last longer, so small loads ask for longer ramps.",
     )
     path_tolerance: Positive | None = Field(
         default=None,
