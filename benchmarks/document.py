@@ -349,7 +349,7 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     ) -> None:  # fmt: skip
         """``above``: why ``value`` is a lower bound, which can show that a goal is met but not that it is missed.
 
-        ``earlier``: what is known since what it measures last changed, without a new value: shown, and not judged.
+        ``earlier``: that ``value`` is older than what it measures, and what is known since: shown, and not judged.
         """
         if benchmark not in found:
             value = None
@@ -395,23 +395,16 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     what = "Errors, four at each of nine points, that dynamics reaches sooner than a path"
     add("precision", what, slower if points else None, None, 0, lambda v: f"{v:d}")
     runs = found.get("scale", {}).get("runs", [])
-    before = "before the last changes"
-    for method, disks, limit, what, earlier, held in (
-        ("path", 100_000, 60.0, "100,000 disks with friction", "", ""),
-        ("minimise", 1_000_000, 480.0, "1,000,000 disks without", "", ""),
-        (
-            "path",
-            1_000_000,
-            3600.0,
-            "1,000,000 disks with friction, prepared without",
-            f"{before}; since then ended after 72 min, unfinished",
-            before,
-        ),
+    since = "before the last changes; since then ended after 72 min, unfinished"
+    for method, disks, limit, what, earlier in (
+        ("path", 100_000, 60.0, "100,000 disks with friction", ""),
+        ("minimise", 1_000_000, 480.0, "1,000,000 disks without", ""),
+        ("path", 1_000_000, 3600.0, "1,000,000 disks with friction, prepared without", since),
     ):
         row = next((row for row in runs if row["method"] == method and row["disks"] >= disks), {})
         add("scale", f"Response of {what}", row.get("seconds"), None, limit, seconds, earlier=earlier)
         memory = row.get("peak_gibibytes")
-        add("scale", "Its memory", memory, None, 16.0, lambda v: f"{v:.2g} GiB", earlier=held)
+        add("scale", "Its memory", memory, None, 16.0, lambda v: f"{v:.2g} GiB", earlier=earlier)
     for method, what in (("minimise", "without friction"), ("path", "with friction")):
         row = next(iter(pick(found.get("scale", {}).get("exponents", []), method=method)), {})
         extent = f", {row['from_disks']:,} to {row['to_disks']:,}" if row else ""

@@ -11,7 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from forked import call
+from commands import call
 
 from granular_response.paper.archive import ArchiveError, crate, lock
 from granular_response.paper.archive.restore import restore

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from forked import call
+from commands import call
 from small_scenes import scene
 
 import granular_response as gr

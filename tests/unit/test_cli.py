@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from forked import call
+from commands import call, process
 from rich.console import Console
 
 from granular_response import __version__
@@ -46,11 +46,6 @@ packing: {kind: slab, layers: 3, disks_per_row: 5}
 contact: {friction: 0.0}
 loads: [{disk: top-centre, force: [0.0, -1.0]}]
 """
-
-
-def process(*arguments, folder=None):
-    command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True)
 
 
 def assert_one_line_error(finished, *parts):

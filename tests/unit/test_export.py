@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from forked import call
+from commands import call
 
 import granular_response as gr
 from granular_response.scene import Scene

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from forked import call
+from commands import call
 
 from granular_response.machine import memory
 from granular_response.scene import FilePacking, Scene, SceneError, formats

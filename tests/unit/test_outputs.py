@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from forked import call
+from commands import call, process
 
 from granular_response.cli import main as cli
 from granular_response.paper.archive import crate
@@ -39,11 +39,6 @@ COMMANDS = {
     "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),
     "report": (["report", "--root", ".", "--notes", "notes.md"], ["notes.md", "data/torque.nc", "figures/claims.json"]),
 }
-
-
-def process(*arguments, folder, **options):
-    command = [sys.executable, "-m", "granular_response", *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
 
 
 def contents(folder: Path) -> dict[str, bytes]:

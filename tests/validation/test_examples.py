@@ -4,13 +4,12 @@ import csv
 import os
 import re
 import runpy
-import subprocess
-import sys
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
+from commands import process
 from nbclient import NotebookClient
 
 from granular_response.scene import Scene
@@ -111,8 +110,7 @@ def test_the_starts_of_a_disordered_slab_differ_as_the_notes_say():
 
 
 def test_an_example_runs_on_the_command_line_from_another_folder(tmp_path):
-    command = [sys.executable, "-m", "granular_response", "run", str(EXAMPLES / "own_packing.yaml"), "-o", "out.nc"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    done = process("run", EXAMPLES / "own_packing.yaml", "-o", "out.nc", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "52 disks" in done.stdout
 

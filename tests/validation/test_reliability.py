@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from forked import call
+from commands import call
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

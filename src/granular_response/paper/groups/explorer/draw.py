@@ -16,7 +16,7 @@ from .parameters import Parameters
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``explorer``: a panel for ordered slabs, one for disordered ones."""
-    figure, (panels,) = style.figure(1, 2, width="double", height=2.5)
+    figure, (panels,) = style.figure(1, 2, width="double", height=2.9)
     lines = [0, 0]
     for slab in datasets.values():
         disordered = float(slab["polydispersity"]) > 0.0
@@ -32,7 +32,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     for axes, what in zip(panels, (style.RESPONSE, "smoothed response$\\,\\times\\,\\bar R$"), strict=True):
         axes.set(xscale="log", xlabel=style.FORCE, ylabel=f"{what} at $x = 0$")
         axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
-        axes.legend()
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
     style.letters(panels, place="above")
     return {"explorer": figure}
 

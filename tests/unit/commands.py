@@ -1,7 +1,7 @@
-"""The command line in processes that are forked from one that has imported everything.
+"""The command line as a test runs it: in a new process, or in one forked from a process that has imported everything.
 
-A process of its own with its own folder, streams and exit code, in a hundredth of the time that imports take. What a
-process does before it has imported anything, and what it must not import, is tested by real ones.
+Both have their own folder, streams and exit code, and a forked one begins in a hundredth of the time that imports take.
+What a process does before it has imported anything, and what it must not import, is tested by new ones.
 """
 
 from __future__ import annotations
@@ -25,8 +25,14 @@ PACKAGE = "granular_response"
 LONGEST = 120.0
 
 
+def process(*arguments: object, folder: str | Path | None = None, **options) -> subprocess.CompletedProcess[str]:
+    """``granular-response ARGUMENTS`` in a new process; ``options`` of ``subprocess.run``."""
+    command = [sys.executable, "-m", PACKAGE, *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
+
+
 def call(*arguments: object, folder: str | Path | None = None) -> subprocess.CompletedProcess[str]:
-    """What ``granular-response ARGUMENTS`` says in ``folder``, and its exit code."""
+    """The same in a forked process."""
     argv = [str(argument) for argument in arguments]
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         server = _server()
