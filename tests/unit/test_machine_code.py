@@ -1,16 +1,26 @@
-"""Where machine code is kept: it is never that of other sources."""
+"""Machine code: where it is kept, never that of other sources, and the same digits on every processor."""
 
+import importlib
+import math
 import os
+import pkgutil
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import llvmlite.binding as llvm
+import numba as nb
+import numpy as np
 import pytest
 
 from granular_response.machine import machine_code
 
 PACKAGE = Path(machine_code.__file__).parents[1]
+#: Packages that have kernels.
+SOURCE_PARTS = {folder.split("/")[0] for folder in machine_code.SOURCES} | {"observe", "theory"}
+#: Processors to compile for, with what they ask of the one that runs it.
+PROCESSORS = {"haswell": ["avx2", "fma", "bmi2"], "skylake-avx512": ["avx512f", "avx512vl", "avx512dq", "avx512bw"]}
 
 #: A kernel of one file, with what another one has inlined into it.
 SCRIPT = """
@@ -55,3 +65,44 @@ def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):
         assert machine_code.kernel(lambda x: x + 1.0)(1.0) == 2.0  # compiled all the same
     finally:
         machine_code.cache_folder.cache_clear()
+
+
+#: Scalar products of all lengths up to that of a wide band, in hexadecimal.
+SUMS = """
+import numpy as np
+from granular_response.solve.linear.two_sided import _product
+a, b = np.random.default_rng(0).standard_normal((2, 300))
+print(*(float(_product(a, 1, b, 2, size)).hex() for size in range(250)))
+"""
+
+
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_no_kernel_leaves_the_order_of_its_sums_to_the_compiler():
+    """Which takes that of the processor's registers: the same scene then had other digits on another machine."""
+    kernels = {}
+    for module in pkgutil.walk_packages([str(PACKAGE)], "granular_response."):
+        if module.name.split(".")[1] in SOURCE_PARTS and not module.name.endswith("__main__"):
+            for name, value in vars(importlib.import_module(module.name)).items():
+                if hasattr(value, "targetoptions"):
+                    kernels[f"{module.name}.{name}"] = value.targetoptions
+    assert len(kernels) > 50
+    assert [name for name, options in kernels.items() if options.get("fastmath")] == []
+
+
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_sums_are_the_same_compiled_for_processors_with_wide_and_with_narrow_registers(tmp_path):
+    features = llvm.get_host_cpu_features()
+    kinds = [kind for kind, needs in PROCESSORS.items() if all(features.get(one) for one in needs)]
+    if len(kinds) < 2:
+        pytest.skip("this processor runs no code for another one")
+    found = {}
+    for kind in kinds:
+        environment = {**os.environ, "NUMBA_CPU_NAME": kind, "NUMBA_CACHE_DIR": str(tmp_path)}
+        run = subprocess.run([sys.executable, "-c", SUMS], env=environment, capture_output=True, text=True)
+        assert run.returncode == 0, run.stderr
+        found[kind] = run.stdout
+    assert len(set(found.values())) == 1
+    sums = np.array([float.fromhex(one) for one in found[kinds[0]].split()])
+    a, b = np.random.default_rng(0).standard_normal((2, 300))
+    exact = [math.fsum((a[1 : 1 + size] * b[2 : 2 + size]).tolist()) for size in range(250)]
+    np.testing.assert_allclose(sums, exact, rtol=0, atol=1e-13)

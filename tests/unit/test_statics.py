@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse.linalg import eigs
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import LAWS
-from granular_response.solve import Dynamics, Problem
+from granular_response.solve import Dynamics, Problem, solve_scene
 from granular_response.solve.system import DENSE, StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
@@ -211,6 +212,23 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
     lowest, found = system.deinterleave(vectors[:, np.argmin(every)].real), system.unstable_direction(trial)
     lowest, found = (v[: 2 * problem.n] / v[1] for v in (lowest, found))  # along x of the disk on top
     np.testing.assert_allclose(found, lowest, atol=1e-6)
+
+
+def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(monkeypatch):
+    """A million disks took 500 solutions to tell that 9 weights per radius are more than nothing."""
+    slides = solve_scene(scene(6, 15, contact__friction=0.2, loads=[{"disk": "top-centre", "force": [0.0, -15.0]}]))
+    system = StaticSystem(slides.problem, slides.loaded[0])
+    trial = system.trial(known := system.start(slides.loaded[0]), known.q)
+    symmetric = system._symmetric_part(system._what_moves(trial)).toarray()
+    assert SLIDING in trial.pair_status and np.linalg.eigvalsh(symmetric).min() < 0.0  # so there is a suspicion
+    assert np.linalg.eigvals(system.tangent(trial).toarray()).real.min() > 1.0
+    module, asked = sys.modules[StaticSystem.__module__], []
+    monkeypatch.setattr(module, "eigs", lambda *a, tol, **more: asked.append(tol) or eigs(*a, tol=tol, **more))
+    assert system.negative_modes(trial) == 0
+    assert asked == [module.ACCURACIES[0]]
+    monkeypatch.setattr(module, "CERTAIN", 1e5)  # not certain at first
+    assert system.negative_modes(trial) == 0
+    assert asked[1:] == list(module.ACCURACIES)
 
 
 def test_disks_that_slide_alone_call_for_no_eigenvalues(monkeypatch):

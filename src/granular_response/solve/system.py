@@ -41,13 +41,18 @@ ROUGH, FEW = 1e-3, 6
 #: Stiffness that keeps disks that roll freely from counting as unstable.
 FREE = 1e-6
 
-#: Eigenvalues that are looked for where one is negative, vectors among which they are, and their accuracy, in parts of
-#: the shift that keeps what moves freely from counting.
-SOUGHT, AMONG, SIGN = 4, 14, 0.1
+#: Eigenvalues that are looked for where one is negative, and vectors among which they are.
+SOUGHT, AMONG = 4, 14
+
+#: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it is
+#: where it is so many times as far from zero as the accuracy of this distance.
+ACCURACIES, CERTAIN = (1e-3, 1e-6), 10.0
+#: Accuracy at last, in parts of the shift that keeps what moves freely from counting.
+SIGN = 0.1
 
 #: How far to the left of zero they are looked for, in units of the normal stiffness: the first that the symmetric part
-#: allows.
-LEFT_OF_ALL = (1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
+#: allows. The nearer, the farther apart eigenvalues near zero are from there.
+LEFT_OF_ALL = (1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
 
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
@@ -497,9 +502,10 @@ class StaticSystem:
 
         Without sliding the tangent is symmetric (up to the turn of the contacts) and they are counted exactly.
         Sliding makes it unsymmetric. No eigenvalue has a smaller real part than the lowest eigenvalue of its symmetric
-        part (Bendixson). Is that negative, the eigenvalue nearest to a point still further to the left is computed:
-        from there a real negative one is nearer than all that are not. Is it negative, the ``SOUGHT`` nearest are, and
-        those with a negative real part counted. The shift ``FREE`` keeps disks that roll freely from counting.
+        part (Bendixson). Is that negative, the eigenvalue nearest to a point still further to the left is computed, as
+        accurately as its sign asks: from there a real negative one is nearer than all that are not. Is it negative, the
+        ``SOUGHT`` nearest are, and those with a negative real part counted. The shift ``FREE`` keeps disks that roll
+        freely from counting.
         """
         matrix = self._what_moves(trial)
         modes = self._storage.negative_eigenvalues(self._symmetric_part(matrix))
@@ -507,22 +513,13 @@ class StaticSystem:
             return modes
         if self.dof <= DENSE:
             return int((np.linalg.eigvals(matrix.toarray()).real < 0).sum())
-        lowest = self._lowest(matrix)
-        if lowest(1)[0].real >= 0:
-            return 0
-        return int((lowest(SOUGHT)[0].real < 0).sum())
-
-    def _lowest(self, matrix: sp.csc_array) -> Callable[[int], tuple[NDArray[Any], NDArray[Any]]]:
-        """What finds so many eigenvalues (m,), the nearest to a point left of all, and their vectors (dof, m)."""
         left = self._left_of_all(matrix)
-        self._kept = None  # two need not be in memory
-        self._steps.forget()
-        factor = self._storage.factor(self._with_shift(matrix, -left))
-        return partial(
-            eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (FREE / -left),
-            OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
-            v0=np.random.default_rng(0).standard_normal(self.dof),
-        )  # fmt: skip
+        nearest = self._nearest_to(left, matrix)
+        for accuracy in (*ACCURACIES, SIGN * (FREE / -left)):
+            lowest = float(nearest(1, tol=accuracy)[0][0].real)
+            if abs(lowest) > CERTAIN * accuracy * (lowest - left):
+                break
+        return int((nearest(SOUGHT)[0].real < 0).sum()) if lowest < 0 else 0
 
     def _what_moves(self, trial: Trial) -> sp.csc_array:
         """The tangent shifted by ``FREE``, less the unknowns that change no force, such as the angle of a sliding disk.
@@ -551,6 +548,17 @@ class StaticSystem:
                 break
         return -origin * self.problem.stiffness
 
+    def _nearest_to(self, left: float, matrix: sp.csc_array) -> Callable[..., tuple[NDArray[Any], NDArray[Any]]]:
+        """What finds so many eigenvalues (m,) of a tangent, the nearest to a number, and their vectors (dof, m)."""
+        self._kept = None  # two need not be in memory
+        self._steps.forget()
+        factor = self._storage.factor(self._with_shift(matrix, -left))
+        return partial(
+            eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (FREE / -left),
+            OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
+            v0=np.random.default_rng(0).standard_normal(self.dof),
+        )  # fmt: skip
+
     def unstable_direction(self, trial: Trial, *, rough: bool = False) -> FloatArray:
         """(dof,) eigenvector of the lowest eigenvalue of the tangent, of largest component 1.
 
@@ -561,7 +569,8 @@ class StaticSystem:
             if self.dof <= DENSE:
                 values, every = np.linalg.eig(matrix.toarray())
                 return self._of_largest_one(every[:, np.argmin(values.real)].real)
-            return self._of_largest_one(self._lowest(matrix)(1)[1][:, 0].real)
+            nearest = self._nearest_to(self._left_of_all(matrix), matrix)
+            return self._of_largest_one(nearest(1)[1][:, 0].real)
         if self.dof <= DENSE:
             _, every = np.linalg.eigh(self._symmetric_part(self.tangent(trial)).toarray())
             return self._of_largest_one(every[:, 0])

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...machine.lanes import WIDTH, less_product, put, spread, take
+from ...machine.lanes import WIDTH, less_product, put, spread, take, total
 from ...machine.machine_code import kernel
 from ...state import FloatArray
 from .band_lu import multiples_of_four
@@ -129,13 +129,24 @@ class _Side:
         )
 
 
-@kernel(fastmath={"reassoc", "contract", "nsz"})
+@kernel
 def _product(a, row, x, start, size):
-    """Scalar product of ``a[row:]`` and ``x[start:]`` in any order of summation."""
-    total = 0.0
-    for j in range(size):
-        total += a[np.uint64(row + j)] * x[np.uint64(start + j)]
-    return total
+    """Scalar product of ``a[row:]`` and ``x[start:]``, in partial sums of the same order on every machine."""
+    # what the compiler may sum in any order it sums as the processor has it
+    first = second = spread(0.0)
+    j = 0
+    while j + 2 * WIDTH <= size:
+        first = less_product(first, take(a, row + j, first), take(x, start + j, first))
+        second = less_product(second, take(a, row + j + WIDTH, first), take(x, start + j + WIDTH, first))
+        j += 2 * WIDTH
+    if j + WIDTH <= size:
+        first = less_product(first, take(a, row + j, first), take(x, start + j, first))
+        j += WIDTH
+    rest = 0.0
+    while j < size:
+        rest = less_product(rest, take(a, row + j, 0.0), take(x, start + j, 0.0))
+        j += 1
+    return -(total(first + second) + rest)
 
 
 @kernel
