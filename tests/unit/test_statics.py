@@ -216,12 +216,12 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
 
 def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(monkeypatch):
     """A million disks took 500 solutions to tell that 9 weights per radius are more than nothing."""
-    slides = solve_scene(scene(6, 15, contact__friction=0.2, loads=[{"disk": "top-centre", "force": [0.0, -15.0]}]))
+    slides = solve_scene(scene(4, 9, contact__friction=1.0, loads=[{"disk": "top-centre", "force": [0.0, -24.0]}]))
     system = StaticSystem(slides.problem, slides.loaded[0])
     trial = system.trial(known := system.start(slides.loaded[0]), known.q)
     symmetric = system._symmetric_part(system._what_moves(trial)).toarray()
     assert SLIDING in trial.pair_status and np.linalg.eigvalsh(symmetric).min() < 0.0  # so there is a suspicion
-    assert np.linalg.eigvals(system.tangent(trial).toarray()).real.min() > 1.0
+    assert np.linalg.eigvals(system._what_moves(trial).toarray()).real.min() > 1.0
     module, asked = sys.modules[StaticSystem.__module__], []
     monkeypatch.setattr(module, "eigs", lambda *a, tol, **more: asked.append(tol) or eigs(*a, tol=tol, **more))
     assert system.negative_modes(trial) == 0
