@@ -345,24 +345,20 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
 
     def add(
         benchmark: str, what: str, value: float | None, least: float | None, most: float | None, form: Any,
-        above: str = "", earlier: str = "",
+        above: str = "",
     ) -> None:  # fmt: skip
-        """``above``: why ``value`` is a lower bound, which can show that a goal is met but not that it is missed.
-
-        ``earlier``: that ``value`` is older than what it measures, and what is known since: shown, and not judged.
-        """
+        """``above``: why ``value`` is a lower bound, which can show that a goal is met but not that it is missed."""
         if benchmark not in found:
             value = None
         goal = f"at least {form(least)}" if least is not None else f"at most {form(most)}"
         if value is None:
-            rows.append({"what": what, "goal": goal, "measured": "not measured", "met": None})
+            rows.append({"what": what, "goal": goal, "measured": "not measured", "met": None, "on": ""})
         else:
             met = value >= least if least is not None else value <= most  # type: ignore[operator]
             said = f"over {form(value)} ({above})" if above else form(value)
-            if earlier:
-                rows.append({"what": what, "goal": goal, "measured": f"{said}, {earlier}", "met": None})
-                return
-            rows.append({"what": what, "goal": goal, "measured": said, "met": None if above and not met else bool(met)})
+            known = None if above and not met else bool(met)
+            on = measured_on(found[benchmark])
+            rows.append({"what": what, "goal": goal, "measured": said, "met": known, "on": on})
 
     def times(value: float | None) -> str:
         return f"{value:,.0f} times" if value is not None and value >= 20 else f"{value:.1f} times"
@@ -395,16 +391,15 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     what = "Errors, four at each of nine points, that dynamics reaches sooner than a path"
     add("precision", what, slower if points else None, None, 0, lambda v: f"{v:d}")
     runs = found.get("scale", {}).get("runs", [])
-    since = "before the last changes; since then ended after 72 min, unfinished"
-    for method, disks, limit, what, earlier in (
-        ("path", 100_000, 60.0, "100,000 disks with friction", ""),
-        ("minimise", 1_000_000, 480.0, "1,000,000 disks without", ""),
-        ("path", 1_000_000, 3600.0, "1,000,000 disks with friction, prepared without", since),
+    for method, disks, limit, what in (
+        ("path", 100_000, 60.0, "100,000 disks with friction"),
+        ("minimise", 1_000_000, 480.0, "1,000,000 disks without"),
+        ("path", 1_000_000, 3600.0, "1,000,000 disks with friction, prepared without"),
     ):
         row = next((row for row in runs if row["method"] == method and row["disks"] >= disks), {})
-        add("scale", f"Response of {what}", row.get("seconds"), None, limit, seconds, earlier=earlier)
+        add("scale", f"Response of {what}", row.get("seconds"), None, limit, seconds)
         memory = row.get("peak_gibibytes")
-        add("scale", "Its memory", memory, None, 16.0, lambda v: f"{v:.2g} GiB", earlier=earlier)
+        add("scale", "Its memory", memory, None, 16.0, lambda v: f"{v:.2g} GiB")
     for method, what in (("minimise", "without friction"), ("path", "with friction")):
         row = next(iter(pick(found.get("scale", {}).get("exponents", []), method=method)), {})
         extent = f", {row['from_disks']:,} to {row['to_disks']:,}" if row else ""
@@ -490,7 +485,8 @@ def over_others(found: dict[str, Metrics]) -> list[dict[str, str]]:
             times[code] = min(times.get(code, float("inf")), row["times_ours"])
         said = ", ".join(f"{code} {value:.0f}" for code, value in times.items() if code != OURS)
         if said:
-            rows.append({"what": f"A step of {disks:,} disks with friction, times ours", "measured": said})
+            what = f"A step of {disks:,} disks with friction, times ours"
+            rows.append({"what": what, "measured": said, "on": measured_on(found["arena"])})
     for scene, (error, words) in COMPARED.items():
         least: dict[str, float] = {}
         for row in pick(found.get("responses", {}).get("reached", []), scene=scene):
@@ -499,7 +495,8 @@ def over_others(found: dict[str, Metrics]) -> list[dict[str, str]]:
                 least[code] = min(least.get(code, float("inf")), row[error])
         said = ", ".join(f"{code} {value / least[OURS]:.0f}" for code, value in least.items() if code != OURS)
         if said:
-            rows.append({"what": f"A response of 908 disks ({words}), times ours", "measured": said})
+            what = f"A response of 908 disks ({words}), times ours"
+            rows.append({"what": what, "measured": said, "on": measured_on(found["responses"])})
     return rows
 
 
@@ -515,10 +512,9 @@ def family(code: str) -> str:
 def quoted(found: dict[str, Metrics]) -> str:
     """The lines of the README."""
     rows = {row["what"]: row for row in goals(found)}
-    lines = ["| | measured |", "|---|---|"]
-    lines += [f"| {row['what']} | {row['measured']} |" for row in over_others(found)]
-    lines += [f"| {what} | {rows[what]['measured']} |" for what in QUOTED]
-    return "\n".join(lines)
+    lines = ["| | measured | processor |", "|---|---|---|"]
+    quotes = [*over_others(found), *(rows[what] for what in QUOTED)]
+    return "\n".join([*lines, *(f"| {row['what']} | {row['measured']} | {row['on']} |" for row in quotes)])
 
 
 def main() -> None:
