@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -516,7 +516,7 @@ class StaticSystem:
         left = self._left_of_all(matrix)
         nearest = self._nearest_to(left, matrix)
         for accuracy in (*ACCURACIES, SIGN * (FREE / -left)):
-            lowest = float(nearest(1, accuracy)[0][0].real)
+            lowest = float(nearest(1, tol=accuracy)[0][0].real)
             if abs(lowest) > CERTAIN * accuracy * (lowest - left):
                 break
         return int((nearest(SOUGHT)[0].real < 0).sum()) if lowest < 0 else 0
@@ -549,32 +549,15 @@ class StaticSystem:
         return -origin * self.problem.stiffness
 
     def _nearest_to(self, left: float, matrix: sp.csc_array) -> Callable[..., tuple[NDArray[Any], NDArray[Any]]]:
-        """What finds so many eigenvalues (m,) of a tangent, the nearest to a number, and their vectors (dof, m).
-
-        They are those of its inverse with that number off the diagonal. Large packings have no memory for copies of the
-        matrix, which is changed, nor for an exact factorisation where a rough one with iterations will do.
-        """
+        """What finds so many eigenvalues (m,) of a tangent, the nearest to a number, and their vectors (dof, m)."""
         self._kept = None  # two need not be in memory
         self._steps.forget()
-        matrix.data[self._diagonal] -= left
-        rough = Sequence(self._storage, definite=False, same=0.0)
-
-        @cache
-        def exact() -> Factor:
-            rough.forget()
-            return self._storage.factor(matrix)
-
-        def nearest(count: int, accuracy: float = SIGN * (FREE / -left)) -> tuple[NDArray[Any], NDArray[Any]]:
-            def solve(right: FloatArray) -> FloatArray:
-                found = rough.solve(matrix, right, LEFT_OVER * accuracy, 0.0) if accuracy >= ACCURACIES[0] else None
-                return exact().solve(right) if found is None else found
-
-            inverse = LinearOperator((self.dof, self.dof), solve, dtype=float)
-            start = np.random.default_rng(0).standard_normal(self.dof)
-            values, vectors = eigs(inverse, count, ncv=AMONG, tol=accuracy, v0=start)
-            return left + 1.0 / values, vectors
-
-        return nearest
+        factor = self._storage.factor(self._with_shift(matrix, -left))
+        return partial(
+            eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (FREE / -left),
+            OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
+            v0=np.random.default_rng(0).standard_normal(self.dof),
+        )  # fmt: skip
 
     def unstable_direction(self, trial: Trial, *, rough: bool = False) -> FloatArray:
         """(dof,) eigenvector of the lowest eigenvalue of the tangent, of largest component 1.
