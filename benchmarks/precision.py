@@ -9,9 +9,6 @@ response needs it; compilation is not included.
 With friction the rest state depends on the fall, and so on rounding and time step a little: LAMMPS falls into another
 one, and keeps a difference however slowly it is loaded. So its error is given from its own limit too, extrapolated
 linearly in the inverse ramp time from its two slowest runs.
-
-A second table has nine points, frictions and forces from rest without the fall: processor time to an error, by a path
-with a tolerance and by dynamics with ramps of several lengths, from the same rest state.
 """
 
 from __future__ import annotations
@@ -27,11 +24,6 @@ from timing import floor, scene, write
 from granular_response.scene import Scene
 from granular_response.solve import Problem, follow, loaded_states, rest_state
 
-FRICTIONS, FORCES = (0.05, 0.2, 1.0), (4.0, 15.0, 50.0)
-#: Errors of the nine points, which are tolerances of the paths too, and ramp times of the dynamics.
-ERRORS, RAMPS = (1e-2, 1e-3, 1e-4, 1e-5), (1.0, 5.0, 20.0, 100.0)
-#: Seconds of a path after which it is not run again, and with which no finer one is tried.
-LONG = 3.0
 SCENES = {"friction": (0.2, 15.0), "frictionless": (0.0, 4.0)}
 FINEST = 0.05
 #: Runs of every method, LAMMPS included, of which the least time counts; the longest dynamics here runs once.
@@ -137,61 +129,6 @@ def measure(name: str) -> tuple[list[dict], dict]:
     return rows, {"scene": name, "friction": friction, "force": force, "reference_change": worth}
 
 
-def nine_points() -> tuple[list[dict], list[dict]]:
-    """Runs from rest to nine pairs of friction and force, and for each and every error the least times.
-
-    The quasi-static limit is the path in increments of the default length.
-    """
-    runs: list[dict] = []
-    points = []
-    for friction in FRICTIONS:
-        unloaded = Problem.from_scene(scene(friction))
-        rest_state(unloaded)  # compiles
-        start = time.process_time()
-        rest = rest_state(unloaded)
-        fall = time.process_time() - start
-        for force in FORCES:
-
-            def timed(rest=rest, friction=friction, force=force, **protocol: Any) -> tuple[np.ndarray, float]:
-                """Normalised response and processor time from the rest state on."""
-                problem = Problem.from_scene(scene(friction, force, **protocol)).with_loads(rest.position)
-                seconds = np.inf
-                for _ in range(REPEATS):
-                    start = time.process_time()
-                    loaded = loaded_states(problem, rest, [1.0])[1][0]
-                    seconds = min(seconds, time.process_time() - start)
-                    if seconds > LONG:
-                        break
-                return (floor(loaded, problem) - floor(rest, problem)) / force, seconds
-
-            limit, seconds = timed(method="path")
-            here: list[dict] = [{"method": "path", "setting": None, "seconds": seconds}]
-            for tolerance in ERRORS:
-                if len(here) > 1 and here[-1]["seconds"] > LONG:
-                    break
-                response, seconds = timed(method="path", path_tolerance=tolerance)
-                error = float(np.abs(response - limit).max())
-                here.append({"method": "path", "setting": tolerance, "seconds": seconds, "error": error})
-            for ramp in RAMPS:
-                response, seconds = timed(
-                    method="dynamics", integrator="verlet", time_step=8e-4, ramp_time=ramp,
-                    stop_kinetic_energy=1e-9, static_finish=True,
-                )  # fmt: skip
-                error = float(np.abs(response - limit).max())
-                here.append({"method": "dynamics", "setting": ramp, "seconds": seconds, "error": error})
-            for row in here:
-                row.update(friction=friction, force=force)
-                print(row, flush=True)
-            runs += here
-            point: dict[str, Any] = {"friction": friction, "force": force, "fall_seconds": fall}
-            for error in ERRORS:
-                for method in ("path", "dynamics"):
-                    mine = [row for row in here if row["method"] == method]
-                    point[f"{method}_{error:.0e}"] = fastest(mine, error)
-            points.append(point)
-    return runs, points
-
-
 #: Errors at which times are compared, and by which errors LAMMPS is judged.
 TARGETS = {"friction": 1e-5, "frictionless": 1e-6}
 
@@ -229,12 +166,9 @@ def main(path: str) -> None:
         found, reference = measure(name)
         rows += found
         references.append(reference)
-    nine_runs, points = nine_points()
     write(
         path,
         {
-            "nine_runs": nine_runs,
-            "nine_points": points,
             "lammps": lammps.version(),
             "references": references,
             "runs": rows,

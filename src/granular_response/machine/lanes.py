@@ -230,24 +230,6 @@ def anywhere(typing, condition):
 
 
 @intrinsic
-def total(typing, value):
-    """Sum of all lanes, of halves of halves: the order that vector registers allow, and the same in all of them."""
-
-    def generate(context, builder, sig, args):
-        whole, width = args[0], WIDTH
-        while width > 1:
-            width //= 2
-            halves = [
-                builder.shuffle_vector(whole, whole, ir.Constant(ir.VectorType(ir.IntType(32), width), list(lanes)))
-                for lanes in (range(width), range(width, 2 * width))
-            ]
-            whole = builder.fadd(*halves)
-        return builder.extract_element(whole, ir.IntType(32)(0))
-
-    return (types.float64(LANES), generate) if value == LANES else None
-
-
-@intrinsic
 def root(typing, value):
     """Square root."""
     if value == LANES:
@@ -289,17 +271,16 @@ def quotient_where(typing, condition, dividend, divisor, otherwise):
 
 @intrinsic
 def less_product(typing, value, factor, other):
-    """``value - factor * other`` rounded once; ``factor`` may be a float."""
+    """``value - factor * other`` rounded once; ``factor`` is a float."""
     if value == LANES:
 
         def generate(context, builder, sig, args):
             fused = cgutils.get_or_insert_function(
                 builder.module, ir.FunctionType(_DOUBLES, [_DOUBLES] * 3), f"llvm.fma.v{WIDTH}f64"
             )
-            negative = _as_lanes(builder, sig.args[1], builder.fneg(args[1]))
-            return builder.call(fused, [negative, args[2], args[0]])
+            return builder.call(fused, [_spread(builder, builder.fneg(args[1])), args[2], args[0]])
 
-        return LANES(LANES, LANES if factor == LANES else types.float64, LANES), generate
+        return LANES(LANES, types.float64, LANES), generate
 
     def generate_scalar(context, builder, sig, args):
         double = ir.DoubleType()
@@ -311,7 +292,7 @@ def less_product(typing, value, factor, other):
 
 if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
     spread = partial(np.full, WIDTH)
-    root, magnitude, anywhere, total = np.sqrt, np.abs, np.any, np.sum
+    root, magnitude, anywhere = np.sqrt, np.abs, np.any
 
     def less_product(value, factor, other):
         return value - factor * other

@@ -26,7 +26,14 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
 
     Kernels have no Python errors of division, make no arrays and so count no references to them: counting costs a
     small scene half of its time. ``options`` are those of ``numba.njit`` beside that.
+
+    Raises
+    ------
+    ValueError
+        For ``fastmath``: the compiler then sums in the order of a processor's registers, and others give other digits.
     """
+    if options.get("fastmath"):
+        raise ValueError("fastmath is not allowed: results would depend on the processor; write out the order of sums")
     if function is None:
         return partial(kernel, **options)
     folder = cache_folder()

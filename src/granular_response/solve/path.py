@@ -25,15 +25,16 @@ from ..state import Crossing, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop, relax
 from .equilibrium import certify, external_force
 from .increment import HASTY, PATIENT, Work, solve_increment
-from .increment_error import Place, error_of_two, slip
+from .increment_error import Place, error_of_two
 from .problem import Problem
 from .settle import CROSSING as CROSSING_OVER
 from .settle import CROSSING_STOP, NotSettled, nudged, settle
 from .system import Configuration, StaticSystem, Trial
 from .timestep import stability_limit
 
-#: First load increment in mean disk weights, times the square root of the number of disks: the deeper a packing, the
-#: more load it takes to change as many contacts. But under the load they change at the same one however deep it is.
+#: First load increment in mean disk weights, or as a part of a load below that, times the square root of the number of
+#: disks: the deeper a packing, the more load it takes to change as many contacts. But under the load they change at the
+#: same one however deep it is.
 FIRST_STEP, LONGEST_FIRST = 0.0033, 1.6
 #: First increment of a large load, as a part of it.
 LARGE_LOAD = 0.005
@@ -41,8 +42,9 @@ LARGE_LOAD = 0.005
 LONGEST, SHORTEST = 5.0, 0.25
 #: By which the longest is longer for a looser tolerance, at most.
 LOOSE = 3.0
-#: Tolerance for which first increments are short enough without a look at their error.
-TRUSTED_FOR = 1e-5
+#: Tolerance for which first increments are short enough without a look at their error, if they are such a part of the
+#: load between two states that are kept: where that is less, one contact makes more of it.
+TRUSTED_FOR, TRUSTED_PART = 1e-5, 0.006
 #: Factorisations that an easy increment takes at most.
 EASY = 3
 #: By which an increment is longer than easy ones before, and shorter than one that needed fixed limits; and so many
@@ -118,7 +120,7 @@ def follow(
     dynamics = _DynamicsOptions(integrator, time_step, crossing_ramp, maximum_steps)
     if tolerance is None:
         tolerance = problem.scene.protocol.path_tolerance
-    return _Path(problem, rest, dynamics, longest_step, tolerance, progress, record).states(factors)
+    return _Path(problem, rest, factors, dynamics, longest_step, tolerance, progress, record).states()
 
 
 @dataclass(frozen=True)
@@ -139,40 +141,37 @@ def _towards(here: float, target: float, step: float) -> float:
 class _Path:
     """The present end of a load path."""
 
-    def __init__(self, problem, rest, dynamics: _DynamicsOptions, longest_step, tolerance, progress, record):
+    def __init__(self, problem, rest, factors, dynamics: _DynamicsOptions, longest_step, tolerance, progress, record):
         self.problem: Problem = problem
         self.record: PathRecord = PathRecord() if record is None else record
         self.progress = progress
         self.dynamics = dynamics
         self.unit = problem.load_size
-        #: part of the load that a first increment may have; nothing is added to what the caller asks for
-        self.part = LARGE_LOAD if longest_step is None else 0.0
-        first = min(FIRST_STEP * problem.n**0.5, LONGEST_FIRST) if longest_step is None else longest_step
-        self.least_first = first / self.unit
-        self.shortest = SHORTEST * self.least_first
+        self.factors: Sequence[float] = factors
+        self.longest_step = longest_step
         #: None where increments keep to the first length
         self.tolerance: float | None = tolerance if longest_step is None else None
         self.stretch = 1.0 if self.tolerance is None else LONGEST * min(max(self.tolerance / TRUSTED_FOR, 1.0), LOOSE)
-        #: length of the increments that are trusted, as a part of the first; without friction all are exact
-        looks = self.tolerance is not None and problem.rotations
-        self.fineness = min(1.0, tolerance / TRUSTED_FOR) if looks else np.inf
+        #: whether errors are looked at: without friction increments of any length are exact
+        self.looks = self.tolerance is not None and problem.rotations
+        self.looseness = tolerance / TRUSTED_FOR if self.looks else np.inf
         self.factor = rest.load_factor
         self.start_is_stable = rest.reached.certificate is not None and rest.reached.certificate.stable is True
         self.middle: Place | None = None
         #: a state ahead that is known, but was too far away for the tolerance
         self.beyond: Place | None = None
-        self._restart(rest)
+        self._restart(rest, factors[0] if len(factors) else rest.load_factor)
 
-    def _restart(self, state: State) -> None:
-        """Go on from a state that is kept as from one read from a file: nothing but the state is remembered.
+    def _restart(self, state: State, target: float) -> None:
+        """Go on to ``target`` from a state that is kept as from one read from a file: nothing else is remembered.
 
         So a path may be cut at any of its states and taken up again without a change to the last bit.
         """
+        #: load factors of the last state that was kept and of the next one, and error of wall forces since
+        self.kept_at, self.target, self.spent = self.factor, target, 0.0
         self.step = self.first
         #: increments in turn that Newton's method alone has found
         self.calm = CALM
-        #: load factor of the last state that was kept, and error of wall forces since
-        self.kept_at, self.spent = self.factor, 0.0
         self.crossing = CROSSING / self.unit
         #: load and work at which the work limit begins to count
         self.mark = (self.factor, self.record.work.factorisations)
@@ -190,12 +189,12 @@ class _Path:
         self.stable_at = self.factor
         self.stable_known, self.stable_trial = self.known, self.trial
 
-    def states(self, factors: Sequence[float]) -> list[State]:
+    def states(self) -> list[State]:
         self._balance()
         results: list[State] = []
-        for target in factors:
+        for target in self.factors:
             if results:
-                self._restart(results[-1])
+                self._restart(results[-1], target)
             elif target == self.factor and not self.start_is_stable:
                 self._look_at_stability()
             left = abs(target - self.factor)
@@ -251,19 +250,20 @@ class _Path:
             return
         self.crossing = max(0.5 * self.crossing, CROSSING / self.unit)
         self.rate = (found.configuration.q - self.known.q) / (new - self.factor)
-        before = Place(self.factor, self.known, self.trial)
         self.factor, self.known, self.trial = new, found.configuration, found
+        before = self.start if self.middle is None else self.middle
+        here = Place(new, found.configuration, found, before if self.looks else None)
         if work.rounds > rounds:
             self.growth, self.calm = SHRINK, 0
         elif self.tolerance is not None and work.factorisations - factorisations > EASY:
             self.growth = min(self.growth, 1.0)
         if self.middle is not None:
-            if not self._keeps_tolerance(target):
+            if not self._keeps_tolerance(here, target):
                 return
         elif new != target and increment > 1.2 * self.trusted:
-            self.middle = Place(new, found.configuration, found)
+            self.middle = here
             return
-        self._go_on_from(before)
+        self._go_on(here)
         if new == target and self.system.meets_unlisted(self.known.q):
             self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
             self._cross(target, "rearrangement")
@@ -296,15 +296,14 @@ class _Path:
         guess = self.known.q if self.rate is None else self.known.q + (new - self.factor) * self.rate
         return self.system.displaced(guess, new)
 
-    def _keeps_tolerance(self, target: float) -> bool:
-        """Whether the last two increments are as good as they must be; back to where they began if they are not.
+    def _keeps_tolerance(self, end: Place, target: float) -> bool:
+        """Whether the last two increments, up to ``end``, are as good as they must be; if not, back to their beginning.
 
         Errors of all increments between two states that are kept add up to less than the tolerance times the load
         between them; where one takes much of that, the next ones are no longer.
         """
         start, middle = self.start, self.middle
         assert middle is not None and self.tolerance is not None
-        end = Place(self.factor, self.known, self.trial)
         error = error_of_two(self.system, start, middle, end, self.record.work)
         self.record.comparisons += 1
         share = self.tolerance * self.unit * abs(end.factor - start.factor)
@@ -321,30 +320,46 @@ class _Path:
             self.growth = min(self.growth, 1.0)
         return True
 
-    def _go_on_from(self, before: Place) -> None:
-        """Go on from here, the end of an increment from ``before``."""
+    def _go_on(self, here: Place) -> None:
+        """Go on from here, the end of an increment."""
         self.calm += 1
         self.step = min(self.step * self.growth, self.first * (self.stretch if self.calm > CALM else 1.0))
-        sliding = None
-        if self.step > self.trusted:
-            sliding = slip(self.system, before.trial, self.trial) / abs(self.factor - before.factor)
-        self._begin_pair(sliding)
+        if here.before is not None:
+            here.before.before = None  # no longer asked for
+        self._begin_pair(here)
 
-    def _begin_pair(self, sliding: FloatArray | None = None) -> None:
+    def _begin_pair(self, here: Place | None = None) -> None:
         """The error of the next two increments is that against a single one from here."""
-        self.start = Place(self.factor, self.known, self.trial, sliding)
+        self.start = Place(self.factor, self.known, self.trial) if here is None else here
         self.middle = self.beyond = None
         self.growth = GROWTH
 
     @property
+    def least_first(self) -> float:
+        """Length of a first increment on the way to the next state that is kept, under small loads."""
+        if self.longest_step is not None:  # nothing is added to what the caller asks for
+            return self.longest_step / self.unit
+        load = self.unit * max(abs(self.kept_at), abs(self.target))
+        return min(FIRST_STEP * self.problem.n**0.5, LONGEST_FIRST) * min(load, 1.0) / self.unit
+
+    @property
+    def shortest(self) -> float:
+        """Length of the shortest."""
+        return SHORTEST * self.least_first
+
+    @property
     def first(self) -> float:
         """Length of a first increment here."""
-        return max(self.least_first, self.part * abs(self.factor))
+        part = LARGE_LOAD if self.longest_step is None else 0.0
+        return max(self.least_first, part * abs(self.factor))
 
     @property
     def trusted(self) -> float:
         """Length of increments whose error is not looked at."""
-        return self.fineness * self.first
+        if not self.looks:
+            return np.inf
+        part = self.looseness * TRUSTED_PART * abs(self.target - self.kept_at)
+        return min(self.looseness * self.first, self.first, part)
 
     def _worked_too_much(self) -> bool:
         """Whether the last stretch of load has cost more than it may."""

@@ -372,6 +372,13 @@ class StaticSystem:
             self._keep(trial, self._steps.factor, shift)
         return self.deinterleave(found)
 
+    def nearby_step(self, trial: Trial, force: FloatArray) -> FloatArray:
+        """As :meth:`step`, by a factorisation of a tangent near that of the trial where one is at hand."""
+        factor = self.updated_factor(trial, anew=False)[0] if self.updated else self.kept_factor(trial)
+        if factor is None:
+            return self.step(trial, force)
+        return self.deinterleave(factor.solve(self.interleave(force)))
+
     def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
         """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
         factor = self._storage.factor(self._transposed(self.tangent(trial, REGULARISATION * self.problem.stiffness)))

@@ -27,7 +27,8 @@ OUTCOMES = ("certified", "uncertified", "not settled", "no equilibrium", "time s
 #: Largest unbalanced force of a certified state, and largest excess over Coulomb's limit (mean disk weights).
 BALANCE, COULOMB = 1e-8, 1e-8
 #: One scene in so many is compared with its twin, where both rest states agree within ``SAME_REST`` (mean disk weights)
-#: on the floor: responses are then the same within ``TWINS`` of the load.
+#: on the floor: responses are then the same within ``TWINS`` of the load, and what a path with a tolerance leaves to
+#: either of them.
 TWIN_EVERY, SAME_REST, TWINS = 4, 1e-6, 1e-4
 #: Stiffnesses (weights per radius) from soft to nearly rigid.
 STIFFNESS = ((1.0, 1e2), (1e2, 1e4), (1e4, 1e6), (1e6, 1e9))
@@ -228,7 +229,7 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
                 outcome = "uncertified"
         if outcome == "uncertified" and finishes_statically(solution.problem):
             outcome, message = "wrong", "a state that is not certified"
-        if difference > TWINS:
+        if difference > TWINS + left_by_paths(solution):
             outcome, message = "wrong", f"the response of the twin differs by {difference:.3g} of the load"
 
     def worst(name: str) -> float:
@@ -340,6 +341,15 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
     size = max(solution.applied_force(state) for state in solution.loaded)
     size += largest * sum(abs(load.torque) for load in scene.loads)
     return float(response) / size if size > 0.0 else float("nan")
+
+
+def left_by_paths(solution: Solution) -> float:
+    """By which the responses of two paths of a scene may differ for its tolerance, over the largest load."""
+    tolerance = solution.scene.protocol.path_tolerance
+    if tolerance is None or not any(state.reached.method == "path" for state in solution.loaded):
+        return 0.0
+    factors = np.array([0.0, *solution.scene.protocol.load_factors])
+    return 2.0 * tolerance * float(np.abs(np.diff(factors)).sum() / np.abs(factors).max())
 
 
 def _mirrored(load: Load, sign: float) -> dict[str, Any]:

@@ -112,8 +112,8 @@ def factorise(flat, n, b):
 
 
 @kernel(forceinline=True)
-def _product(a, row, x, start, size):
-    """Scalar product of ``a[row:]`` and ``x[start:]`` in four partial sums, which may be kept side by side."""
+def product(a, row, x, start, size):
+    """Scalar product of ``a[row:]`` and ``x[start:]`` in four partial sums, side by side on any machine."""
     s0 = s1 = s2 = s3 = 0.0
     whole = size - size % 4
     for j in range(0, whole, 4):
@@ -132,8 +132,8 @@ def solve(flat, n, b, x):
     for i in range(n):
         low = max(0, i - b)
         diagonal = (2 * b + 1) * i + b
-        x[i] -= _product(flat, diagonal - i + low, x, low, i - low)
+        x[i] -= product(flat, diagonal - i + low, x, low, i - low)
     for i in range(n - 1, -1, -1):
         size = min(b, n - 1 - i)
         diagonal = (2 * b + 1) * i + b
-        x[i] = (x[i] - _product(flat, diagonal + 1, x, i + 1, size)) / flat[diagonal]
+        x[i] = (x[i] - product(flat, diagonal + 1, x, i + 1, size)) / flat[diagonal]

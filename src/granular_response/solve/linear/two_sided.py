@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...machine.lanes import WIDTH, less_product, put, spread, take, total
+from ...machine.lanes import WIDTH, less_product, put, spread, take
 from ...machine.machine_code import kernel
 from ...state import FloatArray
-from .band_lu import multiples_of_four
+from .band_lu import multiples_of_four, product
 
 #: Change of a contact's tangent, as a part of the normal stiffness, that counts.
 STALE = 1e-2
@@ -127,26 +127,6 @@ class _Side:
         _eliminate_side(
             self.rows.ravel(), len(self.rows), self._b, start, self.stop, self._windows.ravel(), len(self._windows)
         )
-
-
-@kernel
-def _product(a, row, x, start, size):
-    """Scalar product of ``a[row:]`` and ``x[start:]``, in partial sums of the same order on every machine."""
-    # what the compiler may sum in any order it sums as the processor has it
-    first = second = spread(0.0)
-    j = 0
-    while j + 2 * WIDTH <= size:
-        first = less_product(first, take(a, row + j, first), take(x, start + j, first))
-        second = less_product(second, take(a, row + j + WIDTH, first), take(x, start + j + WIDTH, first))
-        j += 2 * WIDTH
-    if j + WIDTH <= size:
-        first = less_product(first, take(a, row + j, first), take(x, start + j, first))
-        j += WIDTH
-    rest = 0.0
-    while j < size:
-        rest = less_product(rest, take(a, row + j, 0.0), take(x, start + j, 0.0))
-        j += 1
-    return -(total(first + second) + rest)
 
 
 @kernel
@@ -345,21 +325,21 @@ def _solve(left, right, b, left_stop, right_stop, x, mirrored):
     last = n - right_stop
     for i in range(right_stop):
         low = max(0, i - b)
-        mirrored[i] -= _product(right, width * i + b - i + low, mirrored, low, i - low)
+        mirrored[i] -= product(right, width * i + b - i + low, mirrored, low, i - low)
     for i in range(right_stop, min(right_stop + b, n - left_stop)):
         low = max(0, i - b)
-        x[n - 1 - i] -= _product(right, width * i + b - i + low, mirrored, low, right_stop - low)
+        x[n - 1 - i] -= product(right, width * i + b - i + low, mirrored, low, right_stop - low)
     for i in range(last):
         low = max(0, i - b)
-        x[i] -= _product(left, width * i + b - i + low, x, low, i - low)
+        x[i] -= product(left, width * i + b - i + low, x, low, i - low)
     for i in range(last - 1, -1, -1):
         size = min(b, last - 1 - i)
         diagonal = width * i + b
-        x[i] = (x[i] - _product(left, diagonal + 1, x, i + 1, size)) / left[diagonal]
+        x[i] = (x[i] - product(left, diagonal + 1, x, i + 1, size)) / left[diagonal]
     for i in range(left_stop, last):
         mirrored[n - 1 - i] = x[i]
     for i in range(right_stop - 1, -1, -1):
         size = min(b, n - left_stop - 1 - i)
         diagonal = width * i + b
-        mirrored[i] = (mirrored[i] - _product(right, diagonal + 1, mirrored, i + 1, size)) / right[diagonal]
+        mirrored[i] = (mirrored[i] - product(right, diagonal + 1, mirrored, i + 1, size)) / right[diagonal]
         x[n - 1 - i] = mirrored[i]
