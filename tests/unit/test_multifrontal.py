@@ -1,5 +1,7 @@
 """Multifrontal factorisation against dense and general sparse ones."""
 
+import weakref
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -340,3 +342,36 @@ def test_a_renewed_factor_is_kept_for_its_statuses_unless_it_has_a_shift(monkeyp
     assert factor is not None and system.kept_factor(trial) is factor  # renewed in its place
     system.step(trial, force, 1e-7 * problem.stiffness)
     assert system.kept_factor(trial) is None
+
+
+def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(monkeypatch):
+    """A million disks with friction had two: 17 GiB."""
+    monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
+    monkeypatch.setattr(multifrontal, "LARGE", 0)
+    loads = [{"disk": "top-centre", "force": [0.0, -24.0]}]
+    problem = Problem.from_scene(scene(4, 9, contact__friction=1.0, preparation__gravity="frictionless", loads=loads))
+    rest = rest_state(problem)
+    state = follow(problem.with_loads(rest.position), rest, [1.0])[0]
+    system = StaticSystem(problem, state)
+    trial = system.trial(known := system.start(state), known.q)
+    force = np.ones(system.dof)
+    alive = weakref.WeakSet()
+    most = []
+    for name in ("rough_factor", "definite_factor", "factor"):
+        make = getattr(Multifrontal, name)
+
+        def counting(self, *arguments, make=make, **options):
+            made = make(self, *arguments, **options)
+            if made is not None:
+                alive.add(made)
+            most.append(len(alive))
+            return made
+
+        monkeypatch.setattr(Multifrontal, name, counting)
+    system.step(trial, force)
+    system.definite_step(trial, force, 4.0 * problem.stiffness)
+    assert len(alive) == 2  # solvers take turns with these at most
+    before = len(most)
+    assert system.negative_modes(trial) == 0
+    assert len(most) > before + 1  # it was a suspicion
+    assert max(most[before:]) == 1

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.sparse.linalg import eigs
+from scipy.sparse.linalg import LinearOperator, eigs
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import LAWS
 from granular_response.solve import Dynamics, Problem, solve_scene
-from granular_response.solve.system import DENSE, StaticSystem
+from granular_response.solve.system import DENSE, LEFT_OF_ALL, StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
@@ -222,13 +222,53 @@ def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(monkeypatch):
     symmetric = system._symmetric_part(system._what_moves(trial)).toarray()
     assert SLIDING in trial.pair_status and np.linalg.eigvalsh(symmetric).min() < 0.0  # so there is a suspicion
     assert np.linalg.eigvals(system._what_moves(trial).toarray()).real.min() > 1.0
-    module, asked = sys.modules[StaticSystem.__module__], []
-    monkeypatch.setattr(module, "eigs", lambda *a, tol, **more: asked.append(tol) or eigs(*a, tol=tol, **more))
+    module, asked, solutions = sys.modules[StaticSystem.__module__], [], []
+
+    def counted(*arguments, tol, **more):
+        asked.append(tol)
+        solutions.append(0)
+        solve = more["OPinv"].matvec
+
+        def one(right):
+            solutions[-1] += 1
+            return solve(right)
+
+        more["OPinv"] = LinearOperator((system.dof, system.dof), one, dtype=float)
+        return eigs(*arguments, tol=tol, **more)
+
+    monkeypatch.setattr(module, "eigs", counted)
     assert system.negative_modes(trial) == 0
     assert asked == [module.ACCURACIES[0]]
+    at_first = solutions[0]
     monkeypatch.setattr(module, "CERTAIN", 1e5)  # not certain at first
     assert system.negative_modes(trial) == 0
     assert asked[1:] == list(module.ACCURACIES)
+    assert max(solutions[2:]) < at_first  # from the vector that is known by then, not from nothing
+
+
+def test_a_point_left_of_all_eigenvalues_is_the_same_wherever_it_was_before():
+    slides = solve_scene(scene(4, 9, contact__friction=1.0, loads=[{"disk": "top-centre", "force": [0.0, -24.0]}]))
+    system = StaticSystem(slides.problem, slides.loaded[0])
+    matrix = system._what_moves(system.trial(known := system.start(slides.loaded[0]), known.q))
+    found = []
+    for before in range(len(LEFT_OF_ALL)):
+        system._left = before
+        found.append(system._left_of_all(matrix))
+    lowest = np.linalg.eigvalsh(system._symmetric_part(matrix).toarray()).min()
+    origins = [-origin * slides.problem.stiffness for origin in LEFT_OF_ALL]
+    assert found == [max(origin for origin in origins if origin < lowest)] * len(LEFT_OF_ALL)
+    assert origins[-1] < found[0] < origins[0]  # neither end of the list
+
+
+def test_a_tangent_keeps_short_integers_for_its_pattern():
+    """Half the memory of a million disks' pattern; a banded place in the flat rows may need more digits."""
+    solved = solve_scene(scene(4, 9))
+    system = StaticSystem(solved.problem, solved.rest)
+    matrix = system.tangent(system.trial(known := system.start(solved.rest), known.q))
+    assert {array.dtype for array in (matrix.indices, matrix.indptr, system._storage.across(matrix))} == {
+        np.dtype("i4")
+    }
+    assert system._transposed(matrix).toarray().tolist() == matrix.toarray().T.tolist()
 
 
 def test_disks_that_slide_alone_call_for_no_eigenvalues(monkeypatch):

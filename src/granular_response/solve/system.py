@@ -20,7 +20,7 @@ from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 from ..kernels import statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
-from .linear import REMEMBERED, Factor, Sequence, across_diagonal, elimination
+from .linear import REMEMBERED, Factor, Sequence, elimination
 from .linear.band import Band
 from .linear.two_sided import FREEDOMS, TwoSided
 from .problem import Problem
@@ -41,12 +41,13 @@ ROUGH, FEW = 1e-3, 6
 #: Stiffness that keeps disks that roll freely from counting as unstable.
 FREE = 1e-6
 
-#: Eigenvalues that are looked for where one is negative, and vectors among which they are.
-SOUGHT, AMONG = 4, 14
+#: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that is
+#: known roughly.
+SOUGHT, AMONG, AMONG_FEW = 4, 14, 6
 
 #: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it is
 #: where it is so many times as far from zero as the accuracy of this distance.
-ACCURACIES, CERTAIN = (1e-3, 1e-6), 10.0
+ACCURACIES, CERTAIN = (1e-3, 1e-4, 1e-5, 1e-6), 10.0
 #: Accuracy at last, in parts of the shift that keeps what moves freely from counting.
 SIGN = 0.1
 
@@ -144,6 +145,8 @@ class StaticSystem:
         self._steps = Sequence(self._storage, definite=False, same=same)
         self._definite_steps = Sequence(self._storage, definite=True, same=same)
         self._two_sided = self._both_ends() if updated else None
+        #: place in ``LEFT_OF_ALL`` that was left of all eigenvalues of the last tangent that was looked at
+        self._left = 0
 
     @property
     def dof(self) -> int:
@@ -273,24 +276,18 @@ class StaticSystem:
             columns = [np.arange(self._indptr[k], self._indptr[k + 1]) for k in held]
             self._held_entries = np.concatenate([*columns, np.flatnonzero(np.isin(self._indices, held))])
             self._held_diagonal = self._diagonal[held]
-        self._data = np.zeros(self._indptr[-1])
         self._storage = chosen.storage(self._indptr, self._indices)
-        # as scipy has them, which would convert them for every matrix
-        kind = sp.csc_array((self._data, self._indices, self._indptr), shape=(self.dof, self.dof)).indices.dtype
-        self._indices, self._indptr = self._indices.astype(kind), self._indptr.astype(kind)
-
-    @cached_property
-    def _mirror(self) -> np.ndarray:
-        """(e,) for each entry of a tangent, in its storage, the one across the diagonal."""
-        return across_diagonal(self._indptr, self._indices)
+        if self._indptr[-1] <= np.iinfo(np.int32).max:  # half the memory, and scipy converts none for its own routines
+            self._indices, self._indptr = self._indices.astype(np.int32), self._indptr.astype(np.int32)
 
     def _transposed(self, matrix: sp.csc_array) -> sp.csc_array:
         """K^T of a tangent."""
-        return sp.csc_array((matrix.data[self._mirror], matrix.indices, matrix.indptr), shape=matrix.shape)
+        across = self._storage.across(matrix)
+        return sp.csc_array((matrix.data[across], matrix.indices, matrix.indptr), shape=matrix.shape)
 
     def _symmetric_part(self, matrix: sp.csc_array) -> sp.csc_array:
         """(K + K^T) / 2 of a tangent."""
-        data = 0.5 * (matrix.data + matrix.data[self._mirror])
+        data = 0.5 * (matrix.data + matrix.data[self._storage.across(matrix)])
         return sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
@@ -298,12 +295,12 @@ class StaticSystem:
 
         ``shift`` (scalar or (dof,)) is added to the diagonal.
         """
+        data = np.empty(len(self._indices))
         statics.assemble(
-            self._data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius,
+            data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius,
             trial.pair_tangent, self._base, self._stride,
             self.wall_disk, trial.wall_tangent, self._wall_base, self._wall_stride,
         )  # fmt: skip
-        data = self._data.copy()
         if self.held.size:
             data[self._held_entries] = 0.0
             data[self._held_diagonal] = self.problem.stiffness
@@ -346,11 +343,16 @@ class StaticSystem:
         return self.tangent(trial, np.asarray(shift) + REGULARISATION * self.problem.stiffness)
 
     def _factorise(self, trial: Trial, shift: float | FloatArray, matrix: sp.csc_array) -> Factor:
-        self._kept = None  # two need not be in memory
-        self._steps.forget()
+        self._forget()
         factor = self._storage.factor(matrix)
         self._keep(trial, factor, shift)
         return factor
+
+    def _forget(self) -> None:
+        """Let all factorisations go before one is made: two need not be in memory."""
+        self._kept = None
+        self._steps.forget()
+        self._definite_steps.forget()
 
     def _keep(self, trial: Trial, factor: Factor, shift: float | FloatArray) -> None:
         """Keep the factorisation of a tangent for trials with the same statuses, unless it has a shift."""
@@ -522,10 +524,13 @@ class StaticSystem:
             return int((np.linalg.eigvals(matrix.toarray()).real < 0).sum())
         left = self._left_of_all(matrix)
         nearest = self._nearest_to(left, matrix)
+        known: dict[str, Any] = {}
         for accuracy in (*ACCURACIES, SIGN * (FREE / -left)):
-            lowest = float(nearest(1, tol=accuracy)[0][0].real)
+            values, vectors = nearest(1, tol=accuracy, **known)
+            lowest = float(values[0].real)
             if abs(lowest) > CERTAIN * accuracy * (lowest - left):
                 break
+            known = {"v0": vectors[:, 0].real, "ncv": AMONG_FEW}
         return int((nearest(SOUGHT)[0].real < 0).sum()) if lowest < 0 else 0
 
     def _what_moves(self, trial: Trial) -> sp.csc_array:
@@ -547,18 +552,29 @@ class StaticSystem:
 
     def _left_of_all(self, matrix: sp.csc_array) -> float:
         """A number below the lowest eigenvalue of the symmetric part of a tangent, not far below."""
-        self._definite_steps.forget()
+        self._forget()
         symmetric = self._symmetric_part(matrix)
-        for origin in LEFT_OF_ALL:
-            shifted = self._with_shift(symmetric, origin * self.problem.stiffness)
-            if self._storage.rough_factor(shifted, definite=True) or self._storage.definite_factor(shifted):
-                break
-        return -origin * self.problem.stiffness
+
+        def is_left(place: int) -> bool:
+            if place == len(LEFT_OF_ALL) - 1:
+                return True
+            shifted = self._with_shift(symmetric, LEFT_OF_ALL[place] * self.problem.stiffness)
+            rough = self._storage.rough_factor(shifted, definite=True) is not None
+            return rough or self._storage.definite_factor(shifted) is not None
+
+        # from where it was last: it is the first one from wherever that is
+        if is_left(self._left):
+            while self._left > 0 and is_left(self._left - 1):
+                self._left -= 1
+        else:
+            self._left += 1
+            while not is_left(self._left):
+                self._left += 1
+        return -LEFT_OF_ALL[self._left] * self.problem.stiffness
 
     def _nearest_to(self, left: float, matrix: sp.csc_array) -> Callable[..., tuple[NDArray[Any], NDArray[Any]]]:
         """What finds so many eigenvalues (m,) of a tangent, the nearest to a number, and their vectors (dof, m)."""
-        self._kept = None  # two need not be in memory
-        self._steps.forget()
+        self._forget()
         factor = self._storage.factor(self._with_shift(matrix, -left))
         return partial(
             eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (FREE / -left),

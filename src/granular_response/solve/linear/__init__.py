@@ -3,8 +3,8 @@
 :func:`elimination` chooses; solvers know the protocols :class:`Factor` and :class:`Storage` only.
 """
 
-from .factor import Factor, Storage, across_diagonal
+from .factor import Factor, Storage
 from .nearby import Sequence
 from .ordering import REMEMBERED, Elimination, elimination
 
-__all__ = ["REMEMBERED", "Elimination", "Factor", "Sequence", "Storage", "across_diagonal", "elimination"]
+__all__ = ["REMEMBERED", "Elimination", "Factor", "Sequence", "Storage", "elimination"]

@@ -14,7 +14,7 @@ from scipy.sparse.linalg import splu
 
 from ...state import FloatArray
 from . import band_lu
-from .factor import Factor
+from .factor import AcrossDiagonal, Factor
 
 #: Relative residual of a banded solution above which rows are exchanged after all.
 ACCEPTED = 1e-6
@@ -28,6 +28,7 @@ class Band:
         column = np.repeat(np.arange(n), np.diff(indptr))
         below = indices - column
         self.n = n
+        self.across = AcrossDiagonal()
         self.half_width = int(below.max(initial=0))
         #: where the entries go in the rows of the LU
         self._place = indices * (2 * self.half_width + 1) + (self.half_width - below)

@@ -47,8 +47,19 @@ class Storage(Protocol):
         """One that takes half the time, for solutions by iteration; None where there is none (see :mod:`.nearby`)."""
         ...
 
+    def across(self, matrix: sp.csc_array) -> np.ndarray:
+        """(e,) for each entry of a matrix the one across the diagonal, found once."""
+        ...
 
-def across_diagonal(indptr: np.ndarray, indices: np.ndarray) -> np.ndarray:
-    """(e,) for each entry of a matrix of symmetric pattern the one across the diagonal."""
-    entries = np.arange(len(indices), dtype=indices.dtype)
-    return sp.csr_array((entries, indices, indptr), shape=(len(indptr) - 1,) * 2).tocsc().data
+
+class AcrossDiagonal:
+    """For each entry (e,) of the matrices of one symmetric pattern the one across the diagonal, found once."""
+
+    def __init__(self) -> None:
+        self._found: np.ndarray | None = None
+
+    def __call__(self, matrix: sp.csc_array) -> np.ndarray:
+        if self._found is None:
+            entries = np.arange(matrix.nnz, dtype=matrix.indices.dtype)
+            self._found = sp.csr_array((entries, matrix.indices, matrix.indptr), shape=matrix.shape).tocsc().data
+        return self._found

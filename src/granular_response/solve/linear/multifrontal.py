@@ -31,7 +31,7 @@ from ...machine.lapack import addresses
 from ...state import FloatArray
 from . import frontal
 from .dissection import Dissection
-from .factor import across_diagonal
+from .factor import AcrossDiagonal
 from .frontal import Matrix, Store, Tree
 
 #: Unknowns from which on fronts are split; below, one thread is as fast.
@@ -84,7 +84,7 @@ class Multifrontal:
         )  # fmt: skip
         self.own, self.outer = np.diff(start), sizes
         self._front_of_entries: np.ndarray | None = None
-        self._across: np.ndarray | None = None
+        self.across = AcrossDiagonal()
         self._split()
         self._lay_out()
 
@@ -157,12 +157,6 @@ class Multifrontal:
             first = np.minimum(matrix.indices, columns)
             self._front_of_entries = np.repeat(np.arange(len(self.own), dtype=np.int32), self.own)[first]
         return self._front_of_entries
-
-    def across(self, matrix: sp.csc_array) -> np.ndarray:
-        """(e,) for each entry of a matrix the one across the diagonal."""
-        if self._across is None:
-            self._across = across_diagonal(matrix.indptr, matrix.indices)
-        return self._across
 
     def factor(self, matrix: sp.csc_array) -> LU:
         """LU with row exchanges inside the fronts."""
