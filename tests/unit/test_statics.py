@@ -214,11 +214,17 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
     np.testing.assert_allclose(found, lowest, atol=1e-6)
 
 
-def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(monkeypatch):
-    """A million disks took 500 solutions to tell that 9 weights per radius are more than nothing."""
+@pytest.fixture
+def sliding():
+    """Static system of a slab with sliding contacts under its load, and the trial that is this state."""
     slides = solve_scene(scene(4, 9, contact__friction=1.0, loads=[{"disk": "top-centre", "force": [0.0, -24.0]}]))
     system = StaticSystem(slides.problem, slides.loaded[0])
-    trial = system.trial(known := system.start(slides.loaded[0]), known.q)
+    return system, system.trial(known := system.start(slides.loaded[0]), known.q)
+
+
+def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(sliding, monkeypatch):
+    """A million disks took 500 solutions to tell that 9 weights per radius are more than nothing."""
+    system, trial = sliding
     symmetric = system._symmetric_part(system._what_moves(trial)).toarray()
     assert SLIDING in trial.pair_status and np.linalg.eigvalsh(symmetric).min() < 0.0  # so there is a suspicion
     assert np.linalg.eigvals(system._what_moves(trial).toarray()).real.min() > 1.0
@@ -246,16 +252,15 @@ def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(monkeypatch):
     assert max(solutions[2:]) < at_first  # from the vector that is known by then, not from nothing
 
 
-def test_a_point_left_of_all_eigenvalues_is_the_same_wherever_it_was_before():
-    slides = solve_scene(scene(4, 9, contact__friction=1.0, loads=[{"disk": "top-centre", "force": [0.0, -24.0]}]))
-    system = StaticSystem(slides.problem, slides.loaded[0])
-    matrix = system._what_moves(system.trial(known := system.start(slides.loaded[0]), known.q))
+def test_a_point_left_of_all_eigenvalues_is_the_same_wherever_it_was_before(sliding):
+    system, trial = sliding
+    matrix = system._what_moves(trial)
     found = []
     for before in range(len(LEFT_OF_ALL)):
         system._left = before
         found.append(system._left_of_all(matrix))
     lowest = np.linalg.eigvalsh(system._symmetric_part(matrix).toarray()).min()
-    origins = [-origin * slides.problem.stiffness for origin in LEFT_OF_ALL]
+    origins = [-origin * system.problem.stiffness for origin in LEFT_OF_ALL]
     assert found == [max(origin for origin in origins if origin < lowest)] * len(LEFT_OF_ALL)
     assert origins[-1] < found[0] < origins[0]  # neither end of the list
 

@@ -277,8 +277,9 @@ class StaticSystem:
             self._held_entries = np.concatenate([*columns, np.flatnonzero(np.isin(self._indices, held))])
             self._held_diagonal = self._diagonal[held]
         self._storage = chosen.storage(self._indptr, self._indices)
-        if self._indptr[-1] <= np.iinfo(np.int32).max:  # half the memory, and scipy converts none for its own routines
-            self._indices, self._indptr = self._indices.astype(np.int32), self._indptr.astype(np.int32)
+        # of 32 bits where they will do: half the memory, and scipy converts none for its own routines
+        kind = sp.get_index_dtype(maxval=int(self._indptr[-1]))
+        self._indices, self._indptr = self._indices.astype(kind), self._indptr.astype(kind)
 
     def _transposed(self, matrix: sp.csc_array) -> sp.csc_array:
         """K^T of a tangent."""
@@ -562,19 +563,15 @@ class StaticSystem:
             rough = self._storage.rough_factor(shifted, definite=True) is not None
             return rough or self._storage.definite_factor(shifted) is not None
 
-        # from where it was last: it is the first one from wherever that is
-        if is_left(self._left):
-            while self._left > 0 and is_left(self._left - 1):
-                self._left -= 1
-        else:
+        # the first one, whichever it was last: from there it is near
+        while self._left > 0 and is_left(self._left - 1):
+            self._left -= 1
+        while not is_left(self._left):
             self._left += 1
-            while not is_left(self._left):
-                self._left += 1
         return -LEFT_OF_ALL[self._left] * self.problem.stiffness
 
     def _nearest_to(self, left: float, matrix: sp.csc_array) -> Callable[..., tuple[NDArray[Any], NDArray[Any]]]:
         """What finds so many eigenvalues (m,) of a tangent, the nearest to a number, and their vectors (dof, m)."""
-        self._forget()
         factor = self._storage.factor(self._with_shift(matrix, -left))
         return partial(
             eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (FREE / -left),
