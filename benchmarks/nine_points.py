@@ -60,7 +60,7 @@ def nine_points() -> tuple[list[dict], list[dict]]:
                 here.append({"method": "path", "setting": tolerance, "seconds": seconds, "error": error})
             for ramp in RAMPS:
                 response, seconds = timed(
-                    method="dynamics", integrator="verlet", time_step=8e-4, ramp_time=ramp,
+                    method="dynamics", integrator="leapfrog", time_step=1.4e-3, ramp_time=ramp,
                     stop_kinetic_energy=1e-9, static_finish=True,
                 )  # fmt: skip
                 error = float(np.abs(response - limit).max())

@@ -9,6 +9,7 @@ import granular_response as gr
 from granular_response.observe.floor import floor_force
 from granular_response.solve import (
     Dynamics,
+    NotSettled,
     PathError,
     PathRecord,
     Problem,
@@ -21,7 +22,9 @@ from granular_response.solve import (
     rest_state,
     solve_scene,
 )  # fmt: skip
-from granular_response.solve.increment import HASTY, PATIENT, solve_increment
+from granular_response.solve.equilibrium import external_force
+from granular_response.solve.increment import HASTY, PATIENT, Work, minimise_with_limits, solve_increment
+from granular_response.solve.system import StaticSystem
 from granular_response.state import OPEN
 
 FLOOR = np.arange(13)
@@ -245,3 +248,74 @@ def test_a_state_that_leaves_in_one_sense_alone_is_left_in_its_mirror_image_too(
         added = floor_force(state, np.arange(6)) - floor_force(solution.rest, np.arange(6))
         peaks.append(added if sense > 0 else added[::-1])
     np.testing.assert_allclose(peaks[0], peaks[1], atol=1e-6)
+
+
+@pytest.fixture(scope="module")
+def slippery():
+    """A slab with so little friction that increments are dear, at rest, ready to be loaded with unit force."""
+    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+    problem = Problem.from_scene(scene(10, 25, contact__friction=0.05, loads=load))
+    rest = rest_state(problem)
+    return problem.with_loads(rest.position), rest
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_dynamics_takes_the_rest_of_the_way_where_it_is_cheaper_at_the_tolerance(slippery, tolerance):
+    problem, rest = slippery
+    force, bottom, record = 40.0, np.arange(25), PathRecord()
+    state = follow(problem, rest, [force], tolerance=tolerance, record=record)[0]
+    fine = follow(problem, rest, [force], tolerance=1e-5)[0]
+    assert [(crossing.reason, crossing.end) for crossing in record.crossings] == [("too much work", force)]
+    assert np.abs(floor_force(state, bottom) - floor_force(fine, bottom)).max() < tolerance * force
+    assert state.certificate.stable and state.certificate.force_residual < 1e-10
+
+
+def test_a_path_that_left_the_rest_to_dynamics_goes_on_as_if_it_had_not_been_cut(slippery):
+    problem, rest = slippery
+    whole = follow(problem, rest, [40.0, 30.0, 45.0], tolerance=1e-2)
+    assert all(state.reached.crossings for state in whole)
+    cut = follow(problem, whole[0], [30.0, 45.0], tolerance=1e-2)
+    for state, other in zip(cut, whole[1:], strict=True):
+        assert np.array_equal(state.position, other.position)
+
+
+def test_statics_goes_on_where_dynamics_that_is_cheaper_does_not_settle(slippery, monkeypatch):
+    problem, rest = slippery
+    asked = []
+
+    def never(*arguments, **options):
+        asked.append(options["what"])
+        raise NotSettled("the packing did not come to rest")
+
+    monkeypatch.setattr(path, "settle", never)
+    record = PathRecord()
+    state = follow(problem, rest, [8.0], tolerance=1e-2, record=record)[0]
+    assert asked == ["load factor 8"] and record.crossings == []
+    fine = follow(problem, rest, [8.0], tolerance=1e-5)[0]
+    assert np.abs(_walls(state) - _walls(fine)).max() < 1e-2 * 8.0 and state.certificate.stable
+
+
+def test_small_packings_are_not_left_to_dynamics(settled):
+    """Single disks swing more slowly than a wave crosses them, so the ramp would be too short."""
+    small, _ = settled
+    problem = Problem.from_scene(scene(6, 13, contact__friction=0.05, loads=[{"disk": "top-centre", "force": [0, -1]}]))
+    assert problem.n < path.MANY and small.n == problem.n
+    rest = rest_state(problem)
+    assert follow(problem.with_loads(rest.position), rest, [40.0], tolerance=1e-2)[0].reached.crossings == ()
+
+
+def test_fixed_limits_have_the_same_minimum_by_factorisations_brought_up_to_date(slippery):
+    problem, rest = slippery
+    ends, made = [], []
+    for updated in (False, True):
+        system = StaticSystem(problem, rest, updated=updated)
+        known, work = system.start(rest), Work()
+        here = system.trial(known, known.q)
+        limits = (0.05 * here.pair_normal, 0.0 * here.wall_normal)
+        force = external_force(problem, 3.0)
+        found = minimise_with_limits(system, known, force, known.q, limits, work, PATIENT.steps)
+        assert np.abs(found.contact_force + force).max() < 1e-5
+        ends.append(found.configuration.q)
+        made.append(work.factorisations)
+    assert np.abs(ends[0] - ends[1]).max() < 1e-7 * np.abs(ends[0]).max() + 1e-9
+    assert made[1] <= made[0]

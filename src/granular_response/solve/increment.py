@@ -97,7 +97,7 @@ def solve_increment(
         if work.factorisations - before_rounds > patience.factorisations:
             return None
         work.rounds += 1
-        held = _minimise_with_limits(system, known, external, q, limits, work, patience.steps)
+        held = minimise_with_limits(system, known, external, q, limits, work, patience.steps)
         if held is None:
             return None
         q = held.configuration.q
@@ -114,7 +114,7 @@ def solve_increment(
     return None
 
 
-def _minimise_with_limits(
+def minimise_with_limits(
     system: StaticSystem,
     known: Configuration,
     external: FloatArray,
@@ -128,6 +128,7 @@ def _minimise_with_limits(
     trial = system.trial(known, q, limits)
     shift = SHIFT * system.problem.stiffness
     best, stalled = np.inf, 0
+    made, before = True, np.inf
     for left in range(most_steps, -1, -1):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
@@ -137,11 +138,12 @@ def _minimise_with_limits(
             return trial
         if left == 0:
             break
-        work.factorisations += 1
         try:
-            step = system.step(trial, r, shift)
+            step, made = system.limited_step(trial, r, shift, anew=not made and size > 0.1 * before)
         except RuntimeError:  # exactly singular
             return trial
+        work.factorisations += made
+        before = size
         length = float(np.abs(step).max())
         if not np.isfinite(length):
             return trial

@@ -5,19 +5,22 @@ opening, sliding or sticking throughout an increment the return map is exact for
 tolerance, increments grow as long as their errors (see :mod:`.increment_error`) stay within it.
 Where no equilibrium is found on the shortest increment, or the equilibrium has lost its stability, the branch has
 ended: explicit dynamics carries the packing to the next equilibrium and statics goes on from there. So
-it does where an increment, or a stretch of load, has cost more factorisations than the limits below. Every such
-crossing is recorded with its load and its reason.
+it does where an increment, or a stretch of load, has cost more factorisations than the limits below. With a
+tolerance it takes all that is left of the way where that costs less than increments like the last ones: the error of a
+linear ramp falls as one over its duration, so the tolerance says how long it must be. Every such crossing is recorded
+with its load and its reason.
 
-Stability is looked at about once per mean disk weight of load, and with a tolerance only if any contact has changed
-since. With sliding contacts a negative eigenvalue of the tangent is only a suspicion (the tangent belongs to one
-direction of sliding), so it is tried: dynamics starts from the state displaced a little along the suspicious direction,
-and either comes back or leaves.
+Stability is looked at about once per mean disk weight of load; with a tolerance less often, and only if any contact
+has changed since. With sliding contacts a negative eigenvalue of the tangent is only a suspicion (the tangent belongs
+to one direction of sliding), so it is tried: dynamics starts from the state displaced a little along the suspicious
+direction, and either comes back or leaves.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -28,7 +31,7 @@ from .increment import HASTY, PATIENT, Work, solve_increment
 from .increment_error import Place, error_of_two
 from .problem import Problem
 from .settle import CROSSING as CROSSING_OVER
-from .settle import CROSSING_STOP, NotSettled, nudged, settle
+from .settle import CROSSING_STOP, STAGE, STAGE_STOP, HandOver, NotSettled, nudged, settle
 from .system import Configuration, StaticSystem, Trial
 from .timestep import stability_limit
 
@@ -38,10 +41,8 @@ from .timestep import stability_limit
 FIRST_STEP, LONGEST_FIRST = 0.0033, 1.6
 #: First increment of a large load, as a part of it.
 LARGE_LOAD = 0.005
-#: Longest and shortest increment as parts of the first.
+#: Longest increment as a part of the first for the tolerance, and shortest as a part of the first for none.
 LONGEST, SHORTEST = 5.0, 0.25
-#: By which the longest is longer for a looser tolerance, at most.
-LOOSE = 3.0
 #: Tolerance for which first increments are short enough without a look at their error, if they are such a part of the
 #: load between two states that are kept: where that is less, one contact makes more of it.
 TRUSTED_FOR, TRUSTED_PART = 1e-5, 0.006
@@ -52,10 +53,23 @@ EASY = 3
 GROWTH, SHRINK, CALM = 1.4, 0.9, 5
 #: Load that dynamics crosses at first, in mean disk weights; doubled while statics does not go on after it.
 CROSSING = 0.1
-#: Load between two looks at the stability.
-STABILITY_STEP = 1.0
+#: Load between two looks at the stability, without a tolerance and with that of first increments; with a looser one it
+#: is longer in proportion.
+STABILITY_STEP, WITH_TOLERANCE = 1.0, 3.0
 #: Factorisations that statics may spend on the load of one look; after that dynamics is the cheaper way.
 MOST_WORK = 1000
+#: Ramp by which dynamics takes all that is left of the way within a tolerance: this many crossing times of a
+#: compression wave, over the tolerance, for the whole way; and at least so many (docs/physics.md has the errors).
+RAMP, SHORTEST_RAMP = 0.3, 4.0
+#: Time steps that cost as much as a factorisation with all that an increment does beside it, for slabs of any size.
+STEPS_AS_DEAR = 100
+#: Fewest disks for that: in smaller packings increments cost next to nothing, and single disks swing more slowly than a
+#: wave crosses.
+MANY = 200
+#: Part of what dynamics would cost that statics has to show what it costs itself.
+SAMPLE = 0.1
+#: Weight of earlier increments, from one to the next, in what the last ones have cost.
+FADING = 0.8
 #: Unbalanced force (mean disk weights), beside so many units of rounding of an overlap, up to which a start is at rest.
 BALANCED, ROUNDING = 1e-8, 16.0
 #: Displacement after which candidate contacts are listed again (mean radii), below half of the largest gap listed.
@@ -64,7 +78,8 @@ LISTED_AGAIN = 0.25
 LEFT = 2e-5
 #: Least time of such a trial, in sqrt(R/g): it starts at rest, so that nothing moves at first on any slope.
 TRIAL_TIME = 20.0
-#: Its integrator and part of the longest stable step: nothing is asked but whether the packing leaves.
+#: Its integrator and part of the longest stable step: nothing is asked but whether the packing leaves; and those of
+#: dynamics that takes the rest of the way.
 TRIAL_INTEGRATOR, TRIAL_STEP = "leapfrog", 0.9
 
 
@@ -131,6 +146,8 @@ class _DynamicsOptions:
     time_step: float | None
     ramp: float
     maximum_steps: int
+    over: HandOver = CROSSING_OVER
+    energy: float = CROSSING_STOP  #: kinetic energy per disk at which statics is tried first
 
 
 def _towards(here: float, target: float, step: float) -> float:
@@ -151,10 +168,15 @@ class _Path:
         self.longest_step = longest_step
         #: None where increments keep to the first length
         self.tolerance: float | None = tolerance if longest_step is None else None
-        self.stretch = 1.0 if self.tolerance is None else LONGEST * min(max(self.tolerance / TRUSTED_FOR, 1.0), LOOSE)
+        self.stretch = 1.0 if self.tolerance is None else LONGEST
         #: whether errors are looked at: without friction increments of any length are exact
         self.looks = self.tolerance is not None and problem.rotations
         self.looseness = tolerance / TRUSTED_FOR if self.looks else np.inf
+        loose = 1.0 if self.tolerance is None else max(self.tolerance / TRUSTED_FOR, 1.0)
+        #: by which increments are longer than for the tolerance of first ones: their errors grow faster than they do
+        self.coarser = loose**0.5
+        #: load factor between two looks at the stability
+        self.apart = (STABILITY_STEP if self.tolerance is None else WITH_TOLERANCE * loose) / self.unit
         self.factor = rest.load_factor
         self.start_is_stable = rest.reached.certificate is not None and rest.reached.certificate.stable is True
         self.middle: Place | None = None
@@ -169,12 +191,16 @@ class _Path:
         """
         #: load factors of the last state that was kept and of the next one, and error of wall forces since
         self.kept_at, self.target, self.spent = self.factor, target, 0.0
-        self.step = self.first
+        self.step = self.usual
         #: increments in turn that Newton's method alone has found
         self.calm = CALM
         self.crossing = CROSSING / self.unit
         #: load and work at which the work limit begins to count
         self.mark = (self.factor, self.record.work.factorisations)
+        #: load factor that the last increments have gained and factorisations that they took, and work before them
+        self.gained, self.cost, self.begun = 0.0, 0.0, self.record.work.factorisations
+        #: whether dynamics may take the rest of the way, which it does at most once
+        self.may_leave = self.looks and self.problem.n >= MANY
         self._begin(state)
 
     def _begin(self, state: State) -> None:
@@ -228,20 +254,34 @@ class _Path:
         if self._worked_too_much():
             self._cross(_towards(self.mark[0], target, STABILITY_STEP / self.unit), "too much work")
             return
+        if self.may_leave and self._dynamics_is_cheaper(target):
+            self._leave_to_dynamics(target)
+            return
+        left, before = abs(target - self.factor), self.record.work.factorisations
+        self._increase(target)
+        gained = max(left - abs(target - self.factor), 0.0)
+        fading = FADING if gained > 0.0 else 1.0
+        self.gained = fading * self.gained + gained
+        self.cost = fading * self.cost + self.record.work.factorisations - before
+
+    def _increase(self, target: float) -> None:
+        """One increment towards ``target`` by statics, and what its outcome asks for."""
         new = self._next(target)
         increment = abs(new - self.factor)
         work = self.record.work
         rounds, factorisations = work.rounds, work.factorisations
         shorter = increment > 1.2 * self.shortest  # the last one before a target is up to 1.1 steps long
+        patience = HASTY if shorter else PATIENT
+        dear = not self.may_leave or self._dynamics_cost(target) > patience.factorisations
         found = solve_increment(
             self.system, self.known, external_force(self.problem, new), self._guess(new), work,
             passing=new != target and self.tolerance is not None,
-            stubborn=self.tolerance is None or increment < 1.2 * self.first,
-            patience=HASTY if shorter else PATIENT,
+            stubborn=self.tolerance is None or (increment < 1.2 * self.usual and dear),
+            patience=patience,
         )  # fmt: skip
         if found is None:
             if shorter:
-                self.step = min(max(0.5 * increment, self.shortest), self.first)
+                self.step = min(max(0.5 * increment, self.shortest), self.usual)
                 self.rate = None
                 self.calm = 0
             else:
@@ -323,7 +363,7 @@ class _Path:
     def _go_on(self, here: Place) -> None:
         """Go on from here, the end of an increment."""
         self.calm += 1
-        self.step = min(self.step * self.growth, self.first * (self.stretch if self.calm > CALM else 1.0))
+        self.step = min(self.step * self.growth, self.usual * (self.stretch if self.calm > CALM else 1.0))
         if here.before is not None:
             here.before.before = None  # no longer asked for
         self._begin_pair(here)
@@ -354,12 +394,17 @@ class _Path:
         return max(self.least_first, part * abs(self.factor))
 
     @property
+    def usual(self) -> float:
+        """Length of a first increment here with the tolerance."""
+        return self.first * self.coarser
+
+    @property
     def trusted(self) -> float:
         """Length of increments whose error is not looked at."""
         if not self.looks:
             return np.inf
         part = self.looseness * TRUSTED_PART * abs(self.target - self.kept_at)
-        return min(self.looseness * self.first, self.first, part)
+        return min(self.looseness * self.first, self.usual, part)
 
     def _worked_too_much(self) -> bool:
         """Whether the last stretch of load has cost more than it may."""
@@ -368,9 +413,41 @@ class _Path:
             self.mark = (self.factor, work)
         return work - self.mark[1] > MOST_WORK
 
+    def _ramp(self, target: float) -> float:
+        """Duration of a ramp by which dynamics gets to ``target`` within the tolerance, in sqrt(R/g)."""
+        assert self.tolerance is not None
+        part = abs(target - self.start.factor) / abs(target - self.kept_at)
+        return max(RAMP * part / self.tolerance, SHORTEST_RAMP) * self.problem.crossing_time
+
+    def _dynamics_cost(self, target: float) -> float:
+        """Factorisations as dear as dynamics to ``target`` within the tolerance; infinite beyond its steps."""
+        steps = (self._ramp(target) + STAGE.hold) / self.quick_step
+        return steps / STEPS_AS_DEAR if steps <= self.dynamics.maximum_steps else np.inf
+
+    def _dynamics_is_cheaper(self, target: float) -> bool:
+        """Whether what is left of the way would cost less by dynamics, by what the last increments have cost."""
+        dynamics = self._dynamics_cost(target)
+        if self.record.work.factorisations - self.begun < SAMPLE * dynamics:
+            return False
+        return self.cost * abs(target - self.factor) > dynamics * max(self.gained, self.shortest)
+
+    def _leave_to_dynamics(self, target: float) -> None:
+        """Dynamics to ``target``, from the last state of known error; where it does not settle statics goes on."""
+        self.factor, self.known, self.trial = self.start.factor, self.start.known, self.start.trial
+        self.may_leave = False
+        here = self._state()
+        quick = _DynamicsOptions(
+            TRIAL_INTEGRATOR, self.quick_step, self._ramp(target), self.dynamics.maximum_steps, STAGE, STAGE_STOP
+        )
+        try:
+            self._cross(target, "too much work", quick)
+        except PathError:
+            self.factor = here.load_factor
+            self._begin(here)
+
     def _may_have_become_unstable(self) -> bool:
         """Whether enough has happened since the last look; without a change of any contact the tangent is the same."""
-        if abs(self.factor - self.stable_at) < STABILITY_STEP / self.unit:
+        if abs(self.factor - self.stable_at) < self.apart:
             return False
         return self.tolerance is None or not np.array_equal(self.trial.sense, self.stable_trial.sense)
 
@@ -391,10 +468,14 @@ class _Path:
         state, direction = self._state(), self.system.unstable_direction(self.trial)
         return self._leaves_towards(state, direction) or self._leaves_towards(state, -direction)
 
+    @cached_property
+    def quick_step(self) -> float:
+        """Time step of dynamics of which nothing is asked but where it ends."""
+        return TRIAL_STEP * stability_limit(self.problem, TRIAL_INTEGRATOR, smallest=True)
+
     def _leaves_towards(self, state: State, direction: FloatArray) -> bool:
         beside = nudged(self.problem, state, direction)
-        time_step = TRIAL_STEP * stability_limit(self.problem, TRIAL_INTEGRATOR, smallest=True)
-        dynamics = Dynamics(self.problem, beside, TRIAL_INTEGRATOR, time_step)
+        dynamics = Dynamics(self.problem, beside, TRIAL_INTEGRATOR, self.quick_step)
         self.record.stability_trials += 1
         stop = Stop(1e-11, maximum_steps=min(200_000, self.dynamics.maximum_steps), least_time=TRIAL_TIME)
         settled = relax(dynamics, stop, load=(self.factor, self.factor, 0.0))
@@ -419,9 +500,9 @@ class _Path:
                 self.factor, self.known, self.trial = before
         self._cross(unstable, "unstable")
 
-    def _cross(self, new: float, reason: str) -> None:
+    def _cross(self, new: float, reason: str, options: _DynamicsOptions | None = None) -> None:
         """Dynamics from the last equilibrium to one at load factor ``new``."""
-        options = self.dynamics
+        options = self.dynamics if options is None else options
         here = self._state()
         start = self.factor
 
@@ -430,11 +511,11 @@ class _Path:
             self._begin(found)
             return found.certificate.stable is True or not self._leaves()
 
-        stop = Stop(CROSSING_STOP, maximum_steps=options.maximum_steps)
+        stop = Stop(options.energy, maximum_steps=options.maximum_steps)
         ramp = (start, new, options.ramp)
         try:
             settled = settle(
-                self.problem, here, CROSSING_OVER, stop, what=f"load factor {new:g}", load=ramp, accept=accept,
+                self.problem, here, options.over, stop, what=f"load factor {new:g}", load=ramp, accept=accept,
                 integrator=options.integrator, time_step=options.time_step,
             )  # fmt: skip
         except NotSettled as error:
@@ -442,7 +523,7 @@ class _Path:
         moved = float(np.abs(settled.position - here.position).max())
         self.record.crossings.append(Crossing(float(start), float(new), reason, moved))
         self.mark = (new, self.record.work.factorisations)
-        self.step = self.first
+        self.step = self.usual
 
     def _state(self) -> State:
         state = self.system.state(self.trial, self.factor)

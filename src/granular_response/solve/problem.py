@@ -201,6 +201,11 @@ class Problem:
         np.add.at(total.T, self.load_disk, self.load)
         return total[: self.freedoms].ravel()
 
+    @property
+    def crossing_time(self) -> float:
+        """In which a compression wave runs through the packing, in sqrt(R/g): before, parts know nothing of others."""
+        return float(self.packing.position[:, 1].max()) / (2.0 * self.scene.contact.normal_stiffness**0.5)
+
     def weight_vector(self) -> FloatArray:
         """(dof,) generalised gravity."""
         total = np.zeros((self.freedoms, self.n))

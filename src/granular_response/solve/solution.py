@@ -317,7 +317,7 @@ def _by_dynamics(problem: Problem, start: State, factor: float, progress: Progre
 def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | None, **ramps: Any) -> State:
     """Dynamics to rest as the protocol says, and the static finish; ``ramps`` of gravity and load."""
     protocol = problem.scene.protocol
-    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps, _crossing_time(problem))
+    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
     report = None
     if progress is not None:
         highest = [stop.kinetic_energy * 10.0, 0.0]
@@ -336,11 +336,6 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
     if protocol.static_finish and not settled.reached.settled:
         raise NotSettled(not_settled(problem, settled, stage))
     return replace(settled, reached=replace(settled.reached, certificate=certify(problem, settled)))
-
-
-def _crossing_time(problem: Problem) -> float:
-    """In which a compression wave runs through the packing; before, parts of it do not know of each other."""
-    return float(problem.packing.position[:, 1].max()) / (2.0 * problem.scene.contact.normal_stiffness**0.5)
 
 
 __all__ = [

@@ -144,7 +144,9 @@ class StaticSystem:
         same = SAME_SHIFT * problem.stiffness
         self._steps = Sequence(self._storage, definite=False, same=same)
         self._definite_steps = Sequence(self._storage, definite=True, same=same)
-        self._two_sided = self._both_ends() if updated else None
+        self._two_sided = self._both_ends(REGULARISATION) if updated else None
+        #: the same with limits of friction held fixed, by what is added to the diagonal
+        self._limited: dict[float, TwoSided | None] = {}
         #: place in ``LEFT_OF_ALL`` that was left of all eigenvalues of the last tangent that was looked at
         self._left = 0
 
@@ -387,8 +389,30 @@ class StaticSystem:
         factor = self._storage.factor(self._transposed(self.tangent(trial, REGULARISATION * self.problem.stiffness)))
         return factor, self._transposed(self.tangent(trial))
 
-    def _both_ends(self) -> TwoSided | None:
-        """A factorisation that is brought up to date where contacts change; None where it is not the cheaper one."""
+    def limited_step(
+        self, trial: Trial, force: FloatArray, shift: float, *, anew: bool = False
+    ) -> tuple[FloatArray, bool]:
+        """As :meth:`step` with fixed limits of friction, and whether anything had to be factorised.
+
+        By a factorisation that is brought up to date where contacts have changed, if the system has one: the step is
+        then that of a tangent nearby. ``anew`` : whether the last one did not serve.
+        """
+        if not self.updated:
+            return self.step(trial, force, shift), True
+        if shift not in self._limited:
+            self._limited[shift] = self._both_ends(shift / self.problem.stiffness)
+        kept = self._limited[shift]
+        assert kept is not None
+        if anew:
+            kept.forget()
+        made = kept.update(trial.pair_tangent, trial.wall_tangent)
+        return self.deinterleave(kept.solve(self.interleave(force))), made
+
+    def _both_ends(self, diagonal: float) -> TwoSided | None:
+        """A factorisation that is brought up to date where contacts change; None where it is not the cheaper one.
+
+        ``diagonal`` : what is added there, in units of the normal stiffness.
+        """
         if not isinstance(self._storage, Band) or self.held.size or self.problem.freedoms != FREEDOMS:
             return None
         loaded = self.problem.load_disk
@@ -397,7 +421,7 @@ class StaticSystem:
         k = self.problem.stiffness
         return TwoSided(
             np.stack([self._place[self.first], self._place[self.second]], axis=1), self._place[self.wall_disk], radius,
-            half_width=self._storage.half_width, centre=centre, diagonal=REGULARISATION * k, stiffness=k,
+            half_width=self._storage.half_width, centre=centre, diagonal=diagonal * k, stiffness=k,
         )  # fmt: skip
 
     @property
