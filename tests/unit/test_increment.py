@@ -75,10 +75,10 @@ def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
     monkeypatch.setattr(module, "ROUGH", 0.0)
     monkeypatch.setattr(module, "STILL", 0.0)
     long, short = Work(), Work()
-    assert module._minimise_with_limits(system, known, external, known.q, limits, long, 25) is None
+    assert module.minimise_with_limits(system, known, external, known.q, limits, long, 25) is None
     assert long.factorisations == 25  # rounding never lets the residual vanish
     monkeypatch.setattr(module, "STILL", 1e-5)
-    trial = module._minimise_with_limits(system, known, external, known.q, limits, short, 25)
+    trial = module.minimise_with_limits(system, known, external, known.q, limits, short, 25)
     assert short.factorisations < 15
     assert np.abs(trial.contact_force + external).max() < 1e-8
 

@@ -79,8 +79,8 @@ class Protocol(Description):
     path_tolerance: Positive | None = Field(
         default=None,
         description="Error of a floor or wall force, as a part of the load, that the increments of a path may leave by "
-        "their own estimate. Their lengths follow from it, and with 1e-5 there are fewer. With a loose one dynamics takes "
-        "the rest of the way where that costs less. Left out, they are short throughout.",
+        "their own estimate. Their lengths follow from it, and with 1e-5 there are fewer. With a loose one dynamics "
+        "takes the rest of the way where that costs less. Left out, they are short throughout.",
     )
     time_step: TimeStep | None = Field(
         default=None,
