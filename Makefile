@@ -1,7 +1,8 @@
 # `make reproduce` and `make test` are all a newcomer needs; both set up what they use.
 
 PYTHON ?= python3
-JOBS ?= auto
+# One more than there are cores: tests wait for processes that they start.
+JOBS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 REPRO ?=
 EXAMPLES ?= 1000
 

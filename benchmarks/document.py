@@ -9,6 +9,7 @@ measured.
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -32,9 +33,12 @@ TEXTS = {
     ),
     "nine_points": (
         "Path and dynamics to an error",
-        "From rest, without the fall, in one run: a path with a tolerance and dynamics (leapfrog, static finish, ramps "
-        "of 1 to 100). The error is that of the normalised floor response against the path in increments of the "
-        "default length.",
+        "From rest, without the fall, in one run: a path with a tolerance and dynamics (leapfrog in steps of 1.4e-3, "
+        "0.86 of its limit, static finish, ramps of 1, 5, 20 and 100). The error is that of the normalised floor "
+        "response against the path in increments of the default length. Of each method the fastest run counts whose "
+        "error, known afterwards, is small enough: for dynamics that is the luckiest ramp. A path has to choose "
+        "beforehand; where its increments are dear for a tolerance, it leaves the rest of the way to a ramp that is "
+        "safe for it.",
     ),
     "convergence": (
         "Dynamics approaches the path",
@@ -385,7 +389,7 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     what = "Path from rest, friction 0.2, force 15, error 1e-5, processor time"
     add("nine_points", what, row.get("path_1e-05"), None, 0.15, lambda v: f"{v:.2g} s")
     slower = sum(
-        row[f"dynamics{key}"] is not None and row[f"path{key}"] > row[f"dynamics{key}"]
+        row[f"dynamics{key}"] is not None and (row[f"path{key}"] or math.inf) > row[f"dynamics{key}"]
         for row in points
         for key in (name.removeprefix("path") for name in row if name.startswith("path"))
     )

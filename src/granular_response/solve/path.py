@@ -25,7 +25,7 @@ from functools import cached_property
 import numpy as np
 
 from ..state import Crossing, FloatArray, Reached, State
-from .dynamics import Dynamics, Stop, relax
+from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .equilibrium import certify, external_force
 from .increment import HASTY, PATIENT, Work, solve_increment
 from .increment_error import Place, error_of_two
@@ -271,13 +271,13 @@ class _Path:
         work = self.record.work
         rounds, factorisations = work.rounds, work.factorisations
         shorter = increment > 1.2 * self.shortest  # the last one before a target is up to 1.1 steps long
-        patience = HASTY if shorter else PATIENT
-        dear = not self.may_leave or self._dynamics_cost(target) > patience.factorisations
+        # rounds with fixed limits may take so many that dynamics would cost less
+        leaves = shorter and self.may_leave and self._dynamics_cost(target) < HASTY.factorisations
         found = solve_increment(
             self.system, self.known, external_force(self.problem, new), self._guess(new), work,
             passing=new != target and self.tolerance is not None,
-            stubborn=self.tolerance is None or (increment < 1.2 * self.usual and dear),
-            patience=patience,
+            stubborn=self.tolerance is None or (increment < 1.2 * self.usual and not leaves),
+            patience=HASTY if shorter else PATIENT,
         )  # fmt: skip
         if found is None:
             if shorter:
@@ -441,7 +441,7 @@ class _Path:
         )
         try:
             self._cross(target, "too much work", quick)
-        except PathError:
+        except (PathError, DynamicsError):
             self.factor = here.load_factor
             self._begin(here)
 
