@@ -141,6 +141,7 @@ def minimise_with_limits(
         try:
             step, made = system.limited_step(trial, r, shift, anew=not made and size > 0.1 * before)
         except RuntimeError:  # exactly singular
+            work.factorisations += 1
             return trial
         work.factorisations += made
         before = size

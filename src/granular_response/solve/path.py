@@ -54,9 +54,9 @@ GROWTH, SHRINK, CALM = 1.4, 0.9, 5
 #: Load that dynamics crosses at first, in mean disk weights; doubled while statics does not go on after it.
 CROSSING = 0.1
 #: Load between two looks at the stability, without a tolerance and with that of first increments; with a looser one it
-#: is longer in proportion.
-STABILITY_STEP, WITH_TOLERANCE = 1.0, 3.0
-#: Factorisations that statics may spend on the load of one look; after that dynamics is the cheaper way.
+#: is longer in proportion, up to the last.
+STABILITY_STEP, WITH_TOLERANCE, FARTHEST = 1.0, 3.0, 10.0
+#: Factorisations that statics may spend on ``STABILITY_STEP`` of load; after that dynamics is the cheaper way.
 MOST_WORK = 1000
 #: Ramp by which dynamics takes all that is left of the way within a tolerance: this many crossing times of a
 #: compression wave, over the tolerance, for the whole way; and at least so many (docs/physics.md has the errors).
@@ -66,6 +66,8 @@ STEPS_AS_DEAR = 100
 #: Fewest disks for that: in smaller packings increments cost next to nothing, and single disks swing more slowly than a
 #: wave crosses.
 MANY = 200
+#: Times its ramp in which it must settle.
+SETTLES_WITHIN = 10.0
 #: Part of what dynamics would cost that statics has to show what it costs itself.
 SAMPLE = 0.1
 #: Weight of earlier increments, from one to the next, in what the last ones have cost.
@@ -176,7 +178,8 @@ class _Path:
         #: by which increments are longer than for the tolerance of first ones: their errors grow faster than they do
         self.coarser = loose**0.5
         #: load factor between two looks at the stability
-        self.apart = (STABILITY_STEP if self.tolerance is None else WITH_TOLERANCE * loose) / self.unit
+        apart = STABILITY_STEP if self.tolerance is None else min(WITH_TOLERANCE * loose, FARTHEST)
+        self.apart = apart / self.unit
         self.factor = rest.load_factor
         self.start_is_stable = rest.reached.certificate is not None and rest.reached.certificate.stable is True
         self.middle: Place | None = None
@@ -199,8 +202,8 @@ class _Path:
         self.mark = (self.factor, self.record.work.factorisations)
         #: load factor that the last increments have gained and factorisations that they took, and work before them
         self.gained, self.cost, self.begun = 0.0, 0.0, self.record.work.factorisations
-        #: whether dynamics may take the rest of the way, which it does at most once
-        self.may_leave = self.looks and self.problem.n >= MANY
+        #: whether dynamics may take the rest of the way, tried once; how long a ramp must be was measured for forces
+        self.may_leave = self.looks and self.problem.n >= MANY and not len(self.problem.held)
         self._begin(state)
 
     def _begin(self, state: State) -> None:
@@ -257,9 +260,10 @@ class _Path:
         if self.may_leave and self._dynamics_is_cheaper(target):
             self._leave_to_dynamics(target)
             return
-        left, before = abs(target - self.factor), self.record.work.factorisations
+        left, before, crossings = abs(target - self.factor), self.record.work.factorisations, len(self.record.crossings)
         self._increase(target)
-        gained = max(left - abs(target - self.factor), 0.0)
+        # less than nothing where it went back
+        gained = left - abs(target - self.factor) if len(self.record.crossings) == crossings else 0.0
         fading = FADING if gained > 0.0 else 1.0
         self.gained = fading * self.gained + gained
         self.cost = fading * self.cost + self.record.work.factorisations - before
@@ -414,10 +418,12 @@ class _Path:
         return work - self.mark[1] > MOST_WORK
 
     def _ramp(self, target: float) -> float:
-        """Duration of a ramp by which dynamics gets to ``target`` within the tolerance, in sqrt(R/g)."""
+        """Duration of a ramp of dynamics to ``target`` for what is left of the tolerance, in sqrt(R/g)."""
         assert self.tolerance is not None
-        part = abs(target - self.start.factor) / abs(target - self.kept_at)
-        return max(RAMP * part / self.tolerance, SHORTEST_RAMP) * self.problem.crossing_time
+        left = self.tolerance * abs(target - self.kept_at) - self.spent / self.unit
+        if left <= 0.0:
+            return np.inf
+        return max(RAMP * abs(target - self.start.factor) / left, SHORTEST_RAMP) * self.problem.crossing_time
 
     def _dynamics_cost(self, target: float) -> float:
         """Factorisations as dear as dynamics to ``target`` within the tolerance; infinite beyond its steps."""
@@ -436,14 +442,15 @@ class _Path:
         self.factor, self.known, self.trial = self.start.factor, self.start.known, self.start.trial
         self.may_leave = False
         here = self._state()
-        quick = _DynamicsOptions(
-            TRIAL_INTEGRATOR, self.quick_step, self._ramp(target), self.dynamics.maximum_steps, STAGE, STAGE_STOP
-        )
+        ramp = self._ramp(target)
+        most = min(self.dynamics.maximum_steps, round(SETTLES_WITHIN * (ramp + STAGE.hold) / self.quick_step))
+        quick = _DynamicsOptions(TRIAL_INTEGRATOR, self.quick_step, ramp, most, STAGE, STAGE_STOP)
         try:
             self._cross(target, "too much work", quick)
         except (PathError, DynamicsError):
             self.factor = here.load_factor
-            self._begin(here)
+            self._begin(self.problem.relisted(here))
+            self._look_at_stability()
 
     def _may_have_become_unstable(self) -> bool:
         """Whether enough has happened since the last look; without a change of any contact the tangent is the same."""

@@ -45,7 +45,8 @@ PROTOCOL = HandOver(tries=8, wait=20.0, nudged=True)
 CROSSING = HandOver(tries=4, cooling=1e-2)
 #: Kinetic energy per disk at the first try of a crossing.
 CROSSING_STOP = 1e-9
-#: Stages of ensembles, and of paths with a tolerance: there are thousands of them, so the first try is early and cheap.
+#: Stages of ensembles, of which there are thousands, and the rest of the way of a path that dynamics takes to save
+#: time: the first try is early and cheap.
 STAGE = HandOver(tries=8, iterations=8, hold=1.5, wait=2.5, growth=2.0, nearly=float("inf"))
 #: Kinetic energy per disk at the first try of such a stage of a path.
 STAGE_STOP = 1e-7

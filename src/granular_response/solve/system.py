@@ -146,7 +146,7 @@ class StaticSystem:
         self._definite_steps = Sequence(self._storage, definite=True, same=same)
         self._two_sided = self._both_ends(REGULARISATION) if updated else None
         #: the same with limits of friction held fixed, by what is added to the diagonal
-        self._limited: dict[float, TwoSided | None] = {}
+        self._limited: dict[float, TwoSided] = {}
         #: place in ``LEFT_OF_ALL`` that was left of all eigenvalues of the last tangent that was looked at
         self._left = 0
 
@@ -399,10 +399,9 @@ class StaticSystem:
         """
         if not self.updated:
             return self.step(trial, force, shift), True
-        if shift not in self._limited:
-            self._limited[shift] = self._both_ends(shift / self.problem.stiffness)
-        kept = self._limited[shift]
-        assert kept is not None
+        kept = self._limited.get(shift) or self._both_ends(shift / self.problem.stiffness)
+        assert kept is not None  # as the system has one
+        self._limited[shift] = kept
         if anew:
             kept.forget()
         made = kept.update(trial.pair_tangent, trial.wall_tangent)
