@@ -38,7 +38,7 @@ TEXTS = {
         "response against the path in increments of the default length. Of each method the fastest run counts whose "
         "error, known afterwards, is small enough: for dynamics that is the luckiest ramp. A path has to choose "
         "beforehand; where its increments are dear for a tolerance, it leaves the rest of the way to a ramp that is "
-        "safe for it.",
+        "long enough by the worst errors of ramps that were measured ([physics](physics.md)).",
     ),
     "convergence": (
         "Dynamics approaches the path",
