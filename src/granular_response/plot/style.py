@@ -353,7 +353,8 @@ def save(
     files, layout = {}, drawn.get_layout_engine()
     for file_format in formats:
         files[target / f"{stem}.{file_format}"] = render(drawn, file_format)
-        drawn.set_layout_engine("none")  # to lay out takes as long as to draw
+        with context():
+            drawn.set_layout_engine(None)  # to lay out takes as long as to draw
     drawn.set_layout_engine(layout or "none")
     for path in files:
         atomic.check_writable(path, inputs)
