@@ -42,16 +42,17 @@ $(STAMP): requirements.lock pyproject.toml
 	@touch "$@"
 
 # DVC runs one stage after another, and what is left of a stage when one core has finished is waste. So two of it run at
-# once, each on every second group; what a clash of theirs left undone, and what stands on all groups, comes last.
+# once, each on the groups of its half in the list, which take as long as those of the other (a test adds up what the
+# benchmarks measured). What a clash of theirs left undone, and what stands on all groups, comes last; the report is made
+# by quote, whatever is up to date.
 reproduce: setup ## Run what is not up to date: simulations, figures, claims, report (REPRO=--force: all, whatever is)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	@names=$$(sed -n 's/^ *"\([a-z_]*\)": {"needs.*/\1/p' $(GROUP_LIST)); \
-	for half in 0 1; do \
-	  "$(BIN)/dvc" --wait-for-lock repro $(REPRO) $$(echo "$$names" | awk -v h=$$half 'NR % 2 == h {print "draw@" $$1}') \
-	    < /dev/null & \
+	@for half in 0 1; do \
+	  "$(BIN)/dvc" --wait-for-lock repro $(REPRO) \
+	    $$(sed -n "s/^ *\"\([a-z_]*\)\": {.*\"half\": $$half}.*/draw@\1/p" $(GROUP_LIST)) < /dev/null & \
 	done; wait
 	"$(BIN)/dvc" repro
-	@test -z "$(REPRO)" || "$(BIN)/dvc" repro $(REPRO) --single-item claims report < /dev/null
+	@test -z "$(REPRO)" || "$(BIN)/dvc" repro $(REPRO) --single-item claims < /dev/null
 	@$(MAKE) --no-print-directory quote
 
 # Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand. The page is made
@@ -77,7 +78,7 @@ survey: setup ## Run the large ensembles of disordered slabs and larger packings
 
 test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two processes)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	"$(BIN)/python" -m pytest -n $(JOBS)
+	"$(BIN)/python" -m pytest -n $(JOBS) --dist worksteal
 
 fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) "$(BIN)/python" -m pytest -m hypothesis -n $(JOBS)

@@ -13,8 +13,15 @@ floating_point.pin()  # before anything loads numpy, as the command line does
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.pop("DASK_SCHEDULER_ADDRESS", None)  # a sweep in a test runs where the test says
 
-#: What most worker processes and commands of tests import.
-IMPORTED = ["granular_response.api.sweep", "granular_response.cli.main", "granular_response.store.result"]
+#: What most worker processes and commands of tests import, with what the test modules do whose functions they run.
+IMPORTED = [
+    "granular_response.api.sweep",
+    "granular_response.cli.main",
+    "granular_response.store.result",
+    "hypothesis",
+    "pytest",
+    "xarray",
+]
 
 
 def pytest_sessionstart(session):

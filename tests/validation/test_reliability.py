@@ -137,12 +137,18 @@ def test_truncated_and_foreign_files_are_one_line(tmp_path, solution):
     assert "foreign.nc: was not written by granular_response" in one_line(arguments, tmp_path)
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory, solution):
+    path = tmp_path_factory.mktemp("whole") / "whole.nc"
+    store.write(path, to_dataset(solution))
+    assert store.read(path)
+    return path.read_bytes()
+
+
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(cut=st.floats(0.0, 0.999), place=st.floats(0.0, 0.999), flip=st.integers(1, 255))
-def test_a_damaged_file_is_never_read(tmp_path, solution, cut, place, flip):
+def test_a_damaged_file_is_never_read(tmp_path, whole, cut, place, flip):
     path = tmp_path / "damaged.nc"
-    store.write(path, to_dataset(solution))
-    whole = path.read_bytes()
     path.write_bytes(whole[: int(cut * len(whole))])
     with pytest.raises(store.StoreError) as error:
         store.read(path)

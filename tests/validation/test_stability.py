@@ -46,8 +46,8 @@ def test_the_predicted_time_step_is_neither_too_long_nor_much_too_short(integrat
     """What is settled stays so at 0.95 of the limit, and not at twice the limit."""
     if integrator == "leapfrog" and changes == {"contact.damping_ratio": 0.0}:
         changes = {"contact.damping_ratio": 0.02}  # it adds no damping of its own: without any, no kick dies out
-    scene = scene_of(Scene.from_dict(SMALL), {"protocol.integrator": integrator, **changes})
-    limit, outcomes = StepTrial(scene, (0.95, 2.0), 4000, SEED).run()
+    scene = scene_of(Scene.from_dict(SMALL), changes)
+    ((limit, outcomes),) = StepTrial(scene, (integrator,), (0.95, 2.0), 4000, SEED).run()
     assert limit > 0
     assert outcomes[0] == SETTLES
     assert outcomes[1] in (time_steps.CYCLES, time_steps.BLOWS_UP)

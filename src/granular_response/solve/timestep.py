@@ -27,6 +27,7 @@ or blow up between 1.05 and 1.7 times the limit.
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from functools import lru_cache
 
 import numpy as np
@@ -38,6 +39,8 @@ from .problem import Problem, static_contacts
 
 #: Part of the limit that ``time_step: auto`` takes.
 SAFETY = 0.6
+#: Step beyond which no limit is looked for, in sqrt(R/g): nothing that a packing does takes so long.
+LONGEST_STEP = 1e6
 #: Contacts around a disk of a dense packing, on the floor of one, and in its corner.
 NEIGHBOURS, ON_FLOOR, IN_CORNER = 6, 4, 2
 
@@ -52,16 +55,18 @@ def oscillator_limit(integrator: str, stiffness: float, damping: float, spring: 
 
     ``s`` follows ``x`` as tangential springs do, advanced by the predicted velocity. The step grows until the largest
     eigenvalue of the amplification matrix exceeds 1 by more than 1e-4 (Gear's corrector is weakly unstable without
-    damping, far below what matters in a packing).
+    damping, far below what matters in a packing). What is unstable at one step is so at all longer ones.
     """
 
     def stable(dt: float) -> bool:
         step = amplification(INTEGRATORS[integrator].scheme, stiffness * dt * dt, damping * dt, spring * dt * dt)
         return bool(np.abs(np.linalg.eigvals(step)).max() <= 1.0 + 1e-4)
 
-    step = 1e-3 / max(np.sqrt(stiffness + spring), damping, 1e-300)
-    while stable(1.1 * step) and step < 1e6:
-        step *= 1.1
+    row = [1e-3 / max(np.sqrt(stiffness + spring), damping, 1e-300)]
+    while row[-1] < LONGEST_STEP:
+        row.append(1.1 * row[-1])
+    first_unstable = bisect_left(row, True, lo=1, key=lambda dt: not stable(dt))
+    step = row[first_unstable - 1]
     unstable = 1.1 * step
     for _ in range(20):
         middle = 0.5 * (step + unstable)

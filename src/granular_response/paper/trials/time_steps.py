@@ -24,6 +24,8 @@ OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
 KICK = 1e-3
 #: Parts into which a run is divided to see whether the energy still falls.
 PARTS = 8
+#: Steps between two looks at whether it has blown up.
+LOOK_EVERY = 100
 #: A kick blows up when its energy reaches this multiple; it dies out when in the second half of the run the energy
 #: stays below this part (an unstable mode saturates far above 1, a slow one may not fall much lower).
 GROWN, FALLEN = 1e10, 0.3
@@ -31,24 +33,27 @@ GROWN, FALLEN = 1e10, 0.3
 
 @dataclass(frozen=True)
 class StepTrial:
-    """One scene and the time steps to try, as parts of the predicted limit."""
+    """One scene, the integrators, and the time steps to try with each, as parts of its predicted limit."""
 
     scene: Scene
+    integrators: tuple[str, ...]
     ratios: tuple[float, ...]
     steps: int
     seed: int
 
-    def run(self) -> tuple[float, list[int]]:
-        """The predicted limit (sqrt(R/g)), and what becomes of the kick at each time step."""
+    def run(self) -> list[tuple[float, list[int]]]:
+        """For each integrator the predicted limit (sqrt(R/g)), and what becomes of the kick at each time step."""
         problem = Problem.from_scene(self.scene)
-        integrator = self.scene.protocol.integrator
-        limit = stability_limit(problem, integrator)
+        limits = [stability_limit(problem, integrator) for integrator in self.integrators]
         try:
             problem, state, load = prepared(problem)
         except SOLVE_ERRORS:
-            return limit, [NO_REST] * len(self.ratios)
+            return [(limit, [NO_REST] * len(self.ratios)) for limit in limits]
         kicked = kick(problem, state, self.seed)
-        return limit, [outcome(problem, kicked, load, integrator, ratio * limit, self.steps) for ratio in self.ratios]
+        return [
+            (limit, [outcome(problem, kicked, load, name, ratio * limit, self.steps) for ratio in self.ratios])
+            for name, limit in zip(self.integrators, limits, strict=True)
+        ]
 
 
 def prepared(problem: Problem) -> tuple[Problem, State, float]:
@@ -87,15 +92,17 @@ def outcome(problem: Problem, kicked: State, load: float, integrator: str, step:
     bearing = int(0.9 * (dynamics.contact_count() >= 2).sum())
     held = True  # once disks have come loose, theirs is what counts
     energy: list[float] = []
+    part = steps // PARTS
     for _ in range(PARTS):
-        try:
-            with np.errstate(over="ignore", invalid="ignore"):
-                dynamics.advance(steps // PARTS)
-        except (DynamicsError, ValueError):
-            return BLOWS_UP
-        now = dynamics.kinetic_energy(bearing_only=held)
-        if not now < GROWN * start:
-            return BLOWS_UP
+        for done in range(0, part, LOOK_EVERY):  # what has blown up lists its contacts anew at every step
+            try:
+                with np.errstate(over="ignore", invalid="ignore"):
+                    dynamics.advance(min(LOOK_EVERY, part - done))
+            except (DynamicsError, ValueError):
+                return BLOWS_UP
+            now = dynamics.kinetic_energy(bearing_only=held)
+            if not now < GROWN * start:
+                return BLOWS_UP
         held = held and int((dynamics.contact_count() >= 2).sum()) >= bearing
         energy.append(now)
     return SETTLES if max(energy[PARTS // 2 :]) < FALLEN * start else CYCLES

@@ -84,22 +84,21 @@ def _time_steps(parameters: TimeSteps, seed: int) -> Plan:
     integrators, axes = parameters.integrators, parameters.axes
     tasks: list[Task] = []
     for name, values in axes.items():
-        for integrator in integrators:
-            for value in values:
-                changes: dict[str, Any] = {"protocol.integrator": integrator}
-                if name == "load":
-                    changes["loads"] = [{"disk": "top-centre", "force": [0.0, -value]}] if value else []
-                else:
-                    changes[AXES[name][0]] = value
-                scene = time_steps.scene_of(base, changes)
-                tasks.append(time_steps.StepTrial(scene, ratios, steps, seed).run)
+        for value in values:
+            if name == "load":
+                changes: dict[str, Any] = {"loads": [{"disk": "top-centre", "force": [0.0, -value]}] if value else []}
+            else:
+                changes = {AXES[name][0]: value}
+            scene = time_steps.scene_of(base, changes)
+            tasks.append(time_steps.StepTrial(scene, integrators, ratios, steps, seed).run)
 
-    found: list[tuple[float, list[int]]] = yield tasks
+    found: list[list[tuple[float, list[int]]]] = yield tasks
     datasets = {}
     rest = iter(found)
     for name, values in axes.items():
         shape = (len(integrators), len(values))
-        several = [next(rest) for _ in range(len(integrators) * len(values))]
+        of_values = [next(rest) for _ in values]
+        several = [of_value[row] for row in range(len(integrators)) for of_value in of_values]
         datasets[f"time_step_{name}"] = xr.Dataset(
             {
                 "limit": variable(

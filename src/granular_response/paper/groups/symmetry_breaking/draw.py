@@ -62,7 +62,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     copies, held = parameters.copies, parameters.held
     ramps = sorted({protocol.ramp_time for protocol in parameters.protocols})
-    steps = sorted({protocol.time_step for protocol in parameters.protocols}, reverse=True)
+    steps = sorted({step for protocol in parameters.protocols for step in protocol.time_steps}, reverse=True)
     forces = sorted({float(force) for force in datasets["runs"]["force"].values})
     text = (
         "Not in the paper: the loss of symmetry of Fig. 16 at large friction, where it begins and to which side. (c) "

@@ -15,16 +15,16 @@ class Protocol(Description):
     """How a force is applied, and the forces between which the response loses its symmetry."""
 
     ramp_time: NonNegative
-    time_step: Positive
+    time_steps: Annotated[tuple[Positive, ...], AfterValidator(some)]
     between: tuple[NonNegative, Positive]
 
-    def scene(self, base: Scene) -> Scene:
-        """``base`` under this protocol."""
+    def scene(self, base: Scene, time_step: float) -> Scene:
+        """``base`` under this protocol with one of its time steps."""
         return base.updated(
             {
                 "protocol.method": "dynamics",
                 "protocol.ramp_time": self.ramp_time,
-                "protocol.time_step": self.time_step,
+                "protocol.time_step": time_step,
             }
         )
 

@@ -37,8 +37,10 @@ HELD_STOP = Stop(kinetic_energy=1e-15, rule="envelope", maximum_steps=200_000)
 
 @dataclass(frozen=True)
 class BracketResult:
-    """The bracket for one protocol, with all runs that it took."""
+    """The bracket for one ramp and time step, with all runs that it took."""
 
+    ramp_time: float
+    time_step: float
     event: slab.Event
     forces: tuple[float, ...]
     measured: xr.Dataset  #: at ``forces``
@@ -46,8 +48,12 @@ class BracketResult:
 
 
 @dataclass(frozen=True)
-class BracketTask:
-    """Bracket the loss of symmetry for one protocol."""
+class RampTask:
+    """Bracket the loss of symmetry for one duration of the ramp, by one time step after another.
+
+    A further time step is tried where the one before it lost its symmetry, and over all forces only if it does not
+    lose it there.
+    """
 
     base: Scene
     rest: State
@@ -55,14 +61,25 @@ class BracketTask:
     tolerance: float
     above: float  #: asymmetry that counts as lost symmetry
 
-    def run(self) -> BracketResult:
-        path = slab.LoadPath.of(self.protocol.scene(self.base), self.rest)
+    def run(self) -> list[BracketResult]:
+        results: list[BracketResult] = []
+        for time_step in self.protocol.time_steps:
+            found = results[-1].event if results else None
+            first = (found.low, found.high) if found is not None and 0.0 < found.low < found.high else None
+            results.append(self._bracket(time_step, first))
+        return results
+
+    def _bracket(self, time_step: float, first: tuple[float, float] | None) -> BracketResult:
+        """For one time step; the loss is looked for between ``first`` before anywhere else."""
+        path = slab.LoadPath.of(self.protocol.scene(self.base, time_step), self.rest)
         measures = slab.Measures(path)
 
         def asymmetric(force: float) -> bool:
             return measures.asymmetry(path.at(force)) > self.above
 
         low, high = self.protocol.between
+        if first is not None and not asymmetric(first[0]) and asymmetric(first[1]):
+            low, high = first
         try:
             bracket = bisect_event(asymmetric, low, high, self.tolerance)
             low, high = bracket.low, bracket.high
@@ -71,12 +88,13 @@ class BracketTask:
         forces = tuple(sorted(path.known))
         text = (
             f"dynamics with a ramp of {self.protocol.ramp_time:g} and a time step of "
-            f"{self.protocol.time_step:g}: the asymmetry of the floor response exceeds {self.above:g}"
+            f"{time_step:g}: the asymmetry of the floor response exceeds {self.above:g}"
         )
         event = slab.Event("loss_of_symmetry", measures.friction, low, high, self.tolerance, len(forces), text)
         ends = tuple(path.known[force] for force in (low, high) if force in path.known)
         measured = slab.measured(measures, [path.known[force] for force in forces])
-        return BracketResult(event, forces, measured, ends if len(ends) == 2 else ())
+        states = ends if len(ends) == 2 else ()
+        return BracketResult(self.protocol.ramp_time, time_step, event, forces, measured, states)
 
 
 @dataclass(frozen=True)
@@ -140,22 +158,22 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     last symmetric and the first asymmetric state of the first protocol.
     """
     base, protocols = parameters.scene, parameters.protocols
-    first = protocols[0].scene(base)
+    first = protocols[0].scene(base, protocols[0].time_steps[0])
     (rest,) = map_tasks(rest_of, [first], workers=1, what="rest state")
 
-    brackets = [BracketTask(base, rest, protocol, parameters.tolerance, parameters.asymmetry) for protocol in protocols]
+    ramps = [RampTask(base, rest, protocol, parameters.tolerance, parameters.asymmetry) for protocol in protocols]
     copies = _copy_tasks(parameters.copies, first)
     held = HeldTask(parameters.base, rest, parameters.held.forces, parameters.held.displacement)
     # long ones first, so that no core waits for them in the end
-    longest = sorted(brackets, key=lambda t: -(100.0 + t.protocol.ramp_time) / t.protocol.time_step)
+    longest = sorted(ramps, key=lambda t: -(100.0 + t.protocol.ramp_time) / min(t.protocol.time_steps))
     results = run_tasks([*longest, held, *copies], what="loss of symmetry")
-    found: list[BracketResult] = [results[longest.index(task)] for task in brackets]
+    found: list[BracketResult] = [result for task in ramps for result in results[longest.index(task)]]
 
     datasets = {
-        "brackets": _brackets_dataset(protocols, found),
-        "runs": _runs_dataset(protocols, found),
-        "held": _held_dataset(held, results[len(brackets)]),
-        "copies": _copies_dataset(copies, results[len(brackets) + 1 :]),
+        "brackets": _brackets_dataset(found),
+        "runs": _runs_dataset(found),
+        "held": _held_dataset(held, results[len(ramps)]),
+        "copies": _copies_dataset(copies, results[len(ramps) + 1 :]),
     }
     problem = Problem.from_scene(base).with_loads(rest.position)
     datasets["states"] = slab.states_picture([rest, *found[0].states], problem)
@@ -210,22 +228,22 @@ def _random_shift(shape: tuple[int, ...], size: float, seed: int) -> FloatArray:
     return np.random.default_rng(seed).uniform(-size, size, shape)
 
 
-def _brackets_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult]) -> xr.Dataset:
+def _brackets_dataset(found: Sequence[BracketResult]) -> xr.Dataset:
     dataset = slab.events_dataset([result.event for result in found])
-    return dataset.assign(_protocol_columns("event", protocols))
+    return dataset.assign(_protocol_columns("event", found))
 
 
-def _protocol_columns(dimension: str, protocols: Sequence[Protocol]) -> dict[str, xr.Variable]:
-    ramps = np.array([protocol.ramp_time for protocol in protocols])
-    steps = np.array([protocol.time_step for protocol in protocols])
+def _protocol_columns(dimension: str, results: Sequence[BracketResult]) -> dict[str, xr.Variable]:
+    ramps = np.array([result.ramp_time for result in results])
+    steps = np.array([result.time_step for result in results])
     return {
         "ramp_time": variable(dimension, ramps, "duration of the load ramp in sqrt(radius/g)"),
         "time_step": variable(dimension, steps, "time step in sqrt(radius/g)"),
     }
 
 
-def _runs_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult]) -> xr.Dataset:
-    """Every run of every protocol, in the order of the protocols and then of the forces."""
+def _runs_dataset(found: Sequence[BracketResult]) -> xr.Dataset:
+    """Every run, in the order of the protocols, their time steps and then of the forces."""
     counts = [len(result.forces) for result in found]
     starts = np.concatenate([[0], np.cumsum(counts)])
     parts = [
@@ -233,7 +251,7 @@ def _runs_dataset(protocols: Sequence[Protocol], found: Sequence[BracketResult])
         for start, count, result in zip(starts, counts, found, strict=False)
     ]
     dataset = slab.measured_dataset(("run",), parts, (int(starts[-1]),))
-    of_run = [protocol for protocol, count in zip(protocols, counts, strict=True) for _ in range(count)]
+    of_run = [result for result, count in zip(found, counts, strict=True) for _ in range(count)]
     forces = np.concatenate([result.forces for result in found])
     return dataset.assign(
         {**_protocol_columns("run", of_run), "force": variable("run", forces, f"applied force {FORCE}")}
