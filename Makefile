@@ -1,8 +1,10 @@
 # `make reproduce` and `make test` are all a newcomer needs; both set up what they use.
 
 PYTHON ?= python3
-# One more than there are cores: tests wait for processes that they start.
-JOBS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
+# More than there are cores: tests wait for processes that they start.
+JOBS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 2)
+# Of each half of the pipeline.
+WORKERS ?= $(shell expr \( $$(getconf _NPROCESSORS_ONLN) + 1 \) / 2)
 REPRO ?=
 EXAMPLES ?= 1000
 
@@ -42,13 +44,13 @@ $(STAMP): requirements.lock pyproject.toml
 	@touch "$@"
 
 # DVC runs one stage after another, and what is left of a stage when one core has finished is waste. So two of it run at
-# once, each on the groups of its half in the list, which take as long as those of the other (a test adds up what the
-# benchmarks measured). What a clash of theirs left undone, and what stands on all groups, comes last; the report is made
-# by quote, whatever is up to date.
+# once, each with half of the cores on the groups of its half of the list, which take as long as those of the other (a
+# test adds up what the benchmarks measured). What a clash of theirs left undone, and what stands on all groups, comes
+# last; the report is made by quote, whatever is up to date.
 reproduce: setup ## Run what is not up to date: simulations, figures, claims, report (REPRO=--force: all, whatever is)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	@for half in 0 1; do \
-	  "$(BIN)/dvc" --wait-for-lock repro $(REPRO) \
+	  GRANULAR_RESPONSE_WORKERS=$(WORKERS) "$(BIN)/dvc" --wait-for-lock repro $(REPRO) \
 	    $$(sed -n "s/^ *\"\([a-z_]*\)\": {.*\"half\": $$half}.*/draw@\1/p" $(GROUP_LIST)) < /dev/null & \
 	done; wait
 	"$(BIN)/dvc" repro

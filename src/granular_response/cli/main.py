@@ -226,7 +226,10 @@ def continue_(
 )
 def simulate(
     group: Group,
-    workers: Annotated[int | None, typer.Option(min=1, help="Local processes; all cores if not given.")] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, envvar="GRANULAR_RESPONSE_WORKERS", help="Local processes; all cores if not given."),
+    ] = None,
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a running Dask scheduler, in place of local processes.")
     ] = None,
