@@ -52,18 +52,20 @@ reproduce: setup ## Run what is not up to date: simulations, figures, claims, re
 	@for half in 0 1; do \
 	  GRANULAR_RESPONSE_WORKERS=$(WORKERS) "$(BIN)/dvc" --wait-for-lock repro $(REPRO) \
 	    $$(sed -n "s/^ *\"\([a-z_]*\)\": {.*\"half\": $$half}.*/draw@\1/p" $(GROUP_LIST)) < /dev/null & \
-	done; wait
-	"$(BIN)/dvc" repro
-	@test -z "$(REPRO)" || "$(BIN)/dvc" repro $(REPRO) --single-item claims < /dev/null
+	  halves="$$halves $$!"; \
+	done; \
+	for half in $$halves; do wait $$half || undone=yes; done; \
+	test -z "$$undone" || "$(BIN)/dvc" repro draw < /dev/null
+	"$(BIN)/dvc" repro $(if $(REPRO),$(REPRO) --single-item) claims < /dev/null
 	@$(MAKE) --no-print-directory quote
 
 # Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand. The page is made
 # again with them, so dvc.lock records it again: benchmarks, which it shows, are no dependency that DVC would look at.
 quote: setup ## Renew the lines that README and documents quote from stored results and code (tests compare them)
-	"$(BIN)/granular-response" claims --list --readme README.md > /dev/null
+	"$(BIN)/granular-response" claims --list --readme README.md > /dev/null & claims=$$!; \
+	"$(BIN)/granular-response" keys --page docs/scene-reference.md & keys=$$!; \
 	"$(BIN)/granular-response" report --notes docs/reproduction-notes.md --figures docs/figures.md \
-	  --beyond docs/beyond.md
-	"$(BIN)/granular-response" keys --page docs/scene-reference.md
+	  --beyond docs/beyond.md && wait $$claims && wait $$keys
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	@"$(BIN)/dvc" commit --quiet --force report < /dev/null
 

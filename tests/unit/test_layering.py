@@ -1,6 +1,7 @@
 """The linters, the type checker and the table of docs/architecture.md."""
 
 import ast
+import functools
 import os
 import re
 import subprocess
@@ -89,12 +90,13 @@ def test_every_import_is_a_declared_dependency():
     assert used <= {name.replace("-", "_") for name in declared}
 
 
+@functools.cache
 def names_used(path: Path) -> set[str]:
     """Dotted names in a file, such as os.environ.update."""
-    nodes = ast.walk(ast.parse(path.read_text()))
+    nodes = list(ast.walk(ast.parse(path.read_text())))
     return {ast.unparse(node) for node in nodes if isinstance(node, (ast.Attribute, ast.Subscript))} | {
         f"{ast.unparse(target.value)} is set"
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in nodes
         if isinstance(node, (ast.Assign, ast.Delete))
         for target in node.targets
         if isinstance(target, ast.Subscript)
