@@ -39,7 +39,7 @@ def test_a_further_time_step_is_tried_where_the_one_before_loses_symmetry(datase
 
 
 @pytest.mark.parametrize("guess", [(50.0, 60.0), (20.0, 25.0)])
-def test_where_a_further_time_step_disagrees_all_forces_are_searched(datasets, guess, monkeypatch):
+def test_where_a_further_time_step_disagrees_all_forces_are_searched(datasets, guess):
     parameters = study.Parameters(**PARAMETERS)
     protocol = parameters.protocols[0]
     rest = study.rest_of(protocol.scene(parameters.scene, 5e-4))

@@ -63,10 +63,13 @@ def test_an_integrator_of_ones_own(monkeypatch):
 def test_what_comes_from_elsewhere_does_not_trouble_other_processes(tmp_path):
     """Machine code for it is not kept: a process without its module could not read the list of what is."""
     ours = Path(__file__).parent
-    script = "import test_extending as t; p = t.problem(0.0); t.minimise(p, p.bare_state())"
+    script = "import test_extending as t; t.problem(0.0).bare_state()"
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": os.environ.get("PYTHONPATH", "")}
     small = {"packing": {"kind": "slab", "layers": 2, "disks_per_row": 5}, "contact": {"friction": 0.0}}
-    plain = f"import granular_response as gr; gr.solve({small})"
+    plain = (
+        "from granular_response.scene import Scene; from granular_response.solve import Problem; "
+        f"Problem.from_scene(Scene.from_dict({small})).bare_state()"
+    )
     for code, folder in ((script, ours), (plain, tmp_path)):
         run = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True)
         assert run.returncode == 0, run.stderr
