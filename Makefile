@@ -22,6 +22,8 @@ export OPENBLAS_CORETYPE ?= Haswell
 export NPY_DISABLE_CPU_FEATURES ?= X86_V4 AVX512_ICL AVX512_SPR
 endif
 export DVC_NO_ANALYTICS := 1
+# Some environments ask Python to keep no bytecode. Hundreds of short processes would each compile the package anew.
+unexport PYTHONDONTWRITEBYTECODE
 # The stages of the pipeline call granular-response and tools beside it.
 export PATH := $(BIN):$(PATH)
 

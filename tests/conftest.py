@@ -31,11 +31,6 @@ def pytest_sessionstart(session):
         forkserver.ensure_running()
 
 
-def pytest_collection_modifyitems(items):
-    """Linters and the type checker first: they need no kernels, which other processes compile meanwhile."""
-    items.sort(key=lambda item: item.path.name != "test_layering.py")
-
-
 # Properties are tried on the same examples every time. GRANULAR_RESPONSE_FUZZ=5000 tries as many new ones of each.
 settings.register_profile("default", derandomize=True, deadline=None, max_examples=100)
 settings.register_profile(
