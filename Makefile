@@ -1,10 +1,11 @@
 # `make reproduce` and `make test` are all a newcomer needs; both set up what they use.
 
 PYTHON ?= python3
+CORES := $(shell getconf _NPROCESSORS_ONLN)
 # More than there are cores: tests wait for processes that they start.
-JOBS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 2)
+JOBS ?= $(shell expr $(CORES) + 2)
 # Of each half of the pipeline.
-WORKERS ?= $(shell expr \( $$(getconf _NPROCESSORS_ONLN) + 1 \) / 2)
+WORKERS ?= $(shell expr \( $(CORES) + 1 \) / 2)
 REPRO ?=
 EXAMPLES ?= 1000
 
