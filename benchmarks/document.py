@@ -107,10 +107,9 @@ TEXTS = {
     "linear": (
         "Factorisations of the tangent stiffness",
         "Slabs at rest. With friction the tangent has three unknowns a disk and is factorised as L U; without, two: "
-        "LAPACK, our fronts and PARDISO take it as symmetric and positive. The package takes a band up to a half-width "
-        "of 120, its own LU and LAPACK's Cholesky factorisation, and fronts beyond. Numeric phase alone; the time of "
-        "SuperLU holds its ordering, which scipy makes each time. One thread each, the instructions that the command "
-        "line chooses; PARDISO (MKL) chooses its own.",
+        "all but SuperLU take it as symmetric and positive. The package takes a band up to a half-width of 130, and "
+        "fronts beyond. Numeric phase alone; the time of SuperLU holds its ordering, which scipy makes each time. One "
+        "thread each, the instructions that the command line chooses; PARDISO (MKL) chooses its own.",
     ),
     "skipping": (
         "What skipping buys",

@@ -4,18 +4,14 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.contact_law import draw, simulate
-from granular_response.paper.groups.contact_law.parameters import Parameters
-from granular_response.store import files as store
+from granular_response.paper.groups.contact_law import draw
 
 PARAMETERS = reduced.parameters("contact_law")
 
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("contact_law") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "contact_law"})
-    return store.read(path)
+    return reduced.datasets("contact_law", tmp_path_factory)
 
 
 def test_both_laws_are_at_rest_and_matched(datasets):

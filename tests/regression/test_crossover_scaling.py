@@ -16,7 +16,6 @@ from granular_response.paper.groups.frictionless_crossover import simulate as fr
 from granular_response.paper.report import beyond
 from granular_response.paper.slab_response import LoadPath
 from granular_response.scene import SceneError
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("crossover_scaling")
 
@@ -27,10 +26,8 @@ def parameters():
 
 
 @pytest.fixture(scope="module")
-def datasets(tmp_path_factory, parameters):
-    path = tmp_path_factory.mktemp("crossover_scaling") / "group.nc"
-    store.write(path, simulate.simulate(parameters), {"group": "crossover_scaling"})
-    return store.read(path)
+def datasets(tmp_path_factory):
+    return reduced.datasets("crossover_scaling", tmp_path_factory)
 
 
 def of(datasets, series):

@@ -7,7 +7,6 @@ import reduced
 from granular_response.paper.groups.friction_fields import draw as figures
 from granular_response.paper.groups.friction_fields import simulate as study
 from granular_response.plot import style
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("friction_fields")
 SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")
@@ -15,9 +14,7 @@ SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "a
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "friction_fields.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
-    return store.read(path)
+    return reduced.datasets("friction_fields", tmp_path_factory)
 
 
 def test_scalars(datasets, num_regression) -> None:

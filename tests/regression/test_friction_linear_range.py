@@ -5,7 +5,6 @@ import pytest
 import reduced
 
 from granular_response.paper.groups.friction_linear_range import draw as figures
-from granular_response.paper.groups.friction_linear_range import simulate as study
 from granular_response.plot import style
 from granular_response.state import SLIDING
 from granular_response.store import files as store
@@ -14,8 +13,8 @@ PARAMETERS = reduced.parameters("friction_linear_range")
 
 
 @pytest.fixture(scope="module")
-def datasets():
-    return study.simulate(study.Parameters(**PARAMETERS))
+def datasets(tmp_path_factory):
+    return reduced.datasets("friction_linear_range", tmp_path_factory)
 
 
 def bracket(datasets, name, friction):

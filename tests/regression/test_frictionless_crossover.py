@@ -5,9 +5,7 @@ import pytest
 import reduced
 
 from granular_response.paper.groups.frictionless_crossover import draw as figures
-from granular_response.paper.groups.frictionless_crossover import simulate as study
 from granular_response.plot import style
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("frictionless_crossover")
 STEMS = [
@@ -22,9 +20,7 @@ TOLERANCE = {"rtol": 1e-8, "atol": 1e-10}
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "frictionless_crossover.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
-    return store.read(path)
+    return reduced.datasets("frictionless_crossover", tmp_path_factory)
 
 
 def test_profiles(datasets, num_regression) -> None:

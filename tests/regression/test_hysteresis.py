@@ -13,7 +13,6 @@ from granular_response.paper.report import beyond
 from granular_response.scene import SceneError
 from granular_response.solve import Problem, loaded_states, minimise
 from granular_response.solve import solution as solvers
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("hysteresis")
 #: Cases of the reduced parameters.
@@ -22,9 +21,7 @@ SMOOTH, ROUGH, DISORDERED = 0, 1, 2
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("hysteresis") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "hysteresis"})
-    return store.read(path)
+    return reduced.datasets("hysteresis", tmp_path_factory)
 
 
 def part_of_work(loops, name):

@@ -11,16 +11,13 @@ from granular_response.paper.groups.influence import draw, simulate
 from granular_response.paper.groups.influence.claims import CLAIMS
 from granular_response.paper.groups.influence.parameters import Parameters
 from granular_response.scene import SceneError
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("influence")
 
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("influence") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "influence"})
-    return store.read(path)
+    return reduced.datasets("influence", tmp_path_factory)
 
 
 def test_values_are_the_stored_ones(datasets, num_regression):

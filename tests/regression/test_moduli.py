@@ -10,7 +10,6 @@ from granular_response.paper.groups.moduli import draw, simulate
 from granular_response.paper.groups.moduli.claims import CLAIMS
 from granular_response.paper.groups.moduli.parameters import Parameters
 from granular_response.scene import SceneError
-from granular_response.store import files as store
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
@@ -21,9 +20,7 @@ PARAMETERS = reduced.parameters("moduli")
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("moduli") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "moduli"})
-    return store.read(path)
+    return reduced.datasets("moduli", tmp_path_factory)
 
 
 def test_values_are_the_stored_ones(datasets, num_regression):

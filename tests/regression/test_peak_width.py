@@ -6,11 +6,10 @@ import reduced
 
 from granular_response.paper.claims.claim import Data
 from granular_response.paper.claims.verdict import judge
-from granular_response.paper.groups.peak_width import draw, simulate
+from granular_response.paper.groups.peak_width import draw
 from granular_response.paper.groups.peak_width.claims import CLAIMS
 from granular_response.paper.groups.peak_width.parameters import Parameters
 from granular_response.scene import SceneError
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("peak_width")
 SMALL, LARGE, DISORDERED = 0, 1, 2
@@ -18,9 +17,7 @@ SMALL, LARGE, DISORDERED = 0, 1, 2
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("peak_width") / "group.nc"
-    store.write(path, simulate.simulate(Parameters.model_validate(PARAMETERS)), {"group": "peak_width"})
-    return store.read(path)
+    return reduced.datasets("peak_width", tmp_path_factory)
 
 
 def test_values_are_the_stored_ones(datasets, num_regression):

@@ -7,16 +7,13 @@ import reduced
 from granular_response.paper.groups.pile_dip import draw as figures
 from granular_response.paper.groups.pile_dip import simulate as study
 from granular_response.plot import style
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("pile_dip")
 
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "pile_dip.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
-    return store.read(path)
+    return reduced.datasets("pile_dip", tmp_path_factory)
 
 
 def test_numbers(datasets, num_regression) -> None:

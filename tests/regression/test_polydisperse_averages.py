@@ -20,15 +20,8 @@ PARAMETERS = reduced.parameters("polydisperse_averages")
 
 
 @pytest.fixture(scope="module")
-def simulated():
-    return study.simulate(study.Parameters(**PARAMETERS))
-
-
-@pytest.fixture(scope="module")
-def datasets(simulated, tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "polydisperse_averages.nc"
-    store.write(path, simulated)
-    return store.read(path)
+def datasets(tmp_path_factory):
+    return reduced.datasets("polydisperse_averages", tmp_path_factory)
 
 
 def test_averages(datasets, num_regression) -> None:
@@ -83,11 +76,13 @@ def test_packings_differ_and_are_the_same_for_every_friction(datasets) -> None:
     np.testing.assert_allclose(density.sum() * spacing, 1.0)
 
 
-def test_two_workers_give_the_same_bits(simulated) -> None:
+def test_two_workers_give_the_same_bits(datasets, tmp_path) -> None:
+    path = tmp_path / "again.nc"
     with using(workers=2):
-        again = study.simulate(study.Parameters(**PARAMETERS))
-    assert again.keys() == simulated.keys()
-    for name, dataset in simulated.items():
+        store.write(path, study.simulate(study.Parameters(**PARAMETERS)), {"group": "polydisperse_averages"})
+    again = store.read(path)
+    assert again.keys() == datasets.keys()
+    for name, dataset in datasets.items():
         xr.testing.assert_identical(dataset, again[name])
 
 

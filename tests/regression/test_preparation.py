@@ -16,8 +16,8 @@ WAYS = PARAMETERS["ways"]
 
 
 @pytest.fixture(scope="module")
-def datasets():
-    return study.simulate(Parameters(**PARAMETERS))
+def datasets(tmp_path_factory):
+    return reduced.datasets("preparation", tmp_path_factory)
 
 
 def test_every_slab_carries_every_force(datasets):

@@ -7,7 +7,6 @@ import reduced
 from granular_response.paper.groups.slab_comparison import draw as figures
 from granular_response.paper.groups.slab_comparison import simulate as study
 from granular_response.plot import style
-from granular_response.store import files as store
 
 
 def case(friction, floor, layers, gravity="at-once"):
@@ -19,9 +18,7 @@ PARAMETERS = reduced.parameters("slab_comparison")
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "slab_comparison.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
-    return store.read(path)
+    return reduced.datasets("slab_comparison", tmp_path_factory)
 
 
 def test_distances(datasets, num_regression) -> None:

@@ -7,7 +7,6 @@ import reduced
 from granular_response.paper.groups.stiffness_ratio_crossover import draw as figures
 from granular_response.paper.groups.stiffness_ratio_crossover import simulate as study
 from granular_response.plot import style
-from granular_response.store import files as store
 from granular_response.theory import crossover
 
 PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
@@ -15,9 +14,7 @@ PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "stiffness_ratio_crossover.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
-    return store.read(path)
+    return reduced.datasets("stiffness_ratio_crossover", tmp_path_factory)
 
 
 def test_response(datasets, num_regression) -> None:

@@ -8,7 +8,6 @@ from granular_response.paper.groups.superposition import draw as figures
 from granular_response.paper.groups.superposition import simulate as study
 from granular_response.plot import style
 from granular_response.scene import Scene
-from granular_response.store import files as store
 from granular_response.sweeps.rest import rest_of
 
 PARAMETERS = reduced.parameters("superposition")
@@ -17,9 +16,7 @@ CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "superposition.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
-    return store.read(path)
+    return reduced.datasets("superposition", tmp_path_factory)
 
 
 def test_errors(datasets, num_regression) -> None:

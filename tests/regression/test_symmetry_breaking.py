@@ -13,8 +13,8 @@ PARAMETERS = reduced.parameters("symmetry_breaking")
 
 
 @pytest.fixture(scope="module")
-def datasets():
-    return study.simulate(study.Parameters(**PARAMETERS))
+def datasets(tmp_path_factory):
+    return reduced.datasets("symmetry_breaking", tmp_path_factory)
 
 
 def test_symmetry_is_lost_between_symmetric_and_asymmetric_runs(datasets):

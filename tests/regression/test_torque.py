@@ -7,7 +7,6 @@ import reduced
 from granular_response.paper.groups.torque import draw as figures
 from granular_response.paper.groups.torque import simulate as study
 from granular_response.plot import style
-from granular_response.store import files as store
 
 PARAMETERS = reduced.parameters("torque")
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")
@@ -15,9 +14,7 @@ CHANGES = ("force_change", "stress_change", "antisymmetric_change")
 
 @pytest.fixture(scope="module")
 def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "torque.nc"
-    store.write(path, study.simulate(study.Parameters(**PARAMETERS)))
-    return store.read(path)
+    return reduced.datasets("torque", tmp_path_factory)
 
 
 def test_reach(datasets, num_regression) -> None:

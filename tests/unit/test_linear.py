@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from granular_response.solve.linear import band_lu
 from granular_response.solve.linear.band import Band
+from granular_response.solve.linear.band_rows import rounded
 from granular_response.solve.linear.ordering import node_order
 
 
@@ -16,50 +16,63 @@ def banded(n, b, seed, symmetric=False, dominant=True):
     return a + (4.0 * b + 4.0) * np.eye(n) if dominant else a
 
 
-def by_rows(dense, b):
-    """The band of a matrix as the kernels store it."""
+def stored(dense, b):
+    """A matrix with all entries of its band, those that are zero too."""
     n = len(dense)
-    stored = np.zeros((n, 2 * b + 1))
-    for i in range(n):
-        for j in range(max(0, i - b), min(n, i + b + 1)):
-            stored[i, j - i + b] = dense[i, j]
-    return stored
+    matrix = sp.csc_array((np.abs(np.subtract.outer(np.arange(n), np.arange(n))) <= b).astype(float))
+    matrix.data[:] = dense[matrix.indices, np.repeat(np.arange(n), np.diff(matrix.indptr))]
+    return matrix
 
 
-@pytest.mark.parametrize(("n", "b"), [(1, 0), (5, 0), (7, 1), (40, 6), (12, 11)])
+#: Around the four rows that are eliminated at once, the lanes of a vector, and whole numbers of them.
+SIZES = [(1, 0), (5, 0), (7, 1), (40, 6), (12, 11), (23, 7), (24, 8), (33, 9), (61, 15), (64, 16), (130, 17), (9, 8)]
+
+
+@pytest.mark.parametrize(("n", "b"), SIZES)
 def test_banded_lu(n, b):
     dense = banded(n, b, 3)
-    stored = by_rows(dense, b)
-    band_lu.factorise(stored.ravel(), len(stored), b)
-    x = np.arange(1.0, n + 1.0)
-    band_lu.solve(stored.ravel(), len(stored), b, x)
-    assert x == pytest.approx(np.linalg.solve(dense, np.arange(1.0, n + 1.0)), rel=1e-12)
+    matrix = stored(dense, b)
+    factor = Band(matrix.indptr, matrix.indices).factor(matrix)
+    right = np.arange(1.0, n + 1.0)
+    assert factor.solve(right) == pytest.approx(np.linalg.solve(dense, right), rel=1e-12)
+    assert factor._exchanged is None, "rows were exchanged"
+    assert right[-1] == n, "the right-hand side is the caller's"
 
 
-@pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 4), (23, 5), (24, 7), (10, 9)])
-def test_four_rows_at_once_give_the_bits_of_one_by_one(n, b):
+@pytest.mark.parametrize(("n", "b"), SIZES)
+def test_rows_hold_the_factors_and_zeros_beyond_the_band(n, b):
     dense = banded(n, b, 5)
-    stored = by_rows(dense, b)
-    band_lu.factorise(stored.ravel(), len(stored), b)
-    for k in range(n):
-        for i in range(k + 1, min(n, k + b + 1)):
-            dense[i, k] *= 1.0 / dense[k, k]
-            dense[i, k + 1 : k + b + 1] -= dense[i, k] * dense[k, k + 1 : k + b + 1]
+    matrix = stored(dense, b)
+    rows, wide = Band(matrix.indptr, matrix.indices).factor(matrix)._rows, rounded(b)
+    lower, upper, outside = np.eye(n), np.zeros((n, n)), rows.copy()
     for i in range(n):
         for j in range(max(0, i - b), min(n, i + b + 1)):
-            assert stored[i, j - i + b] == dense[i, j]
+            (upper if j >= i else lower)[i, j] = rows[i, wide + j - i]
+            outside[i, wide + j - i] = 0.0
+    assert lower @ upper == pytest.approx(dense, rel=1e-13, abs=1e-13 * b)
+    assert not outside.any()
 
 
 def test_zero_pivot_falls_back_to_row_exchanges():
     dense = banded(30, 3, 1)
     dense[0, 0] = 0.0
-    matrix = sp.csc_array(np.where(np.abs(np.subtract.outer(np.arange(30), np.arange(30))) <= 3, dense, 0.0))
-    full = sp.csc_array(np.abs(np.subtract.outer(np.arange(30), np.arange(30))) <= 3).astype(float)
-    full.data[:] = matrix.toarray()[full.indices, np.repeat(np.arange(30), np.diff(full.indptr))]
+    matrix = stored(dense, 3)
     right = np.ones(30)
     with np.errstate(all="ignore"):
-        x = Band(full.indptr, full.indices).factor(full).solve(right)
+        x = Band(matrix.indptr, matrix.indices).factor(matrix).solve(right)
     assert x == pytest.approx(np.linalg.solve(dense, right), rel=1e-9)
+
+
+def test_zero_pivot_of_a_symmetric_matrix_does_not_pass_for_positive():
+    dense = banded(30, 3, 1, symmetric=True)
+    dense[0, 0] = 0.0
+    matrix = stored(dense, 3)
+    storage = Band(matrix.indptr, matrix.indices)
+    assert storage.definite_factor(matrix) is None
+    assert storage.negative_eigenvalues(matrix) > 0
+    assert storage.symmetric_factor(matrix)[0].solve(np.ones(30)) == pytest.approx(
+        np.linalg.solve(dense, np.ones(30)), rel=1e-9
+    )
 
 
 @pytest.mark.parametrize("negative", [0, 1, 4])
@@ -69,15 +82,16 @@ def test_number_of_negative_eigenvalues(negative):
     dense -= (0.5 * (values[negative - 1] + values[negative]) if negative else 0.0) * np.eye(40)
     assert (np.linalg.eigvalsh(dense) < 0).sum() == negative
     matrix = sp.csc_array(dense)
-    factor, found = Band(matrix.indptr, matrix.indices).symmetric_factor(matrix)
-    assert found == negative
+    storage = Band(matrix.indptr, matrix.indices)
+    factor, found = storage.symmetric_factor(matrix)
+    assert found == storage.negative_eigenvalues(matrix) == negative
     assert factor.solve(np.ones(40)) == pytest.approx(np.linalg.solve(dense, np.ones(40)), rel=1e-8)
 
 
-@pytest.mark.parametrize(("n", "b"), [(1, 0), (5, 0), (7, 1), (40, 6), (12, 11), (300, 70)])
+@pytest.mark.parametrize(("n", "b"), [*SIZES, (300, 70)])
 def test_definite_factor_solves_and_refuses_what_is_not_definite(n, b):
     dense = banded(n, b, 4, symmetric=True)
-    matrix = sp.csc_array(np.where(np.abs(np.subtract.outer(np.arange(n), np.arange(n))) <= b, dense, 0.0))
+    matrix = stored(dense, b)
     storage = Band(matrix.indptr, matrix.indices)
     right = np.arange(1.0, n + 1.0)
     assert storage.definite_factor(matrix).solve(right) == pytest.approx(np.linalg.solve(dense, right), rel=1e-12)

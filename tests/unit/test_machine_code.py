@@ -1,6 +1,5 @@
 """Machine code: where it is kept, never that of other sources, and the same digits on every processor."""
 
-import math
 import os
 import shutil
 import subprocess
@@ -122,12 +121,30 @@ def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):
         machine_code.cache_folder.cache_clear()
 
 
-#: Scalar products of all lengths up to that of a wide band, in hexadecimal.
+#: Solutions of banded matrices up to a wide band, in hexadecimal: sums over lanes, and fused products.
 SUMS = """
 import numpy as np
-from granular_response.solve.linear.band_lu import product
-a, b = np.random.default_rng(0).standard_normal((2, 300))
-print(*(float(product(a, 1, b, 2, size)).hex() for size in range(250)))
+from granular_response.solve.linear.band_ldl import factorise, stride as symmetric
+from granular_response.solve.linear.band_ldl import solve as solve_symmetric
+from granular_response.solve.linear.band_lu import eliminate, solve, stride
+from granular_response.solve.linear.band_rows import padded
+found = []
+for b in range(8, 129, 8):
+    n = 2 * b + 3
+    numbers = np.random.default_rng(b)
+    dense = np.triu(np.tril(numbers.standard_normal((n, n)), b), -b) + 4.0 * b * np.eye(n)
+    rows, half = np.zeros((n, stride(b))), np.zeros((n, symmetric(b)))
+    for i in range(n):
+        first, last = max(0, i - b), min(n, i + b + 1)
+        rows[i, b + first - i : b + last - i] = dense[i, first:last]
+        half[i, : last - i] = dense[i, i:last]
+    x, y = padded(np.ones(n), b), padded(np.ones(n), b)
+    eliminate(rows.ravel(), n, b, 0, n)
+    solve(rows.ravel(), n, b, x)
+    assert factorise(half.ravel(), n, b, True)
+    solve_symmetric(half.ravel(), n, b, y)
+    found += [*x[b : b + n], *y[b : b + n]]
+print(*(float(value).hex() for value in found))
 """
 
 
@@ -151,7 +168,12 @@ def test_sums_are_the_same_compiled_for_processors_with_wide_and_with_narrow_reg
         assert run.returncode == 0, run.stderr
         found[kind] = run.stdout
     assert len(set(found.values())) == 1
-    sums = np.array([float.fromhex(one) for one in found[kinds[0]].split()])
-    a, b = np.random.default_rng(0).standard_normal((2, 300))
-    exact = [math.fsum((a[1 : 1 + size] * b[2 : 2 + size]).tolist()) for size in range(250)]
-    np.testing.assert_allclose(sums, exact, rtol=0, atol=1e-13)
+    values = np.array([float.fromhex(one) for one in found[kinds[0]].split()])
+    exact = []
+    for b in range(8, 129, 8):
+        n = 2 * b + 3
+        numbers = np.random.default_rng(b)
+        dense = np.triu(np.tril(numbers.standard_normal((n, n)), b), -b) + 4.0 * b * np.eye(n)
+        for matrix in (dense, np.triu(dense) + np.triu(dense, 1).T):
+            exact.append(np.linalg.solve(matrix, np.ones(n)))
+    np.testing.assert_allclose(values, np.concatenate(exact), rtol=1e-13)

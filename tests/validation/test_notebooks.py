@@ -16,6 +16,14 @@ from granular_response.paper.pipeline import GroupError, group_member, simulatio
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "params.yaml"
+#: Groups whose reduced datasets are looked at by tests of their own: their notebooks here draw these.
+LOOKED_AT = [group for group in NAMES if (ROOT / "tests" / "regression" / f"test_{group}.py").exists()]
+READ = """\
+from granular_response.store import files
+
+
+def simulate(parameters):
+    return files.read({path!r})"""
 
 
 @pytest.fixture(scope="module")
@@ -31,13 +39,17 @@ def kernel(tmp_path_factory):
 
 
 @pytest.mark.parametrize("group", NAMES)
-def test_a_notebook_runs_and_shows_every_figure(group, kernel, tmp_path):
+def test_a_notebook_runs_and_shows_every_figure(group, kernel, tmp_path, tmp_path_factory):
     (path,) = notebooks.write(tmp_path / "notebooks", [group], own=OWN, reduced=reduced.PATH)
     notebook = nbformat.read(path, as_version=4)
     nbformat.validate(notebook)
     assert not any(cell.get("outputs") for cell in notebook.cells)
     # nothing that a notebook before it has named
     notebook.cells.insert(0, new_code_cell("%reset -f"))
+    if group in LOOKED_AT:
+        run = next(k for k, cell in enumerate(notebook.cells) if "simulate(parameters)" in cell.source)
+        path = str(reduced.stored(group, tmp_path_factory))
+        notebook.cells.insert(run, new_code_cell(READ.format(path=path)))
     NotebookClient(notebook, km=kernel, timeout=120).execute()
     shown = [output.get("data", {}) for output in notebook.cells[-1].outputs]
     pictures = [data for data in shown if "image/png" in data]
@@ -55,6 +67,10 @@ def test_a_notebook_has_the_parameters_of_its_group(group, tmp_path):
     for name, file in (("own", OWN), ("reduced", reduced.PATH)):
         given, expected = simulation.parameters(group, file)
         assert names[name] == given and described(**names[name]) == expected
+
+
+def test_notebooks_that_simulate_are_among_them():
+    assert 4 <= len(LOOKED_AT) < len(NAMES) - 2
 
 
 def test_a_group_that_is_none_is_said(tmp_path):

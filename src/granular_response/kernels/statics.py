@@ -27,6 +27,9 @@ from ..state.status import OPEN, SLIDING, STICKING
 
 Floats = NDArray[Any]
 
+#: Tangent of an angle up to which five terms of its series are exact to rounding: the next one is 2e-18 of it.
+SMALL_TURN = 0.02
+
 
 class Pairs(NamedTuple):
     """(m,) listed contacts between disks at zero displacement."""
@@ -119,6 +122,16 @@ def _pair_at(q, n, pairs, c):
 
 
 @kernel(forceinline=True)
+def _angle(sine, cosine):
+    """``atan2(sine, cosine)``: of the small turn of an increment by its series, to the last digit."""
+    if abs(sine) < SMALL_TURN * cosine:
+        t = sine / cosine
+        u = t * t
+        return t - t * u * (1.0 / 3.0 - u * (1.0 / 5.0 - u * (1.0 / 7.0 - u * (1.0 / 9.0))))
+    return math.atan2(sine, cosine)
+
+
+@kernel(forceinline=True)
 def _wall_at(q, n, walls, c):
     """Disk of a listed contact with a wall, the wall's normal, and the overlap at ``q``."""
     i = walls.disk[c]
@@ -203,7 +216,7 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out,
             px = dx - wx
             pz = dz - wz
             before = math.sqrt(px * px + pz * pz)
-            turn = math.atan2(px * wz - pz * wx, px * dx + pz * dz)
+            turn = _angle(px * wz - pz * wx, px * dx + pz * dz)
             mean = 0.5 * (before + d)
             roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
             fn, ft = _rub(

@@ -12,6 +12,7 @@ vector loop and what is left at its end. With compilation off a ``Lanes`` value 
 
 from __future__ import annotations
 
+import math
 import operator
 from functools import partial
 
@@ -28,9 +29,9 @@ WIDTH = 8
 
 def aligned_zeros(*shape: int) -> NDArray[np.float64]:
     """Zeros that begin at a cache line."""
-    size = int(np.prod(shape))
+    size = math.prod(shape)
     room = np.zeros(size + 8)
-    skip = -(room.ctypes.data // 8) % 8
+    skip = -(room.__array_interface__["data"][0] // 8) % 8
     return room[skip : skip + size].reshape(shape)
 
 
@@ -271,16 +272,17 @@ def quotient_where(typing, condition, dividend, divisor, otherwise):
 
 @intrinsic
 def less_product(typing, value, factor, other):
-    """``value - factor * other`` rounded once; ``factor`` is a float."""
+    """``value - factor * other`` rounded once; ``factor`` may be a float for all lanes."""
     if value == LANES:
 
         def generate(context, builder, sig, args):
             fused = cgutils.get_or_insert_function(
                 builder.module, ir.FunctionType(_DOUBLES, [_DOUBLES] * 3), f"llvm.fma.v{WIDTH}f64"
             )
-            return builder.call(fused, [_spread(builder, builder.fneg(args[1])), args[2], args[0]])
+            factor = _as_lanes(builder, sig.args[1], builder.fneg(args[1]))
+            return builder.call(fused, [factor, args[2], args[0]])
 
-        return LANES(LANES, types.float64, LANES), generate
+        return LANES(LANES, LANES if factor == LANES else types.float64, LANES), generate
 
     def generate_scalar(context, builder, sig, args):
         double = ir.DoubleType()
@@ -290,12 +292,37 @@ def less_product(typing, value, factor, other):
     return types.float64(types.float64, types.float64, types.float64), generate_scalar
 
 
+@intrinsic
+def total(typing, value):
+    """Sum of all lanes, those of one half added to those of the other until one is left."""
+
+    def generate(context, builder, sig, args):
+        sums, size = args[0], WIDTH
+        while size > 1:
+            size //= 2
+            low, high = (
+                builder.shuffle_vector(
+                    sums, sums, ir.Constant(ir.VectorType(ir.IntType(32), size), list(range(start, start + size)))
+                )
+                for start in (0, size)
+            )
+            sums = builder.fadd(low, high)
+        return builder.extract_element(sums, ir.IntType(32)(0))
+
+    return types.float64(LANES), generate
+
+
 if config.DISABLE_JIT:  # the same functions for numpy arrays and floats
     spread = partial(np.full, WIDTH)
     root, magnitude, anywhere = np.sqrt, np.abs, np.any
 
     def less_product(value, factor, other):
         return value - factor * other
+
+    def total(value):
+        while len(value) > 1:
+            value = value[: len(value) // 2] + value[len(value) // 2 :]
+        return value[0]
 
     def take(array, k, like):
         return array[k : k + WIDTH].copy() if isinstance(like, np.ndarray) else array[k]

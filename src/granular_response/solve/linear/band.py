@@ -1,19 +1,20 @@
-"""Banded factorisations: LU without row exchanges by our own kernels, Cholesky by LAPACK.
+"""Banded factorisations without row exchanges: L U, and L D L^T of a symmetric matrix.
 
 The tangent of a shallow packing, numbered along its length, has a narrow band. It is close to symmetric and positive,
-so rows of the LU need not be exchanged, which LAPACK's banded LU cannot leave out; a residual tells where they must be
-after all. A symmetric positive matrix needs no such care.
+so rows need not be exchanged, which LAPACK's banded LU cannot leave out; a residual tells where they must be after
+all. A symmetric positive matrix needs no such care.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import lapack
 from scipy.sparse.linalg import splu
 
+from ...machine.lanes import aligned_zeros
 from ...state import FloatArray
-from . import band_lu
+from . import band_ldl, band_lu
+from .band_rows import padded, rounded
 from .factor import AcrossDiagonal, Factor
 
 #: Relative residual of a banded solution above which rows are exchanged after all.
@@ -30,59 +31,65 @@ class Band:
         self.n = n
         self.across = AcrossDiagonal()
         self.half_width = int(below.max(initial=0))
+        self._b = rounded(self.half_width)
         #: where the entries go in the rows of the LU
-        self._place = indices * (2 * self.half_width + 1) + (self.half_width - below)
-        #: which entries the Cholesky factorisation takes, and where they go in its columns
+        self._place = indices * band_lu.stride(self._b) + (self._b - below)
+        #: which entries the factorisation of a symmetric matrix takes, and where they go in its rows
         self._lower = np.flatnonzero(below >= 0)
-        self._lower_place = (column * (self.half_width + 1) + below)[self._lower]
+        self._lower_place = (column * band_ldl.stride(self._b) + below)[self._lower]
 
     def factor(self, matrix: sp.csc_array) -> BandLU:
         """LU without row exchanges; they are made up for where a residual asks for them."""
-        rows = np.zeros((self.n, 2 * self.half_width + 1))
+        rows = aligned_zeros(self.n, band_lu.stride(self._b))
         rows.ravel()[self._place] = matrix.data
-        band_lu.factorise(rows.ravel(), len(rows), self.half_width)
-        return BandLU(matrix, rows, self.half_width)
+        band_lu.eliminate(rows.ravel(), self.n, self._b, 0, self.n)
+        return BandLU(matrix, rows, self._b)
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
-        """Cholesky factorisation, LU where that fails, and the number of negative eigenvalues: of negative pivots."""
-        definite = self.definite_factor(matrix)
-        if definite is not None:
-            return definite, 0
-        factor = self.factor(matrix)
-        return factor, factor.negative_pivots()
+        """Factorisation, LU where one of its pivots is not positive, and how many of them are not."""
+        rows, _ = self._symmetric(matrix, definite=False)
+        negative = _not_positive(rows[:, 0])
+        return (BandLDL(rows, self._b) if negative == 0 else self.factor(matrix)), negative
 
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
         """The number of negative eigenvalues of a symmetric matrix alone."""
-        return self.symmetric_factor(matrix)[1]
+        return _not_positive(self._symmetric(matrix, definite=False)[0][:, 0])
 
-    def definite_factor(self, matrix: sp.csc_array) -> BandCholesky | None:
-        """Cholesky factorisation; None when the matrix is not positive definite."""
-        columns = np.zeros((self.n, self.half_width + 1))
-        columns.ravel()[self._lower_place] = matrix.data[self._lower]
-        lower, info = lapack.dpbtrf(columns.T, lower=1, overwrite_ab=1)
-        return BandCholesky(lower) if info == 0 else None
+    def definite_factor(self, matrix: sp.csc_array) -> BandLDL | None:
+        """Factorisation; None when the matrix is not positive definite."""
+        rows, definite = self._symmetric(matrix, definite=True)
+        return BandLDL(rows, self._b) if definite else None
+
+    def _symmetric(self, matrix: sp.csc_array, *, definite: bool) -> tuple[FloatArray, bool]:
+        """(n, s) rows of D L^T, and whether they were made to the end: not where one must be definite and is not."""
+        rows = aligned_zeros(self.n, band_ldl.stride(self._b))
+        rows.ravel()[self._lower_place] = matrix.data[self._lower]
+        return rows, band_ldl.factorise(rows.ravel(), self.n, self._b, definite)
 
     def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> None:
         """None: an exact one is as cheap."""
         return None
 
 
+def _not_positive(pivots: FloatArray) -> int:
+    """How many are not, with those that are no numbers, after a zero."""
+    return int((~(pivots > 0.0)).sum())
+
+
 class BandLU:
     """L U of a banded matrix, by rows."""
 
-    def __init__(self, matrix: sp.csc_array, rows: FloatArray, half_width: int):
-        self._matrix, self._rows, self._half_width = matrix, rows, half_width
+    def __init__(self, matrix: sp.csc_array, rows: FloatArray, b: int):
+        self._matrix, self._rows, self._b = matrix, rows, b
         self._exchanged: Factor | None = None
-
-    def negative_pivots(self) -> int:
-        """Number of negative pivots, of a symmetric matrix that of its negative eigenvalues."""
-        return int((self._rows[:, self._half_width] < 0).sum())
 
     def solve(self, right: FloatArray) -> FloatArray:
         """(n,) the solution; by a factorisation with row exchanges when the residual is too large."""
         if self._exchanged is None:
-            x = right.copy()
-            band_lu.solve(self._rows.ravel(), len(self._rows), self._half_width, x)
+            n, b = len(right), self._b
+            room = padded(right, b)
+            band_lu.solve(self._rows.ravel(), n, b, room)
+            x = room[b : b + n]
             error = np.abs(self._matrix @ x - right).max()
             if error <= ACCEPTED * np.abs(right).max():
                 return x
@@ -92,12 +99,15 @@ class BandLU:
         return self._exchanged.solve(right)
 
 
-class BandCholesky:
-    """Lower factor of a symmetric positive banded matrix, as LAPACK stores it (half_width + 1, n)."""
+class BandLDL:
+    """L D L^T of a symmetric positive banded matrix: rows of D L^T."""
 
-    def __init__(self, lower: FloatArray):
-        self._lower = lower
+    def __init__(self, rows: FloatArray, b: int):
+        self._rows, self._b = rows, b
 
     def solve(self, right: FloatArray) -> FloatArray:
         """(n,) the solution for one right-hand side."""
-        return lapack.dpbtrs(self._lower, right, lower=1)[0]
+        n, b = len(right), self._b
+        x = padded(right, b)
+        band_ldl.solve(self._rows.ravel(), n, b, x)
+        return x[b : b + n]

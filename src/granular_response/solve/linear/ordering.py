@@ -15,7 +15,7 @@ from .factor import Storage
 from .multifrontal import Multifrontal
 
 #: Half-bandwidth (in unknowns) up to which the banded factorisations are the faster ones.
-WIDEST_BAND = 120
+WIDEST_BAND = 130
 #: Disks from which on a dissection is remembered: it takes as long as a factorisation.
 REMEMBERED = 40_000
 

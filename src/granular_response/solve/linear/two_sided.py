@@ -12,10 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...machine.lanes import WIDTH, less_product, put, spread, take
+from ...machine.lanes import aligned_zeros
 from ...machine.machine_code import kernel
 from ...state import FloatArray
-from .band_lu import multiples_of_four, product
+from .band_lu import eliminate, forward, stride
+from .band_rows import backward, less_row, padded, rounded
 
 #: Change of a contact's tangent, as a part of the normal stiffness, that counts.
 STALE = 1e-2
@@ -23,8 +24,6 @@ STALE = 1e-2
 FREEDOMS = 3
 #: Unknowns between two checkpoints, a multiple of the four that are eliminated at once.
 SPACING = 48
-#: Numbers of a row beyond twice the half-width: the diagonal, and zeros so that nothing before or after it is touched.
-PADDED = 1 + 2 * WIDTH
 
 
 class TwoSided:
@@ -44,15 +43,15 @@ class TwoSided:
         disks = len(arms)
         self._pairs, self._walls, self._arms = pairs, walls, arms
         self._touched = pairs, np.stack([walls, walls], axis=1)
-        self._b, self._diagonal, self._stale = half_width, diagonal, STALE * stiffness
+        self._b, self._diagonal, self._stale = rounded(half_width), diagonal, STALE * stiffness
         core = min(-(-half_width // FREEDOMS), disks)
         first = min(max(centre - core // 2, 0), disks - core)
         #: the first place of the core and the one after its last
         self._core = first, first + core
         #: from the left end and from the right one; both hold rows for the core, the right one what it leaves there
         self._sides = (
-            _Side(first * FREEDOMS, core * FREEDOMS, half_width),
-            _Side((disks - first - core) * FREEDOMS, core * FREEDOMS, half_width),
+            _Side(first * FREEDOMS, core * FREEDOMS, self._b),
+            _Side((disks - first - core) * FREEDOMS, core * FREEDOMS, self._b),
         )
         #: tangents of the matrix that is factorised
         self._tangents = np.zeros((len(pairs), 3, 3)), np.zeros((len(walls), 3, 3))
@@ -87,23 +86,25 @@ class TwoSided:
 
     def solve(self, right: FloatArray) -> FloatArray:
         """(n,) the solution; not finite where the matrix has no such factorisation."""
-        x = right.copy()
         a, z = self._sides
-        _solve(a.rows.ravel(), z.rows.ravel(), self._b, a.stop, z.stop, x, x[::-1].copy())
-        if not np.isfinite(x).all():
+        b, last = self._b, len(right) - z.stop
+        x, mirrored = padded(right[:last], b), padded(np.zeros(len(z.rows)), b)
+        mirrored[b : b + z.stop] = right[: last - 1 : -1]
+        _solve(a.rows.ravel(), z.rows.ravel(), b, a.stop, z.stop, last, x, mirrored)
+        found = np.concatenate([x[b : b + last], mirrored[b : b + z.stop][::-1]])
+        if not np.isfinite(found).all():
             self.forget()
-        return x
+        return found
 
 
 class _Side:
     """Rows of one side from its end on, of which the first ``stop`` are eliminated, and its checkpoints."""
 
     def __init__(self, stop: int, core: int, half_width: int):
-        width = 2 * half_width + PADDED
         self.stop, self._b = stop, half_width
-        self.rows = np.zeros((stop + core, width))
+        self.rows = aligned_zeros(stop + core, stride(half_width))
         #: what was left for the next rows at each checkpoint, and at the end
-        self._windows = np.zeros((stop // SPACING + 2, half_width, width))
+        self._windows = np.zeros((stop // SPACING + 2, half_width, stride(half_width)))
         self.fresh = 0
 
     def restart(self, changed: int) -> int:
@@ -149,7 +150,7 @@ def _find(disks, tangent, known, limit, end, count, changed):
 @kernel(forceinline=True)
 def _add(rows, b, n, mirrored, fresh, at_row, at_column, g, row_sign, row_arm, column_sign, column_arm):
     """Add -L G Z to a block; ``at_row``, ``at_column`` : its first unknowns."""
-    width = 2 * b + PADDED
+    width = stride(b)
     for p in range(FREEDOMS):
         i = at_row + p
         if mirrored:
@@ -207,93 +208,17 @@ def _assemble(
         rows = right if mirrored else left
         _add(rows, b, n, mirrored, fresh, i, i, wall_known[c], 1.0, ri, 1.0, ri)
     for i in range(fresh_left, end * FREEDOMS):
-        left[i * (2 * b + PADDED) + b] += diagonal
+        left[i * stride(b) + b] += diagonal
     for i in range(fresh_right, n - end * FREEDOMS):
-        right[i * (2 * b + PADDED) + b] += diagonal
-
-
-@kernel(forceinline=True)
-def _four_from_two(a, like, i, j, p0, p1, p2, p3, f0, f1, f2, f3, g0, g1, g2, g3):
-    """Subtract multiples of four pivot rows from two rows."""
-    first, second = take(a, i, like), take(a, j, like)
-    pivot = take(a, p0, like)
-    first, second = less_product(first, f0, pivot), less_product(second, g0, pivot)
-    pivot = take(a, p1, like)
-    first, second = less_product(first, f1, pivot), less_product(second, g1, pivot)
-    pivot = take(a, p2, like)
-    first, second = less_product(first, f2, pivot), less_product(second, g2, pivot)
-    pivot = take(a, p3, like)
-    put(a, i, less_product(first, f3, pivot))
-    put(a, j, less_product(second, g3, pivot))
-
-
-@kernel
-def _eliminate(a, b, k, last):
-    """Eliminate unknown ``k`` from the rows up to ``last``."""
-    stride = 2 * b + PADDED
-    pivot = stride * k + b
-    inverse = 1.0 / a[pivot]
-    like = spread(0.0)
-    for i in range(k + 1, last + 1):
-        at = stride * i + b - (i - k)
-        factor = a[at] * inverse
-        a[at] = factor
-        if factor != 0.0:
-            for c in range(1, b + 1, WIDTH):
-                put(a, at + c, less_product(take(a, at + c, like), factor, take(a, pivot + c, like)))
-
-
-@kernel
-def _eliminate_four(a, n, b, k):
-    """Eliminate the unknowns ``k ... k + 3`` from all rows, two rows in one pass.
-
-    Beyond the band rows are padded with zeros, so that all rows and columns that any of the four reach are done alike.
-    """
-    stride = 2 * b + PADDED
-    for m in range(3):
-        _eliminate(a, b, k + m, k + 3)
-    d0 = stride * k + b
-    d1, d2, d3 = d0 + stride, d0 + 2 * stride, d0 + 3 * stride
-    i0, i1, i2, i3 = 1.0 / a[d0], 1.0 / a[d1], 1.0 / a[d2], 1.0 / a[d3]
-    u01, u02, u03, u12, u13, u23 = a[d0 + 1], a[d0 + 2], a[d0 + 3], a[d1 + 1], a[d1 + 2], a[d2 + 1]
-    p0, p1, p2, p3 = d0 + 4, d1 + 3, d2 + 2, d3 + 1
-    last = min(k + 3 + b, n - 1)
-    like = spread(0.0)
-    for i in range(k + 4, last + 1, 2):
-        x = stride * i + b - (i - k)
-        f0, f1, f2, f3 = multiples_of_four(a, x, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
-        if i == last:
-            for c in range(0, b, WIDTH):
-                _four_from_two(
-                    a, like, x + 4 + c, x + 4 + c, p0 + c, p1 + c, p2 + c, p3 + c, f0, f1, f2, f3, f0, f1, f2, f3
-                )  # fmt: skip
-            break
-        y = x + stride - 1
-        g0, g1, g2, g3 = multiples_of_four(a, y, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
-        for c in range(0, b, WIDTH):
-            _four_from_two(
-                a, like, x + 4 + c, y + 4 + c, p0 + c, p1 + c, p2 + c, p3 + c, f0, f1, f2, f3, g0, g1, g2, g3
-            )  # fmt: skip
-
-
-@kernel
-def _eliminate_range(a, n, b, first, stop):
-    """Eliminate the unknowns ``first ... stop``, four by four and what is left one by one."""
-    k = first
-    while k + 3 < stop:
-        _eliminate_four(a, n, b, k)
-        k += 4
-    while k < stop:
-        _eliminate(a, b, k, min(k + b, n - 1))
-        k += 1
+        right[i * stride(b) + b] += diagonal
 
 
 @kernel
 def _keep(rows, b, at, windows, place):
     """Copy ``b`` rows, or those that there are, to a window."""
-    stride = 2 * b + PADDED
-    for e in range(min(b * stride, len(rows) - at * stride)):
-        windows[place * b * stride + e] = rows[at * stride + e]
+    width = stride(b)
+    for e in range(min(b * width, len(rows) - at * width)):
+        windows[place * b * width + e] = rows[at * width + e]
 
 
 @kernel
@@ -301,45 +226,37 @@ def _eliminate_side(rows, n, b, start, stop, windows, count):
     """Eliminate the unknowns ``start ... stop``, and keep what is left for the next ``b`` rows at checkpoints."""
     for k in range(start, stop, SPACING):
         _keep(rows, b, k, windows, k // SPACING)
-        _eliminate_range(rows, n, b, k, min(k + SPACING, stop))
+        eliminate(rows, n, b, k, min(k + SPACING, stop))
     _keep(rows, b, stop, windows, count - 1)
 
 
 @kernel
 def _eliminate_core(left, right, b, first, last):
     """Add what the right side leaves for the core to that of the left, and factorise it."""
-    width = 2 * b + PADDED
+    width = stride(b)
     n = first + len(right) // width
     for i in range(first, last):
         for j in range(first, last):
             if abs(j - i) <= b:
                 left[i * width + b + j - i] += right[(n - 1 - i) * width + b + i - j]
-    _eliminate_range(left, last, b, first, last)
+    eliminate(left, last, b, first, last)
 
 
 @kernel
-def _solve(left, right, b, left_stop, right_stop, x, mirrored):
-    """Overwrite ``x`` (n,) with the solution; ``mirrored`` holds it from the other end."""
-    width = 2 * b + PADDED
-    n = len(x)
-    last = n - right_stop
-    for i in range(right_stop):
-        low = max(0, i - b)
-        mirrored[i] -= product(right, width * i + b - i + low, mirrored, low, i - low)
-    for i in range(right_stop, min(right_stop + b, n - left_stop)):
-        low = max(0, i - b)
-        x[n - 1 - i] -= product(right, width * i + b - i + low, mirrored, low, right_stop - low)
-    for i in range(last):
-        low = max(0, i - b)
-        x[i] -= product(left, width * i + b - i + low, x, low, i - low)
-    for i in range(last - 1, -1, -1):
-        size = min(b, last - 1 - i)
-        diagonal = width * i + b
-        x[i] = (x[i] - product(left, diagonal + 1, x, i + 1, size)) / left[diagonal]
-    for i in range(left_stop, last):
-        mirrored[n - 1 - i] = x[i]
-    for i in range(right_stop - 1, -1, -1):
-        size = min(b, n - left_stop - 1 - i)
-        diagonal = width * i + b
-        mirrored[i] = (mirrored[i] - product(right, diagonal + 1, mirrored, i + 1, size)) / right[diagonal]
-        x[n - 1 - i] = mirrored[i]
+def _solve(left, right, b, left_stop, right_stop, last, x, mirrored):
+    """Overwrite ``x``, of the left side and the core, and ``mirrored``, of the right one from its end, by the solution.
+
+    Both as :func:`.band_rows.padded` makes them; ``mirrored`` holds zeros for the core. ``last`` : unknowns in ``x``.
+    """
+    width = stride(b)
+    core = last - left_stop
+    forward(right, b, 0, right_stop, mirrored)
+    for i in range(core):
+        row = right_stop + i
+        at = b + last - 1 - i
+        x[at] = less_row(x[at], right, row * width, mirrored, row, b)
+    forward(left, b, 0, last, x)
+    backward(left, width, b, b, last, x)
+    for i in range(core):
+        mirrored[b + right_stop + i] = x[b + last - 1 - i]
+    backward(right, width, b, b, right_stop, mirrored)
