@@ -11,23 +11,72 @@ import time
 from typing import Any
 
 import numpy as np
-from precision import REPEATS, fastest
+from precision import fastest
 from timing import floor, scene, write
 
 from granular_response.solve import Problem, loaded_states, rest_state
+from granular_response.state import State
 
 FRICTIONS, FORCES = (0.05, 0.2, 1.0), (4.0, 15.0, 50.0)
 #: Errors of the nine points, which are tolerances of the paths too, and ramp times of the dynamics.
 ERRORS, RAMPS = (1e-2, 1e-3, 1e-4, 1e-5), (1.0, 5.0, 20.0, 100.0)
 #: Seconds of a path after which it is not run again, and with which no finer one is tried.
 LONG = 3.0
+#: Rounds in which all runs of a point take turns, so that they meet the same machine; in the first one kernels may be
+#: compiled.
+ROUNDS = 4
+
+
+class Run:
+    """One way to a loaded state, and the least time that it has taken."""
+
+    def __init__(self, rest: State, friction: float, force: float, method: str, setting: float | None):
+        self.about = {"method": method, "setting": setting, "friction": friction, "force": force}
+        protocol: dict[str, Any] = {"method": method}
+        if method == "dynamics":
+            protocol |= {"integrator": "leapfrog", "time_step": 1.4e-3, "ramp_time": setting}
+            protocol |= {"stop_kinetic_energy": 1e-9, "static_finish": True}
+        elif setting is not None:
+            protocol["path_tolerance"] = setting
+        self.problem = Problem.from_scene(scene(friction, force, **protocol)).with_loads(rest.position)
+        self.rest, self.force, self.seconds = rest, force, np.inf
+        self.response = np.zeros(0)
+
+    def again(self) -> None:
+        """Once more, from the rest state on."""
+        start = time.process_time()
+        loaded = loaded_states(self.problem, self.rest, [1.0])[1][0]
+        self.seconds = min(self.seconds, time.process_time() - start)
+        self.response = (floor(loaded, self.problem) - floor(self.rest, self.problem)) / self.force
+
+    def row(self, limit: np.ndarray) -> dict[str, Any]:
+        """The record of the run, with its error from the quasi-static limit."""
+        found = {**self.about, "seconds": self.seconds}
+        if self.about["method"] == "dynamics" or self.about["setting"] is not None:
+            found["error"] = float(np.abs(self.response - limit).max())
+        return found
+
+
+def point(rest: State, friction: float, force: float) -> list[dict[str, Any]]:
+    """Records of all runs from rest to one pair; the limit is the path in increments of the default length."""
+    limit = Run(rest, friction, force, "path", None)
+    limit.again()
+    paths: list[Run] = []
+    for tolerance in ERRORS:
+        if paths and paths[-1].seconds > LONG:
+            break
+        paths.append(Run(rest, friction, force, "path", tolerance))
+        paths[-1].again()
+    dynamics = [Run(rest, friction, force, "dynamics", ramp) for ramp in RAMPS]
+    for _ in range(ROUNDS):
+        for run in (limit, *paths, *dynamics):
+            if not run.seconds > LONG:
+                run.again()
+    return [run.row(limit.response) for run in (limit, *paths, *dynamics)]
 
 
 def nine_points() -> tuple[list[dict], list[dict]]:
-    """Runs from rest to nine pairs of friction and force, and for each and every error the least times.
-
-    The quasi-static limit is the path in increments of the default length.
-    """
+    """Runs from rest to nine pairs of friction and force, and for each and every error the least times."""
     runs: list[dict] = []
     points = []
     for friction in FRICTIONS:
@@ -37,44 +86,15 @@ def nine_points() -> tuple[list[dict], list[dict]]:
         rest = rest_state(unloaded)
         fall = time.process_time() - start
         for force in FORCES:
-
-            def timed(rest=rest, friction=friction, force=force, **protocol: Any) -> tuple[np.ndarray, float]:
-                """Normalised response and processor time from the rest state on."""
-                problem = Problem.from_scene(scene(friction, force, **protocol)).with_loads(rest.position)
-                seconds = np.inf
-                for _ in range(REPEATS):
-                    start = time.process_time()
-                    loaded = loaded_states(problem, rest, [1.0])[1][0]
-                    seconds = min(seconds, time.process_time() - start)
-                    if seconds > LONG:
-                        break
-                return (floor(loaded, problem) - floor(rest, problem)) / force, seconds
-
-            limit, seconds = timed(method="path")
-            here: list[dict] = [{"method": "path", "setting": None, "seconds": seconds}]
-            for tolerance in ERRORS:
-                if len(here) > 1 and here[-1]["seconds"] > LONG:
-                    break
-                response, seconds = timed(method="path", path_tolerance=tolerance)
-                error = float(np.abs(response - limit).max())
-                here.append({"method": "path", "setting": tolerance, "seconds": seconds, "error": error})
-            for ramp in RAMPS:
-                response, seconds = timed(
-                    method="dynamics", integrator="leapfrog", time_step=1.4e-3, ramp_time=ramp,
-                    stop_kinetic_energy=1e-9, static_finish=True,
-                )  # fmt: skip
-                error = float(np.abs(response - limit).max())
-                here.append({"method": "dynamics", "setting": ramp, "seconds": seconds, "error": error})
-            for row in here:
-                row.update(friction=friction, force=force)
-                print(row, flush=True)
+            here = point(rest, friction, force)
+            print(*here, sep="\n", flush=True)
             runs += here
-            point: dict[str, Any] = {"friction": friction, "force": force, "fall_seconds": fall}
+            least: dict[str, Any] = {"friction": friction, "force": force, "fall_seconds": fall}
             for error in ERRORS:
                 for method in ("path", "dynamics"):
                     mine = [row for row in here if row["method"] == method]
-                    point[f"{method}_{error:.0e}"] = fastest(mine, error)
-            points.append(point)
+                    least[f"{method}_{error:.0e}"] = fastest(mine, error)
+            points.append(least)
     return runs, points
 
 

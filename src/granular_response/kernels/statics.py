@@ -27,7 +27,7 @@ from ..state.status import OPEN, SLIDING, STICKING
 
 Floats = NDArray[Any]
 
-#: Tangent of an angle up to which five terms of its series are exact to rounding: the next one is 2e-18 of it.
+#: Tangent of an angle up to which five terms of its series are exact to rounding: the next one is 1e-18 of it.
 SMALL_TURN = 0.02
 
 

@@ -1,8 +1,9 @@
 """Rows of a banded matrix as the kernels of its factorisations keep them, and what they all do with such rows.
 
 The half-width ``b`` is rounded up (:func:`rounded`) and rows are padded with zeros, so that all rows and columns that
-four pivots reach are done alike, in whole lanes. The same column begins a cache line in every row, give or take whole
-lanes: rows are one number longer than a multiple of ``WIDTH``, and each one begins one column further on.
+four pivots reach are done alike, in whole lanes. Each row begins one column further on than the one before and is one
+number longer than a multiple of ``WIDTH``: a column has the same place in a cache line in all of them, so that AVX
+registers that begin at a multiple of four columns cross none.
 
 Right-hand sides and solutions have room for ``b`` numbers before them and ``b + PADDING`` behind (:func:`padded`).
 """
