@@ -185,18 +185,19 @@ def test_values_of_every_kind_are_coordinates():
 
 def test_a_combination_without_equilibrium_is_missing_and_says_why():
     up = [[{"disk": "top-centre", "force": [0.0, force]}] for force in (-1.0, 30.0)]
+    scene = SCENE.updated({"protocol.ramp_time": 1.0})  # a disk is seen to leave once its load has grown
 
     def measured(result):
         return {"largest": result.floor_response.max(), "settled": True, "name": "x"}
 
     with pytest.warns(UserWarning, match=r"1 of 2 combinations have no equilibrium, see the variable error; .*lifts"):
-        found = gr.sweep(SCENE, {"loads": up}, measured, workers=1, progress=False)
+        found = gr.sweep(scene, {"loads": up}, measured, workers=1, progress=False)
     assert found["largest"].isnull().values.tolist() == [False, True]
     assert found["settled"].values[0] == 1.0 and np.isnan(found["settled"].values[1])
     assert found["name"].values.tolist() == ["x", ""]
     assert found["error"].values[0] == "" and "lifts disk" in found["error"].values[1]
     with pytest.raises(SweepError, match=r"none of 1 combinations has an equilibrium, the first: .*lifts disk"):
-        gr.sweep(SCENE, {"loads": up[1:]}, workers=1, progress=False)
+        gr.sweep(scene, {"loads": up[1:]}, workers=1, progress=False)
 
 
 @pytest.mark.parametrize(
@@ -369,7 +370,7 @@ def test_a_combination_that_is_no_scene_is_refused_before_anything_is_solved(axe
 
 def test_floor_disks_that_differ_are_in_order_along_x():
     changes = {"packing.polydispersity": 0.3, "packing.disks_per_row": 6, "contact.friction": 0.2}
-    found = gr.sweep(DISORDERED.updated(changes), {"packing.realization": range(4)}, workers=1, progress=False)
+    found = gr.sweep(DISORDERED.updated(changes), {"packing.realization": range(2)}, workers=1, progress=False)
     assert "floor_disk" not in found.coords  # other disks in each
     for place, row in enumerate(found["x"].values):
         known = np.isfinite(row)
