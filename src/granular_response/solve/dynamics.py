@@ -192,7 +192,7 @@ class Dynamics:
         """
         if not np.isfinite(self.q).all():
             raise DynamicsError(self._blow_up())
-        state = self._without_forces()
+        state = self.state()
         self.angle0 = self.angle
         self._list(state, stride)
         self.q[:] = 0.0
@@ -229,14 +229,10 @@ class Dynamics:
 
     def state(self) -> State:
         """The present state, with spring forces only (what remains at rest)."""
-        return self.problem.with_static_forces(self._without_forces())
-
-    def _without_forces(self) -> State:
-        """The present state, of whose contacts no more is known than their springs."""
         problem, c, n = self.problem, self.candidates, self.problem.n
         spring = None if self.spring is None else self.spring[c.slot]
         wall_spring = None if self.wall_spring is None else self.wall_spring.copy()
-        return State(
+        bare = State(
             position=self.position,
             angle=self.angle.copy(),
             velocity=self.v[: 2 * n].reshape(2, n).T.copy(),
@@ -249,6 +245,7 @@ class Dynamics:
                 method="dynamics", steps=self.steps, time_step=self.time_step, time=self.time, rebuilds=self.rebuilds
             ),
         )
+        return problem.with_static_forces(bare)
 
     def touching(self) -> NDArray[np.bool_]:
         """Which listed contacts (pairs, then walls) are closed now."""

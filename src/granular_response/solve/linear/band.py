@@ -7,6 +7,8 @@ all. A symmetric positive matrix needs no such care.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
@@ -25,18 +27,23 @@ class Band:
     """Banded storage of all matrices with one symmetric sparsity pattern (column-compressed)."""
 
     def __init__(self, indptr: np.ndarray, indices: np.ndarray):
-        n = len(indptr) - 1
-        column = np.repeat(np.arange(n), np.diff(indptr))
-        below = indices - column
-        self.n = n
+        self.n = len(indptr) - 1
         self.across = AcrossDiagonal()
-        self.half_width = int(below.max(initial=0))
+        self._column = np.repeat(np.arange(self.n), np.diff(indptr))
+        self._below = indices - self._column
+        self.half_width = int(self._below.max(initial=0))
         self._b = rounded(self.half_width)
-        #: where the entries go in the rows of the LU
-        self._place = indices * band_lu.stride(self._b) + (self._b - below)
-        #: which entries the factorisation of a symmetric matrix takes, and where they go in its rows
-        self._lower = np.flatnonzero(below >= 0)
-        self._lower_place = (column * band_ldl.stride(self._b) + below)[self._lower]
+
+    @cached_property
+    def _place(self) -> np.ndarray:
+        """(e,) where the entries go in the rows of the LU."""
+        return (self._column + self._below) * band_lu.stride(self._b) + (self._b - self._below)
+
+    @cached_property
+    def _lower(self) -> tuple[np.ndarray, np.ndarray]:
+        """Which entries the factorisation of a symmetric matrix takes, and where they go in its rows."""
+        taken = np.flatnonzero(self._below >= 0)
+        return taken, (self._column * band_ldl.stride(self._b) + self._below)[taken]
 
     def factor(self, matrix: sp.csc_array) -> BandLU:
         """LU without row exchanges; they are made up for where a residual asks for them."""
@@ -46,14 +53,14 @@ class Band:
         return BandLU(matrix, rows, self._b)
 
     def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
-        """Factorisation, LU where one of its pivots is not positive, and how many of them are not."""
+        """Factorisation, LU where a pivot is not positive, and the number of negative eigenvalues."""
         rows, _ = self._symmetric(matrix, definite=False)
-        negative = _not_positive(rows[:, 0])
-        return (BandLDL(rows, self._b) if negative == 0 else self.factor(matrix)), negative
+        factor = BandLDL(rows, self._b) if (rows[:, 0] > 0.0).all() else self.factor(matrix)
+        return factor, _negative(rows[:, 0])
 
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
         """The number of negative eigenvalues of a symmetric matrix alone."""
-        return _not_positive(self._symmetric(matrix, definite=False)[0][:, 0])
+        return _negative(self._symmetric(matrix, definite=False)[0][:, 0])
 
     def definite_factor(self, matrix: sp.csc_array) -> BandLDL | None:
         """Factorisation; None when the matrix is not positive definite."""
@@ -63,7 +70,8 @@ class Band:
     def _symmetric(self, matrix: sp.csc_array, *, definite: bool) -> tuple[FloatArray, bool]:
         """(n, s) rows of D L^T, and whether they were made to the end: not where one must be definite and is not."""
         rows = aligned_zeros(self.n, band_ldl.stride(self._b))
-        rows.ravel()[self._lower_place] = matrix.data[self._lower]
+        taken, place = self._lower
+        rows.ravel()[place] = matrix.data[taken]
         return rows, band_ldl.factorise(rows.ravel(), self.n, self._b, definite)
 
     def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> None:
@@ -71,9 +79,10 @@ class Band:
         return None
 
 
-def _not_positive(pivots: FloatArray) -> int:
-    """How many are not, with those that are no numbers, after a zero."""
-    return int((~(pivots > 0.0)).sum())
+def _negative(pivots: FloatArray) -> int:
+    """How many are negative; at least one where an exact zero on the way has left others without a number."""
+    negative = int((pivots < 0.0).sum())
+    return negative if np.isfinite(pivots).all() else max(negative, 1)
 
 
 class BandLU:

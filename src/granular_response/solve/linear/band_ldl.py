@@ -2,7 +2,7 @@
 
 Row ``i`` of ``a`` holds ``(i, i) ... (i, i + b)`` and padding (see :mod:`.band_rows`), one row after the other, and
 becomes that of D L^T. The signs of the pivots are those of the eigenvalues (Sylvester's law of inertia). LAPACK's
-banded Cholesky factorisation calls matrix products that are as small as the band and takes two to three times as long.
+banded Cholesky factorisation calls matrix products as small as the band and takes longer (docs/benchmarks.md).
 """
 
 from __future__ import annotations
@@ -14,18 +14,22 @@ from .band_rows import PADDING, backward, four_from_two
 
 @kernel(forceinline=True)
 def stride(b):
-    """Numbers in a row: lanes that begin left of its diagonal write into what is left over at the end of the last."""
+    """Numbers in a row.
+
+    Lanes that begin up to four columns left of a row's diagonal write into the last numbers of the row before, which
+    nothing reads.
+    """
     return b + 1 + PADDING + WIDTH
 
 
 @kernel
-def _eliminate(a, b, k, last):
-    """Eliminate unknown ``k`` from the rows up to ``last``."""
+def _eliminate(a, b, k, first, last):
+    """Eliminate unknown ``k`` from the rows ``first ... last``, the last one too."""
     step = stride(b)
     d = step * k
     inverse = 1.0 / a[d]
     like = spread(0.0)
-    for i in range(k + 1, last + 1):
+    for i in range(first, last + 1):
         begin = (i - k) // 4 * 4
         x = step * i + begin - (i - k)
         factor = a[d + i - k] * inverse
@@ -38,26 +42,23 @@ def _eliminate_four(a, n, b, k):
     """Eliminate the unknowns ``k ... k + 3`` from all rows, two rows in one pass."""
     step = stride(b)
     for m in range(3):
-        _eliminate(a, b, k + m, k + 3)
+        _eliminate(a, b, k + m, k + m + 1, k + 3)
     d0 = step * k
     d1, d2, d3 = d0 + step - 1, d0 + 2 * (step - 1), d0 + 3 * (step - 1)  # where the column of the first pivot would be
     i0, i1, i2, i3 = 1.0 / a[d0], 1.0 / a[d1 + 1], 1.0 / a[d2 + 2], 1.0 / a[d3 + 3]
     last = min(k + 3 + b, n - 1)
     like = spread(0.0)
-    for i in range(k + 4, last + 1, 2):
+    for i in range(k + 4, last, 2):
         h = i - k
         f0, f1, f2, f3 = a[d0 + h] * i0, a[d1 + h] * i1, a[d2 + h] * i2, a[d3 + h] * i3
-        begin = h // 4 * 4
-        x = step * i + begin - h
-        if i == last:
-            for c in range(begin, b + 4, WIDTH):
-                at = x + c - begin
-                four_from_two(a, like, at, at, d0 + c, d1 + c, d2 + c, d3 + c, f0, f1, f2, f3, f0, f1, f2, f3)
-            break
         g0, g1, g2, g3 = a[d0 + h + 1] * i0, a[d1 + h + 1] * i1, a[d2 + h + 1] * i2, a[d3 + h + 1] * i3
-        for c in range(begin, b + 4, WIDTH):
-            at = x + c - begin
-            four_from_two(a, like, at, at + step - 1, d0 + c, d1 + c, d2 + c, d3 + c, f0, f1, f2, f3, g0, g1, g2, g3)
+        x = step * i - h
+        y = x + step - 1
+        for c in range(h // 4 * 4, b + 4, WIDTH):
+            four_from_two(a, like, x + c, y + c, d0 + c, d1 + c, d2 + c, d3 + c, f0, f1, f2, f3, g0, g1, g2, g3)
+    if (last - k) % 2 == 0:  # a row is left
+        for m in range(4):
+            _eliminate(a, b, k + m, last, last)
 
 
 @kernel
@@ -72,7 +73,7 @@ def factorise(a, n, b, definite):
         if whole:
             _eliminate_four(a, n, b, k)
         else:
-            _eliminate(a, b, k, min(k + b, n - 1))
+            _eliminate(a, b, k, k + 1, min(k + b, n - 1))
         size = 4 if whole else 1
         if definite:
             for m in range(k, k + size):
@@ -84,7 +85,7 @@ def factorise(a, n, b, definite):
 
 @kernel
 def solve(a, n, b, x):
-    """Overwrite ``x`` (:func:`.band_rows.padded`) with the solution of L D L^T x = x."""
+    """Overwrite ``x`` (:func:`.band_rows.padded`) with the solution y of L D L^T y = x."""
     step = stride(b)
     like = spread(0.0)
     whole = n - n % 4

@@ -19,12 +19,12 @@ def stride(b):
 
 
 @kernel
-def _eliminate(a, b, k, last):
-    """Eliminate unknown ``k`` from the rows up to ``last``."""
+def _eliminate(a, b, k, first, last):
+    """Eliminate unknown ``k`` from the rows ``first ... last``, the last one too."""
     pivot = stride(b) * k + b
     inverse = 1.0 / a[pivot]
     like = spread(0.0)
-    for i in range(k + 1, last + 1):
+    for i in range(first, last + 1):
         at = stride(b) * i + b - (i - k)
         factor = a[at] * inverse
         a[at] = factor
@@ -53,7 +53,7 @@ def _eliminate_four(a, n, b, k):
     """Eliminate the unknowns ``k ... k + 3`` from all rows, two rows in one pass."""
     step = stride(b)
     for m in range(3):
-        _eliminate(a, b, k + m, k + 3)
+        _eliminate(a, b, k + m, k + m + 1, k + 3)
     d0 = step * k + b
     d1, d2, d3 = d0 + step, d0 + 2 * step, d0 + 3 * step
     i0, i1, i2, i3 = 1.0 / a[d0], 1.0 / a[d1], 1.0 / a[d2], 1.0 / a[d3]
@@ -62,21 +62,18 @@ def _eliminate_four(a, n, b, k):
     p0, p1, p2, p3 = d0 + 4, d1 + 3, d2 + 2, d3 + 1
     last = min(k + 3 + b, n - 1)
     like = spread(0.0)
-    for i in range(k + 4, last + 1, 2):
+    for i in range(k + 4, last, 2):
         x = step * i + b - (i - k)
-        f0, f1, f2, f3 = _multiples(a, x, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
-        if i == last:
-            for c in range(0, b, WIDTH):
-                four_from_two(
-                    a, like, x + 4 + c, x + 4 + c, p0 + c, p1 + c, p2 + c, p3 + c, f0, f1, f2, f3, f0, f1, f2, f3
-                )  # fmt: skip
-            break
         y = x + step - 1
+        f0, f1, f2, f3 = _multiples(a, x, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
         g0, g1, g2, g3 = _multiples(a, y, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
         for c in range(0, b, WIDTH):
             four_from_two(
                 a, like, x + 4 + c, y + 4 + c, p0 + c, p1 + c, p2 + c, p3 + c, f0, f1, f2, f3, g0, g1, g2, g3
             )  # fmt: skip
+    if (last - k) % 2 == 0:  # a row is left
+        for m in range(4):
+            _eliminate(a, b, k + m, last, last)
 
 
 @kernel
@@ -90,13 +87,13 @@ def eliminate(a, n, b, first, stop):
         _eliminate_four(a, n, b, k)
         k += 4
     while k < stop:
-        _eliminate(a, b, k, min(k + b, n - 1))
+        _eliminate(a, b, k, k + 1, min(k + b, n - 1))
         k += 1
 
 
 @kernel
 def forward(a, b, first, stop, x):
-    """Overwrite the unknowns ``first ... stop`` of ``x`` (:func:`.band_rows.padded`) with the solution of L x = x."""
+    """Overwrite the unknowns ``first ... stop`` of ``x`` (:func:`.band_rows.padded`) with the solution y of L y = x."""
     step = stride(b)
     whole = stop - (stop - first) % 4
     for k in range(first, whole, 4):
@@ -114,6 +111,6 @@ def forward(a, b, first, stop, x):
 
 @kernel
 def solve(a, n, b, x):
-    """Overwrite ``x`` (:func:`.band_rows.padded`) with the solution of L U x = x."""
+    """Overwrite ``x`` (:func:`.band_rows.padded`) with the solution y of L U y = x."""
     forward(a, b, 0, n, x)
     backward(a, stride(b), b, b, n, x)

@@ -16,7 +16,8 @@ from ...machine.lanes import WIDTH, less_product, put, spread, take, total
 from ...machine.machine_code import kernel
 from ...state import FloatArray
 
-#: Zeros behind the last number of a row that is not padding.
+#: Zeros behind the numbers of a row. Kernels read up to eight of them and, in an LU, three before a row, which are the
+#: last of the row before.
 PADDING = 2 * WIDTH
 
 
@@ -34,7 +35,7 @@ def padded(right: FloatArray, b: int) -> FloatArray:
 
 @kernel(forceinline=True)
 def four_from_two(a, like, i, j, p0, p1, p2, p3, f0, f1, f2, f3, g0, g1, g2, g3):
-    """Subtract multiples of four pivot rows from two rows: all of them are in registers at once."""
+    """Subtract multiples of four pivot rows from two rows, which stay in registers while pivot rows pass."""
     first, second = take(a, i, like), take(a, j, like)
     pivot = take(a, p0, like)
     first, second = less_product(first, f0, pivot), less_product(second, g0, pivot)
@@ -73,7 +74,7 @@ def less_four_rows(a, row, step, x, at, b):
 
 @kernel
 def backward(a, stride, diagonal, b, stop, x):
-    """Overwrite the unknowns ``0 ... stop`` of ``x`` (:func:`padded`) with the solution of U x = x, from the last on.
+    """Overwrite the unknowns ``0 ... stop`` of ``x`` (:func:`padded`) with the solution y of U y = x, from the last on.
 
     ``diagonal`` : place of the diagonal in a row of ``stride`` numbers; the row of U follows it.
     """
