@@ -9,11 +9,6 @@ from granular_response.paper.groups.contact_law import draw
 PARAMETERS = reduced.parameters("contact_law")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("contact_law", tmp_path_factory)
-
-
 def test_both_laws_are_at_rest_and_matched(datasets):
     data = datasets["responses"]
     assert float(data["force_residual"].max()) < 1e-9

@@ -25,11 +25,6 @@ def parameters():
     return Parameters.model_validate(PARAMETERS)
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("crossover_scaling", tmp_path_factory)
-
-
 def of(datasets, series):
     slabs = datasets["slabs"]
     return slabs.isel(slab=np.flatnonzero(slabs["series"].values == series))

@@ -12,11 +12,6 @@ PARAMETERS = reduced.parameters("friction_fields")
 SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("friction_fields", tmp_path_factory)
-
-
 def test_scalars(datasets, num_regression) -> None:
     stress = datasets["stress"]
     num_regression.check(

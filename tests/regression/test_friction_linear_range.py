@@ -12,11 +12,6 @@ from granular_response.store import files as store
 PARAMETERS = reduced.parameters("friction_linear_range")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("friction_linear_range", tmp_path_factory)
-
-
 def bracket(datasets, name, friction):
     table = datasets["events"]
     here = (table["name"].values == name) & (table["friction"].values == friction)

@@ -1,7 +1,6 @@
 """Figs. 3 to 5 on small slabs, from parameters through a file to figures."""
 
 import numpy as np
-import pytest
 import reduced
 
 from granular_response.paper.groups.frictionless_crossover import draw as figures
@@ -16,11 +15,6 @@ STEMS = [
     "fig05c_depth_and_width",
 ]
 TOLERANCE = {"rtol": 1e-8, "atol": 1e-10}
-
-
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("frictionless_crossover", tmp_path_factory)
 
 
 def test_profiles(datasets, num_regression) -> None:

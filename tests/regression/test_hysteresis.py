@@ -19,11 +19,6 @@ PARAMETERS = reduced.parameters("hysteresis")
 SMOOTH, ROUGH, DISORDERED = 0, 1, 2
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("hysteresis", tmp_path_factory)
-
-
 def part_of_work(loops, name):
     return (loops[name] / loops["work"]).values
 

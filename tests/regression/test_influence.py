@@ -15,11 +15,6 @@ from granular_response.scene import SceneError
 PARAMETERS = reduced.parameters("influence")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("influence", tmp_path_factory)
-
-
 def test_values_are_the_stored_ones(datasets, num_regression):
     data = datasets["saint_venant"]
     num_regression.check(

@@ -18,11 +18,6 @@ from granular_response.theory.slab import response_of_layers
 PARAMETERS = reduced.parameters("moduli")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("moduli", tmp_path_factory)
-
-
 def test_values_are_the_stored_ones(datasets, num_regression):
     packings, ideal = datasets["packings"], datasets["lattice"]
     num_regression.check(

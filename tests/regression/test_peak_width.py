@@ -15,11 +15,6 @@ PARAMETERS = reduced.parameters("peak_width")
 SMALL, LARGE, DISORDERED = 0, 1, 2
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("peak_width", tmp_path_factory)
-
-
 def test_values_are_the_stored_ones(datasets, num_regression):
     inside, floors = datasets["inside"], datasets["floors"]
     num_regression.check(

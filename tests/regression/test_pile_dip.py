@@ -11,11 +11,6 @@ from granular_response.plot import style
 PARAMETERS = reduced.parameters("pile_dip")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("pile_dip", tmp_path_factory)
-
-
 def test_numbers(datasets, num_regression) -> None:
     piles, stress = datasets["piles"], datasets["stress"]
     values = {

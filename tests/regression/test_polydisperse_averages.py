@@ -19,11 +19,6 @@ from granular_response.sweeps.resources import using
 PARAMETERS = reduced.parameters("polydisperse_averages")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("polydisperse_averages", tmp_path_factory)
-
-
 def test_averages(datasets, num_regression) -> None:
     data = datasets["averages"]
     values = {

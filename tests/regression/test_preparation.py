@@ -15,11 +15,6 @@ PARAMETERS = reduced.parameters("preparation")
 WAYS = PARAMETERS["ways"]
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("preparation", tmp_path_factory)
-
-
 def test_every_slab_carries_every_force(datasets):
     response = datasets["response"]
     assert response["way"].values.tolist() == [

@@ -12,14 +12,16 @@ from granular_response.solve import solve_scene
 from granular_response.store.result import to_dataset
 
 DOWN = [{"disk": "top-centre", "force": [0.0, -3.0]}]
+#: Not symmetric: rounding decides to which side a symmetric one gives way.
+PILE = {"kind": "pile", "layers": 5, "polydispersity": 0.01}
 SCENES = {
     "frictionless": scene(5, 9, contact__friction=0.0, loads=DOWN),
     "frictional": scene(5, 9, loads=DOWN),
     "frictional_walls": scene(5, 9, wall__friction=0.3, loads=DOWN),
     "dynamics": scene(5, 9, loads=DOWN, protocol__method="dynamics"),
     "torque": scene(5, 9, contact__friction=0.5, loads=[{"disk": "top-centre", "force": [0.3, -1.0], "torque": 0.4}]),
-    "pile": Scene.from_dict({"packing": {"kind": "pile", "layers": 5}, "contact": {"friction": 0.3}}),
-    "frictionless_pile": Scene.from_dict({"packing": {"kind": "pile", "layers": 5}, "contact": {"friction": 0.0}}),
+    "pile": Scene.from_dict({"packing": PILE, "contact": {"friction": 0.3}}),
+    "frictionless_pile": Scene.from_dict({"packing": PILE, "contact": {"friction": 0.0}}),
 }
 
 

@@ -16,11 +16,6 @@ def case(friction, floor, layers, gravity="at-once"):
 PARAMETERS = reduced.parameters("slab_comparison")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("slab_comparison", tmp_path_factory)
-
-
 def test_distances(datasets, num_regression) -> None:
     slabs = datasets["slabs"]
     num_regression.check(

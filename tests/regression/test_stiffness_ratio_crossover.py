@@ -12,11 +12,6 @@ from granular_response.theory import crossover
 PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("stiffness_ratio_crossover", tmp_path_factory)
-
-
 def test_response(datasets, num_regression) -> None:
     response = datasets["response"]
     num_regression.check(

@@ -14,11 +14,6 @@ PARAMETERS = reduced.parameters("superposition")
 CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("superposition", tmp_path_factory)
-
-
 def test_errors(datasets, num_regression) -> None:
     errors = datasets["errors"].isel(force=slice(1, None))
     num_regression.check(

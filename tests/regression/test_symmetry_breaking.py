@@ -12,11 +12,6 @@ from granular_response.store import files as store
 PARAMETERS = reduced.parameters("symmetry_breaking")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("symmetry_breaking", tmp_path_factory)
-
-
 def test_symmetry_is_lost_between_symmetric_and_asymmetric_runs(datasets):
     table, runs = datasets["brackets"], datasets["runs"]
     low, high = float(table["low"][0]), float(table["high"][0])

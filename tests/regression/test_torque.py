@@ -12,11 +12,6 @@ PARAMETERS = reduced.parameters("torque")
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")
 
 
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    return reduced.datasets("torque", tmp_path_factory)
-
-
 def test_reach(datasets, num_regression) -> None:
     reach = datasets["reach"]
     num_regression.check(

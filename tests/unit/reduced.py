@@ -1,6 +1,7 @@
 """Figure groups at reduced size, with the parameters of their notebooks."""
 
 import os
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +26,21 @@ def datasets(group: str, factory: pytest.TempPathFactory) -> dict[str, xr.Datase
     return store.read(stored(group, factory))
 
 
+@cache
+def _turns(folder: Path) -> Turns:
+    return Turns(folder / "turns")
+
+
 def stored(group: str, factory: pytest.TempPathFactory) -> Path:
-    """The file with the group's datasets, simulated once in a run of the tests, by the first process that asks."""
+    """The file with the group's datasets, simulated once in a run of the tests, by the first process that asks.
+
+    Others wait, but not for ever: of two that simulate the same the later one leaves the file as it is.
+    """
     base = factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "reduced"
     folder.mkdir(exist_ok=True)
     path = folder / f"{group}.nc"
-    with Turns(folder / "turns").taken(group), using(workers=1):
+    with _turns(folder).taken(group), using(workers=1):
         if not path.exists():
             described = group_member(group, "parameters", "Parameters")
             simulate = group_member(group, "simulate", "simulate")

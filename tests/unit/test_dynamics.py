@@ -106,6 +106,21 @@ def test_blow_up_is_an_error():
         relax(dynamics, Stop(1e-13, maximum_steps=20_000))
 
 
+@pytest.mark.parametrize("time_step", [0.0035, 0.004, 0.0045, 0.005, 0.0055])
+def test_steps_too_long_for_gear_go_on_or_are_that_error(time_step):
+    """Its corrector moves disks after forces: contacts that have just opened still have springs when lists are made."""
+    problem = Problem.from_scene(scene(2, 3, contact__friction=0.5))
+    rng = np.random.default_rng(0)
+    for _ in range(5):
+        dynamics = Dynamics(problem, problem.bare_state(), "gear", time_step)
+        dynamics.v[:] = 0.3 * rng.normal(size=dynamics.v.size)
+        dynamics.set_ramps()
+        try:
+            dynamics.advance(160)
+        except DynamicsError as error:
+            assert "take a smaller protocol.time_step" in str(error)
+
+
 def test_a_disk_too_fast_for_any_list_is_an_error():
     problem, state = free_disks([[500.0, 500.0]], velocity=[(1e4, 0.0)])
     with pytest.raises(DynamicsError, match="blew up"):

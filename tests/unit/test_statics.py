@@ -1,5 +1,6 @@
 """Static forces against the dynamics' kernels, and tangents against finite differences."""
 
+import math
 import sys
 from dataclasses import replace
 
@@ -9,11 +10,19 @@ from scipy.sparse.linalg import LinearOperator, eigs
 from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import LAWS
+from granular_response.kernels.statics import SMALL_TURN, _angle
 from granular_response.solve import Dynamics, Problem, solve_scene
 from granular_response.solve.system import DENSE, LEFT_OF_ALL, StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}
+
+
+def test_the_angle_of_a_turn_is_that_of_the_library():
+    for tangent in (*np.linspace(-2.0, 2.0, 81) * SMALL_TURN, 1e-300, 0.0, 1.0):
+        for cosine in (1.7, 1e-3, -1.0):
+            sine = tangent * abs(cosine)
+            assert _angle(sine, cosine) == pytest.approx(math.atan2(sine, cosine), rel=4e-16)
 
 
 def problem_with(friction: str, law: str = "linear") -> Problem:

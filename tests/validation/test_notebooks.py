@@ -17,7 +17,7 @@ from granular_response.paper.pipeline import GroupError, group_member, simulatio
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "params.yaml"
 #: Groups whose reduced datasets are looked at by tests of their own: their notebooks here draw these.
-LOOKED_AT = [group for group in NAMES if (ROOT / "tests" / "regression" / f"test_{group}.py").exists()]
+LOOKED_AT = ["stability", *(group for group in NAMES if (ROOT / f"tests/regression/test_{group}.py").exists())]
 READ = """\
 from granular_response.store import files
 

@@ -16,7 +16,6 @@ from granular_response.paper.trials.time_steps import SETTLES, StepTrial, scene_
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
 from granular_response.state import Reached
-from granular_response.sweeps.resources import using
 
 PARAMETERS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["stability"]
 SEED = PARAMETERS["seed"]
@@ -269,9 +268,8 @@ def test_a_rest_state_disturbed_in_its_last_digits_gives_the_same_response():
 REDUCED = reduced.parameters("stability")
 
 
-def test_the_study_and_its_figures():
-    with using(workers=1):
-        datasets = stability.simulate(stability.Parameters(**REDUCED))
+def test_the_study_and_its_figures(tmp_path_factory):
+    datasets = reduced.datasets("stability", tmp_path_factory)
     assert set(datasets) == {f"time_step_{name}" for name in stability.AXES} | {
         "drift", "collisions", "rolling", "rounding", "random_scenes",
     }  # fmt: skip
