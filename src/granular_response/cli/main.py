@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .. import __version__
-from ..machine import floating_point
+from ..machine import floating_point, without_dask
 
 # Before anything loads numpy: the stages of the pipeline give the same digits on every x86 machine.
 floating_point.pin()
@@ -575,6 +575,7 @@ def main() -> None:
     gc.disable()
     warnings.formatwarning = lambda message, *_, **__: f"granular-response: {message}\n"
     _speak_any_name()
+    without_dask.hide()
     try:
         try:
             app()
