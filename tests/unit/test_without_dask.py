@@ -28,7 +28,7 @@ def test_dask_counts_as_absent_until_it_is_asked_for():
     assert run.returncode == 0, run.stderr
 
 
-def test_a_command_that_reads_a_result_does_without():
+def test_commands_hide_it():
     script = "import sys; from granular_response.cli.main import main; sys.argv = ['granular-response', '--help']\n"
     script += "try:\n    main()\nfinally:\n    assert sys.modules['dask'] is None"
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
