@@ -64,10 +64,15 @@ def systems(layers: int, per_row: int, friction: float) -> list[tuple[sp.csc_arr
     return found
 
 
+def entries(matrix: sp.csc_array) -> tuple[np.ndarray, np.ndarray]:
+    """The column of each entry, and how far it stands below the diagonal."""
+    column = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
+    return column, matrix.indices - column
+
+
 def band_places(matrix: sp.csc_array) -> tuple[int, np.ndarray]:
     """Half-bandwidth, and where the entries go in LAPACK's storage (3 b + 1, n), columns one after the other."""
-    column = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-    below = matrix.indices - column
+    column, below = entries(matrix)
     b = int(below.max())
     return b, column * (3 * b + 1) + 2 * b + below
 
@@ -87,8 +92,7 @@ def lapack_lu(matrix: sp.csc_array) -> Factorise:
 
 def lapack_cholesky(matrix: sp.csc_array) -> Factorise:
     """LAPACK's banded Cholesky factorisation."""
-    column = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-    below = matrix.indices - column
+    column, below = entries(matrix)
     lower = np.flatnonzero(below >= 0)
     b = int(below.max())
     place = (column * (b + 1) + below)[lower]

@@ -1,17 +1,15 @@
 """Figure groups at reduced size, with the parameters of their notebooks."""
 
 import os
-from functools import cache
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 import xarray as xr
 
-from granular_response.machine.turns import Turns
-from granular_response.paper.pipeline import group_member, simulation
+from granular_response.paper.pipeline import GroupError, simulation
 from granular_response.store import files as store
-from granular_response.sweeps.resources import using
 
 PATH = Path(__file__).parents[2] / "notebooks" / "reduced.yaml"
 
@@ -26,23 +24,16 @@ def datasets(group: str, factory: pytest.TempPathFactory) -> dict[str, xr.Datase
     return store.read(stored(group, factory))
 
 
-@cache
-def _turns(folder: Path) -> Turns:
-    return Turns(folder / "turns")
-
-
 def stored(group: str, factory: pytest.TempPathFactory) -> Path:
-    """The file with the group's datasets, simulated once in a run of the tests, by the first process that asks.
-
-    Others wait, but not for ever: of two that simulate the same the later one leaves the file as it is.
-    """
+    """The file with the group's datasets, simulated once in a run of the tests, by the first process that asks."""
     base = factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "reduced"
     folder.mkdir(exist_ok=True)
     path = folder / f"{group}.nc"
-    with _turns(folder).taken(group), using(workers=1):
-        if not path.exists():
-            described = group_member(group, "parameters", "Parameters")
-            simulate = group_member(group, "simulate", "simulate")
-            store.write(path, simulate(described(**parameters(group))), {"group": group})
+    parameters(group)  # a group that is none ends here
+    while not path.exists():
+        try:
+            simulation.simulate(group, path, parameter_file=PATH, workers=1)
+        except GroupError:  # another process is at it
+            time.sleep(0.1)
     return path
