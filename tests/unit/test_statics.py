@@ -12,6 +12,7 @@ from small_scenes import free_disks, scene, shaken
 from granular_response.contact import LAWS
 from granular_response.kernels.statics import SMALL_TURN, _angle
 from granular_response.solve import Dynamics, Problem, solve_scene
+from granular_response.solve.pattern import Pattern
 from granular_response.solve.system import DENSE, LEFT_OF_ALL, StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
@@ -234,7 +235,7 @@ def sliding():
 def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(sliding, monkeypatch):
     """A million disks took 500 solutions to tell that 9 weights per radius are more than nothing."""
     system, trial = sliding
-    symmetric = system._symmetric_part(system._what_moves(trial)).toarray()
+    symmetric = system._pattern.symmetric_part(system._what_moves(trial)).toarray()
     assert SLIDING in trial.pair_status and np.linalg.eigvalsh(symmetric).min() < 0.0  # so there is a suspicion
     assert np.linalg.eigvals(system._what_moves(trial).toarray()).real.min() > 1.0
     module, asked, solutions = sys.modules[StaticSystem.__module__], [], []
@@ -268,7 +269,7 @@ def test_a_point_left_of_all_eigenvalues_is_the_same_wherever_it_was_before(slid
     for before in range(len(LEFT_OF_ALL)):
         system._left = before
         found.append(system._left_of_all(matrix))
-    lowest = np.linalg.eigvalsh(system._symmetric_part(matrix).toarray()).min()
+    lowest = np.linalg.eigvalsh(system._pattern.symmetric_part(matrix).toarray()).min()
     origins = [-origin * system.problem.stiffness for origin in LEFT_OF_ALL]
     assert found == [max(origin for origin in origins if origin < lowest)] * len(LEFT_OF_ALL)
     assert origins[-1] < found[0] < origins[0]  # neither end of the list
@@ -282,7 +283,25 @@ def test_a_tangent_keeps_short_integers_for_its_pattern():
     assert {array.dtype for array in (matrix.indices, matrix.indptr, system._storage.across(matrix))} == {
         np.dtype("i4")
     }
-    assert system._transposed(matrix).toarray().tolist() == matrix.toarray().T.tolist()
+    assert system._pattern.transposed(matrix).toarray().tolist() == matrix.toarray().T.tolist()
+
+
+def test_a_pattern_serves_the_next_system_of_the_same_contacts(monkeypatch):
+    """From one load to the next; the tangents are those of a system that found nothing to take over."""
+    monkeypatch.setattr(sys.modules[Pattern.__module__], "_last", [])
+    solved = solve_scene(scene(4, 9))
+    problem, loaded = solved.problem, solved.loaded[0]
+    first, second = StaticSystem(problem, solved.rest), StaticSystem(problem, loaded)
+    assert second._pattern is first._pattern
+    fewer = replace(loaded, pairs=replace(loaded.pairs, **{k: v[1:] for k, v in vars(loaded.pairs).items()}))
+    smooth = problem.without_friction()
+    others = [StaticSystem(problem, fewer), StaticSystem(smooth, loaded)]
+    assert len({id(system._pattern) for system in (first, *others)}) == 3
+    alone = StaticSystem(problem, loaded)
+    assert alone._pattern is not second._pattern
+    known = alone.start(loaded)
+    one, other = (system.tangent(system.trial(known, known.q)) for system in (second, alone))
+    assert one.toarray().tolist() == other.toarray().tolist()
 
 
 def test_disks_that_slide_alone_call_for_no_eigenvalues(monkeypatch):

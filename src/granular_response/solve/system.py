@@ -23,6 +23,7 @@ from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .linear import REMEMBERED, Factor, Sequence, elimination
 from .linear.band import Band
 from .linear.two_sided import FREEDOMS, TwoSided
+from .pattern import pattern
 from .problem import Problem
 
 #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
@@ -139,7 +140,13 @@ class StaticSystem:
             self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law
         )
         self.held = problem.held.unknowns(problem.n)
-        self._pattern()
+        # one order of elimination for all states of a large lattice
+        as_built = problem.n > REMEMBERED and problem.packing.ordered
+        position = problem.packing.position if as_built else self.reference
+        chosen = elimination(position, self.first, self.second, problem.freedoms)
+        self._order = chosen.order
+        self._pattern = pattern(chosen, self.first, self.second, self.wall_disk, problem.freedoms, self.held)
+        self._storage = self._pattern.storage
         self._kept: tuple[np.ndarray, Factor] | None = None
         same = SAME_SHIFT * problem.stiffness
         self._steps = Sequence(self._storage, definite=False, same=same)
@@ -230,85 +237,23 @@ class StaticSystem:
         force[self.held] = 0.0
         return force
 
-    def _pattern(self) -> None:
-        """Column-compressed pattern of the tangent and where each contact's blocks go in it."""
-        n, d = self.problem.n, self.problem.freedoms
-        # one order of elimination for all states of a large lattice
-        as_built = n > REMEMBERED and self.problem.packing.ordered
-        position = self.problem.packing.position if as_built else self.reference
-        chosen = elimination(position, self.first, self.second, d)
-        self._order = chosen.order
-        #: for each unknown in the order of the tangent where it is in ``[x | z | angle]``
-        self._interleaved = (chosen.order[:, None] + n * np.arange(d)).ravel()
-        #: for each disk its place in the order of the tangent
-        self._place = np.empty(n, np.int64)
-        self._place[self._order] = np.arange(n)
-        i, j = self._place[self.first], self._place[self.second]
-        wall_place = self._place[self.wall_disk]
-        nodes = np.arange(n)
-        row = np.concatenate([nodes, i, j])
-        column = np.concatenate([nodes, j, i])
-        by = np.lexsort((row, column))
-        place = np.empty(len(by), np.int64)
-        place[by] = np.arange(len(by))
-        count = np.bincount(column, minlength=n)
-        begin = np.concatenate([[0], np.cumsum(count)])
-        rank = place - begin[column]
-        base = begin[column] * d * d + rank * d
-        stride = count[column] * d
-        m = len(i)
-        ii, ij, ji = nodes, n + np.arange(m), n + m + np.arange(m)
-        order = np.stack([ii[i], ij, ji, ii[j]], axis=1) if m else np.zeros((0, 4), np.int64)
-        self._base, self._stride = base[order], stride[order]
-        self._wall_base, self._wall_stride = base[wall_place], stride[wall_place]
-        rows_of = row[by]
-        indices = []
-        for component in range(d):
-            indices.append(rows_of * d + component)
-        block_rows = np.stack(indices, axis=1).ravel()
-        # every block column repeats its rows d times, once for each component of the column
-        starts = np.repeat(begin[:-1] * d, d)
-        lengths = np.repeat(count * d, d)
-        self._indptr = np.concatenate([[0], np.cumsum(lengths)])
-        offset = np.arange(self._indptr[-1]) - np.repeat(self._indptr[:-1], lengths)
-        self._indices = block_rows[np.repeat(starts, lengths) + offset]
-        self._diagonal = (base[:n, None] + np.arange(d) * (stride[:n, None] + 1)).ravel()
-        if self.held.size:
-            held = self._place[self.held % n] * d + self.held // n
-            columns = [np.arange(self._indptr[k], self._indptr[k + 1]) for k in held]
-            self._held_entries = np.concatenate([*columns, np.flatnonzero(np.isin(self._indices, held))])
-            self._held_diagonal = self._diagonal[held]
-        self._storage = chosen.storage(self._indptr, self._indices)
-        # of 32 bits where they will do: half the memory, and scipy converts none for its own routines
-        kind = sp.get_index_dtype(maxval=int(self._indptr[-1]))
-        self._indices, self._indptr = self._indices.astype(kind), self._indptr.astype(kind)
-
-    def _transposed(self, matrix: sp.csc_array) -> sp.csc_array:
-        """K^T of a tangent."""
-        across = self._storage.across(matrix)
-        return sp.csc_array((matrix.data[across], matrix.indices, matrix.indptr), shape=matrix.shape)
-
-    def _symmetric_part(self, matrix: sp.csc_array) -> sp.csc_array:
-        """(K + K^T) / 2 of a tangent."""
-        data = 0.5 * (matrix.data + matrix.data[self._storage.across(matrix)])
-        return sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
-
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
 
         ``shift`` (scalar or (dof,)) is added to the diagonal.
         """
-        data = np.empty(len(self._indices))
+        places = self._pattern
+        data = np.empty(len(places.indices))
         statics.assemble(
             data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius,
-            trial.pair_tangent, self._base, self._stride,
-            self.wall_disk, trial.wall_tangent, self._wall_base, self._wall_stride,
+            trial.pair_tangent, places.base, places.stride,
+            self.wall_disk, trial.wall_tangent, places.wall_base, places.wall_stride,
         )  # fmt: skip
         if self.held.size:
-            data[self._held_entries] = 0.0
-            data[self._held_diagonal] = self.problem.stiffness
-        data[self._diagonal] += shift
-        return sp.csc_array((data, self._indices, self._indptr), shape=(self.dof, self.dof))
+            data[places.held_entries] = 0.0
+            data[places.held_diagonal] = self.problem.stiffness
+        data[places.diagonal] += shift
+        return places.matrix(data)
 
     def elastic_energy(self, trial: Trial) -> float:
         """Energy of the normal springs (mean disk weight times mean radius)."""
@@ -322,7 +267,7 @@ class StaticSystem:
 
     def interleave(self, vector: FloatArray) -> FloatArray:
         """``[x | z | angle]`` to disk by disk, in the order of the tangent."""
-        return vector[self._interleaved]
+        return vector[self._pattern.interleaved]
 
     def deinterleave(self, vector: FloatArray) -> FloatArray:
         """Disk by disk, in the order of the tangent, to ``[x | z | angle]``.
@@ -331,7 +276,7 @@ class StaticSystem:
         where it is.
         """
         result = np.empty(self.dof)
-        result[self._interleaved] = vector
+        result[self._pattern.interleaved] = vector
         if self.problem.packing.periodic and not self.problem.wall_friction and 0 not in self.problem.held.axis:
             along = result[: self.problem.n]
             along -= along.mean()
@@ -386,8 +331,9 @@ class StaticSystem:
 
     def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
         """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
-        factor = self._storage.factor(self._transposed(self.tangent(trial, REGULARISATION * self.problem.stiffness)))
-        return factor, self._transposed(self.tangent(trial))
+        regularised = self.tangent(trial, REGULARISATION * self.problem.stiffness)
+        factor = self._storage.factor(self._pattern.transposed(regularised))
+        return factor, self._pattern.transposed(self.tangent(trial))
 
     def limited_step(
         self, trial: Trial, force: FloatArray, shift: float, *, anew: bool = False
@@ -414,12 +360,12 @@ class StaticSystem:
         """
         if not isinstance(self._storage, Band) or self.held.size or self.problem.freedoms != FREEDOMS:
             return None
-        loaded = self.problem.load_disk
-        centre = int(self._place[loaded].mean()) if len(loaded) else self.problem.n // 2
+        place, loaded = self._pattern.place, self.problem.load_disk
+        centre = int(place[loaded].mean()) if len(loaded) else self.problem.n // 2
         radius = self.problem.packing.radius[self._order]
         k = self.problem.stiffness
         return TwoSided(
-            np.stack([self._place[self.first], self._place[self.second]], axis=1), self._place[self.wall_disk], radius,
+            np.stack([place[self.first], place[self.second]], axis=1), place[self.wall_disk], radius,
             half_width=self._storage.half_width, centre=centre, diagonal=diagonal * k, stiffness=k,
         )  # fmt: skip
 
@@ -470,7 +416,7 @@ class StaticSystem:
     def symmetric_factor(self, trial: Trial, shift: float) -> tuple[Factor, int]:
         """Factorisation of the symmetric part of the tangent and its number of negative eigenvalues."""
         matrix = self.tangent(trial, shift)
-        return self._storage.symmetric_factor(self._symmetric_part(matrix))
+        return self._storage.symmetric_factor(self._pattern.symmetric_part(matrix))
 
     def without_prestress(self, trial: Trial) -> Trial:
         """The trial with the stiffness of its springs alone: what the turn of contacts adds is left out.
@@ -496,7 +442,7 @@ class StaticSystem:
     def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
         """Factorisation of the symmetric part of the tangent; None when it is not positive definite."""
         self._definite_steps.forget()
-        return self._storage.definite_factor(self._symmetric_part(self.tangent(trial, shift)))
+        return self._storage.definite_factor(self._pattern.symmetric_part(self.tangent(trial, shift)))
 
     def definite_step(self, trial: Trial, force: FloatArray, shift: float) -> FloatArray | None:
         """(dof,) displacements that take ``force`` up, by the symmetric part of the tangent with ``shift`` added.
@@ -505,7 +451,7 @@ class StaticSystem:
         brought up to date for what has changed since: a tangent that is not positive definite where nothing has is not
         seen then, unless the step would lead uphill.
         """
-        matrix = self._symmetric_part(self.tangent(trial, shift))
+        matrix = self._pattern.symmetric_part(self.tangent(trial, shift))
         right = self.interleave(force)
         found = self._definite_steps.solve(matrix, right, LEFT_OVER, shift)
         if found is None:
@@ -541,7 +487,7 @@ class StaticSystem:
         freely from counting.
         """
         matrix = self._what_moves(trial)
-        modes = self._storage.negative_eigenvalues(self._symmetric_part(matrix))
+        modes = self._storage.negative_eigenvalues(self._pattern.symmetric_part(matrix))
         if modes == 0 or not _slides(trial):
             return modes
         if self.dof <= DENSE:
@@ -564,25 +510,20 @@ class StaticSystem:
         not zero, would make the symmetric part indefinite whatever the rest is.
         """
         matrix = self.tangent(trial)
-        idle = np.add.reduceat(np.abs(matrix.data), self._indptr[:-1]) == 0.0
-        matrix.data[idle[self._indices]] = 0.0
-        matrix.data[self._diagonal] += np.where(idle, self.problem.stiffness, FREE)
+        idle = np.add.reduceat(np.abs(matrix.data), matrix.indptr[:-1]) == 0.0
+        matrix.data[idle[matrix.indices]] = 0.0
+        matrix.data[self._pattern.diagonal] += np.where(idle, self.problem.stiffness, FREE)
         return matrix
-
-    def _with_shift(self, matrix: sp.csc_array, shift: float) -> sp.csc_array:
-        data = matrix.data.copy()
-        data[self._diagonal] += shift
-        return sp.csc_array((data, self._indices, self._indptr), shape=matrix.shape)
 
     def _left_of_all(self, matrix: sp.csc_array) -> float:
         """A number below the lowest eigenvalue of the symmetric part of a tangent, not far below."""
         self._forget()
-        symmetric = self._symmetric_part(matrix)
+        symmetric = self._pattern.symmetric_part(matrix)
 
         def is_left(place: int) -> bool:
             if place == len(LEFT_OF_ALL) - 1:
                 return True
-            shifted = self._with_shift(symmetric, LEFT_OF_ALL[place] * self.problem.stiffness)
+            shifted = self._pattern.with_shift(symmetric, LEFT_OF_ALL[place] * self.problem.stiffness)
             rough = self._storage.rough_factor(shifted, definite=True) is not None
             return rough or self._storage.definite_factor(shifted) is not None
 
@@ -595,7 +536,7 @@ class StaticSystem:
 
     def _nearest_to(self, left: float, matrix: sp.csc_array) -> Callable[..., tuple[NDArray[Any], NDArray[Any]]]:
         """What finds so many eigenvalues (m,) of a tangent, the nearest to a number, and their vectors (dof, m)."""
-        factor = self._storage.factor(self._with_shift(matrix, -left))
+        factor = self._storage.factor(self._pattern.with_shift(matrix, -left))
         return partial(
             eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (FREE / -left),
             OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
@@ -615,7 +556,7 @@ class StaticSystem:
             nearest = self._nearest_to(self._left_of_all(matrix), matrix)
             return self._of_largest_one(nearest(1)[1][:, 0].real)
         if self.dof <= DENSE:
-            _, every = np.linalg.eigh(self._symmetric_part(self.tangent(trial)).toarray())
+            _, every = np.linalg.eigh(self._pattern.symmetric_part(self.tangent(trial)).toarray())
             return self._of_largest_one(every[:, 0])
         k = self.problem.stiffness
         # the nearer the origin of the search to the eigenvalue, the fewer solves; from below it finds the lowest
@@ -626,7 +567,7 @@ class StaticSystem:
         else:
             factor, _ = self.symmetric_factor(trial, origin)
         _, vectors = eigsh(
-            self._symmetric_part(self.tangent(trial)), k=1, sigma=-origin, which="LM",
+            self._pattern.symmetric_part(self.tangent(trial)), k=1, sigma=-origin, which="LM",
             v0=np.random.default_rng(0).standard_normal(self.dof),
             OPinv=LinearOperator((self.dof, self.dof), factor.solve, dtype=float),
             **({"tol": ROUGH, "ncv": FEW} if rough else {}),
