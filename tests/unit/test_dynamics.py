@@ -156,6 +156,19 @@ def test_loose_disk_does_not_keep_a_packing_from_rest():
     assert settled.reached.kinetic_energy > 1e-13
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_what_rolls_are_disks_that_touch_the_floor_alone(friction):
+    """Not those beside another one, in flight or at a wall. Motion along the floor counts, and spin."""
+    z = 1.0 - 1 / 6000
+    places = [(50.0, z), (100.0, z), (101.9, z), (150.0, 5.0), (z, 20.0)]
+    problem, state = free_disks(places, velocity=[(0.3, 0.1)] * 5, contact__friction=friction, wall__friction=friction)
+    dynamics = Dynamics(problem, replace(state, angular_velocity=np.full(5, 0.7)))
+    touching = dynamics.touching()
+    rollers, energy = dynamics.rolling(touching, dynamics.contact_count(touching))
+    spin = 0.5 * 0.5 * 0.7**2 if friction else 0.0
+    assert rollers == 1 and energy == pytest.approx((0.5 * 0.3**2 + spin) / 5, rel=1e-14)
+
+
 def test_ramps_of_gravity_and_load():
     """On one free disk the velocity is the integral of the ramp, whose parabola the algorithms follow."""
     problem, state = free_disks([[500.0, 500.0]], loads=[{"disk": 0, "force": [2.0, 0.0], "torque": 0.5}])

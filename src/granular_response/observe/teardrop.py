@@ -88,8 +88,9 @@ def open_region(
     label = _components(centre[candidate], reach * lattice_constant, state.box)
     distance = np.linalg.norm(centre[begin] - origin, axis=1)
     nearest = begin[distance <= distance.min() + 0.01 * lattice_constant]
-    chosen = np.isin(label, label[np.searchsorted(candidate, nearest)])
-    region = candidate[chosen]
+    begun = np.zeros(label.max() + 1, bool)
+    begun[label[np.searchsorted(candidate, nearest)]] = True
+    region = candidate[begun[label]]
     inside[region] = True
 
     on_floor = np.zeros(state.position.shape[0], dtype=bool)

@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls
-from ..kernels.neighbours import count_closed, mark_closed
+from ..kernels.neighbours import count_closed, mark_closed, rolling
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
 from .problem import Candidates, Problem, carry_springs, spring_contacts
@@ -272,20 +272,16 @@ class Dynamics:
             energies = energies.reshape(self.problem.freedoms, -1)[:, count >= 2]
         return float(energies.sum()) / self.problem.n
 
-    def rollers(self, touching: NDArray[np.bool_], count: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """(n,) whether a disk touches the floor and nothing else: it bears no load and may roll for ever.
+    def rolling(self, touching: NDArray[np.bool_], count: NDArray[np.int64]) -> tuple[int, float]:
+        """How many disks touch the floor and nothing else, and the kinetic energy of their rolling per disk of all.
 
-        ``touching``, ``count`` : closed contacts, and how many each disk has.
+        They bear no load and may roll for ever. ``touching``, ``count`` : closed contacts, and how many each disk has.
         """
         c = self.candidates
-        on_floor = np.zeros(self.problem.n, bool)
-        on_floor[c.wall_disk[touching[len(c.first) :] & (c.wall == FLOOR)]] = True
-        return on_floor & (count == 1)
-
-    def rolling_energy(self, rollers: NDArray[np.bool_]) -> float:
-        """Kinetic energy, per disk of the packing, of the motion of ``rollers`` along the floor and of their spin."""
-        energies = (0.5 * self.v**2 / self.problem.inverse_mass).reshape(self.problem.freedoms, -1)
-        return float(energies[0::2, rollers].sum()) / self.problem.n
+        rollers, energy = rolling(
+            touching, len(c.first), count, c.wall_disk, c.wall, self.v, self.problem.inverse_mass
+        )  # fmt: skip
+        return rollers, energy / self.problem.n
 
     def in_flight(self, touching: NDArray[np.bool_]) -> bool:
         """Whether some disks fall: no chain of closed contacts leads to what could bear their weight."""
@@ -393,11 +389,11 @@ class Relaxation:
         touching = dynamics.touching()
         count = dynamics.contact_count(touching)
         if look_at_rolling or (energy > stop.kinetic_energy and (slow or self.rolling)):
-            rollers = dynamics.rollers(touching, count)
+            rollers, of_rolling = dynamics.rolling(touching, count)
             if look_at_rolling:
-                self.rolling = bool(rollers.any() and rollers.mean() <= MOST_ROLLERS)
+                self.rolling = 0 < rollers <= MOST_ROLLERS * dynamics.problem.n
             if slow or self.rolling:
-                energy -= dynamics.rolling_energy(rollers)
+                energy -= of_rolling
         self.envelope.append(energy)
         if energy < SLOW_ROLLING * stop.kinetic_energy:
             same = self.network is not None and np.array_equal(touching, self.network)

@@ -316,6 +316,8 @@ def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
     ValueError
         When a contact that carries a spring is not in the other list.
     """
+    if np.array_equal(contacts.first, first) and np.array_equal(contacts.second, second):
+        return contacts.spring.copy()
     held = np.flatnonzero(contacts.spring)
     key = np.asarray(first, np.int64) + n * np.asarray(second, np.int64)
     by = np.argsort(key)
