@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import signal
 
 from granular_response.observe.peaks import (
     asymmetry,
@@ -132,6 +131,8 @@ def test_reflected_profiles_have_reflected_peaks(values):
 
 @given(st.lists(st.integers(-50, 50), min_size=3, max_size=25, unique=True))
 def test_distinct_heights_agree_with_scipy(values):
+    from scipy import signal  # takes longer to import than these tests take
+
     r = np.array(values, dtype=float)
     threshold = 0.1 * np.abs(r).max()
     expected, properties = signal.find_peaks(r, prominence=threshold)

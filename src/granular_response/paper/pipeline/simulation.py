@@ -7,6 +7,8 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from copy import deepcopy
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +39,7 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
     """
     kind: type[Description] = group_member(group, "parameters", "Parameters")
     try:
-        sections = text.read(path.read_text(encoding="utf-8"))
+        sections = deepcopy(_read(path.read_text(encoding="utf-8")))
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
     except UnicodeDecodeError:
@@ -51,6 +53,11 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
         return taken | own, _describe(kind, taken | own, group)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
+
+
+@lru_cache(maxsize=4)  # the report and tests ask for one group after another
+def _read(content: str) -> Any:
+    return text.read(content)
 
 
 def _section(sections: Any, name: str, path: Path) -> dict[str, Any]:
