@@ -1,5 +1,7 @@
 """Quasi-static load paths against slow dynamics, and through loads that are hard to pass."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_scenes import free_disks, scene
@@ -24,7 +26,9 @@ from granular_response.solve import (
 )  # fmt: skip
 from granular_response.solve.equilibrium import external_force
 from granular_response.solve.increment import HASTY, PATIENT, Work, minimise_with_limits, solve_increment
+from granular_response.solve.settle import settle
 from granular_response.solve.system import StaticSystem
+from granular_response.solve.timestep import stability_limit
 from granular_response.state import OPEN
 
 FLOOR = np.arange(13)
@@ -268,6 +272,27 @@ def test_dynamics_takes_the_rest_of_the_way_where_it_is_cheaper_at_the_tolerance
     assert [(crossing.reason, crossing.end) for crossing in record.crossings] == [("too much work", force)]
     assert np.abs(floor_force(state, bottom) - floor_force(fine, bottom)).max() < tolerance * force
     assert state.certificate.stable and state.certificate.force_residual < 1e-10
+
+
+@pytest.mark.parametrize(("ratio", "left"), [(0.5, 0.125), (0.125, 0.125), (0.05, 0.05)])
+def test_where_dynamics_takes_the_rest_disks_move_like_rings_with_few_dashpots(slippery, monkeypatch, ratio, left):
+    """Neither matters to where a slow ramp ends, and the step is longer; what is at rest is at rest for both."""
+    seen = []
+
+    def recorded(problem, *arguments, **options):
+        seen.append((problem, options["time_step"]))
+        return settle(problem, *arguments, **options)
+
+    monkeypatch.setattr(path, "settle", recorded)
+    problem, rest = slippery
+    problem = replace(problem, scene=problem.scene.updated({"contact.damping_ratio": ratio}))
+    follow(problem, rest, [40.0], tolerance=1e-2)
+    (moving, step), *_ = seen
+    dashpots = [2.0 * left * np.sqrt(k) for k in (problem.stiffness, problem.pair_law.tangential_stiffness)]
+    assert moving.rings and np.array_equal(moving.weight, problem.weight)
+    assert [moving.pair_law.normal_damping, moving.pair_law.tangential_damping] == pytest.approx(dashpots)
+    assert moving.pair_law.friction == problem.pair_law.friction and moving.stiffness == problem.stiffness
+    assert step == pytest.approx(0.9 * stability_limit(moving, "leapfrog"))
 
 
 def test_a_path_that_left_the_rest_to_dynamics_goes_on_as_if_it_had_not_been_cut(slippery):

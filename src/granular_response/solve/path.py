@@ -61,6 +61,9 @@ MOST_WORK = 1000
 #: Ramp by which dynamics takes all that is left of the way within a tolerance: this many crossing times of a
 #: compression wave, over the tolerance, for the whole way; and at least so many (docs/physics.md has the errors).
 RAMP, SHORTEST_RAMP = 0.3, 4.0
+#: Dashpots of that ramp over critical ones, if the scene has more; its disks move like rings. In the limit that it
+#: approaches neither matters, and the step is four times as long.
+RAMP_DAMPING = 0.125
 #: Time steps that cost as much as a factorisation with all that an increment does beside it, for slabs of any size.
 STEPS_AS_DEAR = 100
 #: Fewest disks for that: in smaller packings increments cost next to nothing, and single disks swing more slowly than a
@@ -417,6 +420,17 @@ class _Path:
             self.mark = (self.factor, work)
         return work - self.mark[1] > MOST_WORK
 
+    @cached_property
+    def ramped(self) -> Problem:
+        """The packing as it moves where dynamics takes the rest of the way."""
+        ratio = self.problem.scene.contact.damping_ratio
+        return self.problem.moving(rings=True, dashpots=RAMP_DAMPING / max(ratio, RAMP_DAMPING))
+
+    @cached_property
+    def ramp_step(self) -> float:
+        """Time step there."""
+        return TRIAL_STEP * stability_limit(self.ramped, TRIAL_INTEGRATOR, smallest=True)
+
     def _ramp(self, target: float) -> float:
         """Duration of a ramp of dynamics to ``target`` for what is left of the tolerance, in sqrt(R/g)."""
         assert self.tolerance is not None
@@ -427,7 +441,7 @@ class _Path:
 
     def _dynamics_cost(self, target: float) -> float:
         """Factorisations as dear as dynamics to ``target`` within the tolerance; infinite beyond its steps."""
-        steps = (self._ramp(target) + STAGE.hold) / self.quick_step
+        steps = (self._ramp(target) + STAGE.hold) / self.ramp_step
         return steps / STEPS_AS_DEAR if steps <= self.dynamics.maximum_steps else np.inf
 
     def _dynamics_is_cheaper(self, target: float) -> bool:
@@ -443,8 +457,8 @@ class _Path:
         self.may_leave = False
         here = self._state()
         ramp = self._ramp(target)
-        most = min(self.dynamics.maximum_steps, round(SETTLES_WITHIN * (ramp + STAGE.hold) / self.quick_step))
-        quick = _DynamicsOptions(TRIAL_INTEGRATOR, self.quick_step, ramp, most, STAGE, STAGE_STOP)
+        most = min(self.dynamics.maximum_steps, round(SETTLES_WITHIN * (ramp + STAGE.hold) / self.ramp_step))
+        quick = _DynamicsOptions(TRIAL_INTEGRATOR, self.ramp_step, ramp, most, STAGE, STAGE_STOP)
         try:
             self._cross(target, "too much work", quick)
         except (PathError, DynamicsError):
@@ -477,7 +491,7 @@ class _Path:
 
     @cached_property
     def quick_step(self) -> float:
-        """Time step of dynamics of which nothing is asked but where it ends."""
+        """Time step of dynamics of which nothing is asked but whether it leaves."""
         return TRIAL_STEP * stability_limit(self.problem, TRIAL_INTEGRATOR, smallest=True)
 
     def _leaves_towards(self, state: State, direction: FloatArray) -> bool:
@@ -507,9 +521,9 @@ class _Path:
                 self.factor, self.known, self.trial = before
         self._cross(unstable, "unstable")
 
-    def _cross(self, new: float, reason: str, options: _DynamicsOptions | None = None) -> None:
-        """Dynamics from the last equilibrium to one at load factor ``new``."""
-        options = self.dynamics if options is None else options
+    def _cross(self, new: float, reason: str, ramp: _DynamicsOptions | None = None) -> None:
+        """Dynamics from the last equilibrium to one at load factor ``new``; ``ramp`` : over the rest of the way."""
+        problem, options = (self.problem, self.dynamics) if ramp is None else (self.ramped, ramp)
         here = self._state()
         start = self.factor
 
@@ -519,11 +533,10 @@ class _Path:
             return found.certificate.stable is True or not self._leaves()
 
         stop = Stop(options.energy, maximum_steps=options.maximum_steps)
-        ramp = (start, new, options.ramp)
         try:
             settled = settle(
-                self.problem, here, options.over, stop, what=f"load factor {new:g}", load=ramp, accept=accept,
-                integrator=options.integrator, time_step=options.time_step,
+                problem, here, options.over, stop, what=f"load factor {new:g}", load=(start, new, options.ramp),
+                accept=accept, integrator=options.integrator, time_step=options.time_step,
             )  # fmt: skip
         except NotSettled as error:
             raise PathError(f"no equilibrium beyond load factor {start:g}: {error}") from error

@@ -118,11 +118,15 @@ class Problem:
             load=np.zeros((0, 3)),
         )
 
+    def moving(self, *, rings: bool, dashpots: float) -> Problem:
+        """The same problem with inertia of rings or disks and a part of its ``dashpots``; its statics is the same."""
+        pair_law, wall_law = _laws(self.scene, dashpots)
+        return replace(self, rings=rings, pair_law=pair_law, wall_law=wall_law)
+
     def in_stages(self) -> Problem:
-        """The same problem with the inertia and the dashpots of the dynamics of stages; its statics is the same."""
+        """The same problem with the inertia and the dashpots of the dynamics of stages."""
         protocol = self.scene.protocol
-        pair_law, wall_law = _laws(self.scene, protocol.stage_damping)
-        return replace(self, rings=protocol.inertia == "rings", pair_law=pair_law, wall_law=wall_law)
+        return self.moving(rings=protocol.inertia == "rings", dashpots=protocol.stage_damping)
 
     @property
     def n(self) -> int:
