@@ -26,6 +26,7 @@ from granular_response.solve import (
 )  # fmt: skip
 from granular_response.solve.equilibrium import external_force
 from granular_response.solve.increment import HASTY, PATIENT, Work, minimise_with_limits, solve_increment
+from granular_response.solve.path import LOOSE
 from granular_response.solve.settle import settle
 from granular_response.solve.system import StaticSystem
 from granular_response.solve.timestep import stability_limit
@@ -272,6 +273,15 @@ def test_dynamics_takes_the_rest_of_the_way_where_it_is_cheaper_at_the_tolerance
     assert [(crossing.reason, crossing.end) for crossing in record.crossings] == [("too much work", force)]
     assert np.abs(floor_force(state, bottom) - floor_force(fine, bottom)).max() < tolerance * force
     assert state.certificate.stable and state.certificate.force_residual < 1e-10
+
+
+def test_at_a_tight_tolerance_the_path_keeps_to_statics(slippery):
+    """However dear: a ramp may leave a symmetric branch, for another one some hundredths of the load away."""
+    problem, rest = slippery
+    for part, leaves in ((1.0, True), (0.99, False)):
+        record = PathRecord()
+        follow(problem, rest, [15.0], tolerance=part * LOOSE, record=record)
+        assert ("too much work" in {crossing.reason for crossing in record.crossings}) == leaves
 
 
 @pytest.mark.parametrize(("ratio", "left"), [(0.5, 0.125), (0.125, 0.125), (0.05, 0.05)])

@@ -4,11 +4,11 @@ Each increment is solved with the return map of ``kernels.statics`` (see :mod:`.
 opening, sliding or sticking throughout an increment the return map is exact for any length of the increment. With a
 tolerance, increments grow as long as their errors (see :mod:`.increment_error`) stay within it.
 Where no equilibrium is found on the shortest increment, or the equilibrium has lost its stability, the branch has
-ended: explicit dynamics carries the packing to the next equilibrium and statics goes on from there. So
-it does where an increment, or a stretch of load, has cost more factorisations than the limits below. With a
-tolerance it takes all that is left of the way where that costs less than increments like the last ones: the error of a
-linear ramp falls as one over its duration, so the tolerance says how long it must be. Every such crossing is recorded
-with its load and its reason.
+ended: explicit dynamics carries the packing to the next equilibrium and statics goes on from there. So it does where
+an increment, or a stretch of load, has cost more factorisations than the limits below. With a loose tolerance it takes
+all that is left of the way where that costs less than increments like the last ones: the error of a linear ramp falls
+as one over its duration, so the tolerance says how long it must be. Every such crossing is recorded with its load and
+its reason.
 
 Stability is looked at about once per mean disk weight of load; with a tolerance less often, and only if any contact
 has changed since. With sliding contacts a negative eigenvalue of the tangent is only a suspicion (the tangent belongs
@@ -66,6 +66,8 @@ RAMP, SHORTEST_RAMP = 0.3, 4.0
 RAMP_DAMPING = 0.125
 #: Time steps that cost as much as a factorisation with all that an increment does beside it, for slabs of any size.
 STEPS_AS_DEAR = 100
+#: Tightest tolerance for that: a ramp may leave a symmetric branch for another one, some hundredths of the load away.
+LOOSE = 1e-3
 #: Fewest disks for that: in smaller packings increments cost next to nothing, and single disks swing more slowly than a
 #: wave crosses.
 MANY = 200
@@ -177,6 +179,7 @@ class _Path:
         #: whether errors are looked at: without friction increments of any length are exact
         self.looks = self.tolerance is not None and problem.rotations
         self.looseness = tolerance / TRUSTED_FOR if self.looks else np.inf
+        self.loose = self.looks and tolerance >= LOOSE
         loose = 1.0 if self.tolerance is None else max(self.tolerance / TRUSTED_FOR, 1.0)
         #: by which increments are longer than for the tolerance of first ones: their errors grow faster than they do
         self.coarser = loose**0.5
@@ -206,7 +209,7 @@ class _Path:
         #: load factor that the last increments have gained and factorisations that they took, and work before them
         self.gained, self.cost, self.begun = 0.0, 0.0, self.record.work.factorisations
         #: whether dynamics may take the rest of the way, tried once; how long a ramp must be was measured for forces
-        self.may_leave = self.looks and self.problem.n >= MANY and not len(self.problem.held)
+        self.may_leave = self.loose and self.problem.n >= MANY and not len(self.problem.held)
         self._begin(state)
 
     def _begin(self, state: State) -> None:
