@@ -37,8 +37,12 @@ TEXTS = {
         "0.86 of its limit, static finish, ramps of 1, 5, 20 and 100). The error is that of the normalised floor "
         "response against the path in increments of the default length. Of each method the fastest run counts whose "
         "error, known afterwards, is small enough: for dynamics that is the luckiest ramp. A path has to choose "
-        "beforehand; where its increments are dear for a tolerance, it leaves the rest of the way to a ramp that is "
-        "long enough by the worst errors of ramps that were measured ([physics](physics.md)).",
+        "beforehand; where its increments are dear for a tolerance of 1e-3 or more, it leaves the rest of the way to a "
+        "ramp that is long enough by the worst errors of ramps that were measured ([physics](physics.md)), of disks "
+        "like rings with few dashpots, while dynamics here has those of the scene. What dynamics still reaches "
+        "sooner: at friction 0.05 and 4 mg a ramp of 1 is enough, where a path that leaves has to take one of 7 for "
+        "1e-2; at friction 1 and 50 mg a ramp leaves a fiftieth of the worst error, so one of 20 is enough for 1e-4; "
+        "the path takes 40 increments and 18 comparisons of their errors, factorisations half of its time.",
     ),
     "convergence": (
         "Dynamics approaches the path",

@@ -1,9 +1,13 @@
 """Settings that every test shares."""
 
+import contextlib
+import fcntl
 import multiprocessing
 import os
+import sys
 from multiprocessing import forkserver
 
+import pytest
 import xdist
 from hypothesis import settings
 
@@ -29,6 +33,22 @@ def pytest_sessionstart(session):
     if not xdist.is_xdist_controller(session):
         multiprocessing.get_context("forkserver").set_forkserver_preload(IMPORTED)
         forkserver.ensure_running()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    """In a fresh clone one process prepares the asserts of a module, and the others wait and read what it has kept."""
+    with contextlib.ExitStack() as held:
+        if isinstance(collector, pytest.Module) and xdist.is_xdist_worker(collector) and not _prepared(collector.path):
+            with contextlib.suppress(OSError):  # a file system without locks
+                fcntl.flock(held.enter_context(collector.path.open()), fcntl.LOCK_EX)
+        return (yield)
+
+
+def _prepared(path):
+    """Whether there is bytecode of a test module as it is; none is waited for if none is kept."""
+    kept = (path.parent / "__pycache__").glob(f"{path.stem}.*-pytest-*.pyc")
+    return sys.dont_write_bytecode or any(one.stat().st_mtime >= path.stat().st_mtime for one in kept)
 
 
 # Properties are tried on the same examples every time. GRANULAR_RESPONSE_FUZZ=5000 tries as many new ones of each.

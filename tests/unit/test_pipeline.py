@@ -19,9 +19,11 @@ from granular_response.store import files as store
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 
-PIPELINE = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
-GROUPS = yaml.safe_load((SOURCE / "granular_response/paper/groups/groups.json").read_text())["groups"]
-PARAMETERS = yaml.safe_load((ROOT / "params.yaml").read_text())
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
+
+PIPELINE = yaml.load((ROOT / "dvc.yaml").read_text(), LOADER)["stages"]
+GROUPS = json.loads((SOURCE / "granular_response/paper/groups/groups.json").read_text())["groups"]
+PARAMETERS = yaml.load((ROOT / "params.yaml").read_text(), LOADER)
 
 SIMULATION = [
     "granular_response.paper.pipeline.simulation",

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import reduced
-import yaml
 
 from granular_response.paper.groups.stability import draw as figures
 from granular_response.paper.groups.stability import simulate as stability
+from granular_response.paper.pipeline import simulation
 from granular_response.paper.trials import closed_forms, random_scenes, time_steps
 from granular_response.paper.trials.rounding import disturb
 from granular_response.paper.trials.time_steps import SETTLES, StepTrial, scene_of
@@ -17,7 +17,7 @@ from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
 from granular_response.state import Reached
 
-PARAMETERS = yaml.safe_load((Path(__file__).parents[2] / "params.yaml").read_text())["stability"]
+PARAMETERS = simulation.parameters("stability", Path(__file__).parents[2] / "params.yaml")[0]
 SEED = PARAMETERS["seed"]
 INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 SMALL = {"packing": {"kind": "slab", "layers": 4, "disks_per_row": 7}, "loads": []}
