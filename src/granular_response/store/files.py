@@ -3,9 +3,9 @@
 ``write`` and ``read`` are the only way in and out. A file holds one dataset, or one group for each dataset
 of a study. Plain ``xarray.open_dataset(path, group=...)`` reads it without this package.
 
-The HDF5 library does not recover from running out of space: it keeps the file open and locked for the life
-of the process. So the file is made in memory and reaches the disk through ``atomic``, with plain writes and
-plain errors. Its bytes depend on the data alone.
+The HDF5 library does not recover from running out of space: it gives no reason, and keeps the file open and locked for
+the life of the process. So it makes the file in a folder for temporary files, and the bytes reach their place through
+``atomic``, with plain writes and plain errors. They depend on the data alone.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +22,7 @@ import netCDF4
 import numpy as np
 
 from .. import __version__
-from . import atomic, hdf5_image
+from . import atomic
 from .labelled import Labelled, labelled
 
 if TYPE_CHECKING:  # whoever writes without reading does not wait for it
@@ -82,9 +83,9 @@ def write(
     marks = {"format": FORMAT, "package_version": __version__}
     root = Labelled(root.variables, root.coordinates, {**root.attributes, **(attributes or {}), **marks})
     groups = {"": root, **groups}
-    data = _image(path, groups)
-    data += _SEAL + hashlib.sha256(data).digest()
     try:
+        data = _made(path, groups)
+        data += _SEAL + hashlib.sha256(data).digest()
         path.parent.mkdir(parents=True, exist_ok=True)
         atomic.write_bytes(path, data, check=lambda written: _verify(path, written, groups))
     except OSError as error:
@@ -149,18 +150,21 @@ def _check(path: Path, group: str, parts: Labelled) -> None:
                 raise _error(path, f"{where} needs the attribute {label} (units: '1' in reduced units)")
 
 
-def _image(path: Path, groups: Mapping[str, Labelled]) -> bytes:
+def _made(path: Path, groups: Mapping[str, Labelled]) -> bytes:
     """The file as bytes."""
-    file = netCDF4.Dataset(_NO_NAME, mode="w", format="NETCDF4", memory=1)
-    try:
-        for name, parts in groups.items():
-            try:
-                _dump(parts, file.createGroup(name) if name else file)
-            except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
-                raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
-    finally:
-        image = file.close()
-    return hdf5_image.plain_bytes(image)
+    with tempfile.TemporaryDirectory(prefix="granular_response_") as folder:
+        made = Path(folder) / "made.nc"
+        try:
+            with netCDF4.Dataset(made, mode="w", format="NETCDF4") as file:
+                for name, parts in groups.items():
+                    try:
+                        _dump(parts, file.createGroup(name) if name else file)
+                    except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
+                        raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
+            return made.read_bytes()
+        except RuntimeError as error:
+            os.truncate(made, 0)  # HDF5 keeps it open, so its space would not be given back
+            raise _error(path, f"cannot be written: {error}; is there space in {tempfile.gettempdir()}?") from error
 
 
 def _dump(parts: Labelled, group: netCDF4.Dataset) -> None:
@@ -216,15 +220,17 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
         raise _error(path, "is empty")
     if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
         raise _error(path, "is not a netCDF-4 file")
-    if not _check_seal(path, data) and sealed:
-        if any(layout.encode() in data for layout in _READ):
-            raise _error(path, "is truncated or damaged, or another program has written it anew")
-        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
+    has_seal = _check_seal(path, data)  # before the HDF5 library sees damaged bytes, which can end the process
     try:
         dataset = netCDF4.Dataset(_NO_NAME, mode="r", memory=data)
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
     except Exception as error:  # damage can surface as nearly any kind of error
         raise _error(path, "is truncated or damaged") from error
+    if sealed and not has_seal:
+        dataset.close()
+        if attributes.get("format") in _READ:
+            raise _error(path, "is truncated or damaged, or another program has written it anew")
+        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
     by_xarray = not sealed and attributes.get("package") == "granular_response" and "format" not in attributes
     if attributes.get("format") not in _READ and not by_xarray:
         dataset.close()
@@ -238,11 +244,9 @@ def is_sealed(path: str | os.PathLike[str]) -> bool:
 
 
 def _check_seal(path: str | os.PathLike[str], data: bytes) -> bool:
-    """Whether there is a digest. Raises StoreError if it is wrong, or the file not as long as it says."""
+    """Whether there is a digest. Raises StoreError if it is wrong."""
     start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
     if data[start : start + len(_SEAL)] != _SEAL or start < 0:
-        if not hdf5_image.is_complete(data):
-            raise _error(path, "is truncated or damaged")
         return False
     if hashlib.sha256(memoryview(data)[:start]).digest() != data[start + len(_SEAL) :]:
         raise _error(path, "is damaged: its digest differs from the one made when it was written")
