@@ -83,9 +83,9 @@ def write(
     marks = {"format": FORMAT, "package_version": __version__}
     root = Labelled(root.variables, root.coordinates, {**root.attributes, **(attributes or {}), **marks})
     groups = {"": root, **groups}
+    data = _made(path, groups)
+    data += _SEAL + hashlib.sha256(data).digest()
     try:
-        data = _made(path, groups)
-        data += _SEAL + hashlib.sha256(data).digest()
         path.parent.mkdir(parents=True, exist_ok=True)
         atomic.write_bytes(path, data, check=lambda written: _verify(path, written, groups))
     except OSError as error:
@@ -152,19 +152,26 @@ def _check(path: Path, group: str, parts: Labelled) -> None:
 
 def _made(path: Path, groups: Mapping[str, Labelled]) -> bytes:
     """The file as bytes."""
-    with tempfile.TemporaryDirectory(prefix="granular_response_") as folder:
-        made = Path(folder) / "made.nc"
+    try:
+        with tempfile.TemporaryDirectory(prefix="granular_response_") as folder:
+            made = Path(folder) / "made.nc"
+            try:
+                with netCDF4.Dataset(made, mode="w", format="NETCDF4") as file:
+                    _fill(file, path, groups)
+                return made.read_bytes()
+            except RuntimeError:
+                os.truncate(made, 0)  # HDF5 keeps it open, so its space would not be given back
+                raise
+    except (OSError, RuntimeError) as error:
+        raise _error(path, f"cannot be written: {error}; is there space in {tempfile.gettempdir()}?") from error
+
+
+def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, Labelled]) -> None:
+    for name, parts in groups.items():
         try:
-            with netCDF4.Dataset(made, mode="w", format="NETCDF4") as file:
-                for name, parts in groups.items():
-                    try:
-                        _dump(parts, file.createGroup(name) if name else file)
-                    except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
-                        raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
-            return made.read_bytes()
-        except RuntimeError as error:
-            os.truncate(made, 0)  # HDF5 keeps it open, so its space would not be given back
-            raise _error(path, f"cannot be written: {error}; is there space in {tempfile.gettempdir()}?") from error
+            _dump(parts, file.createGroup(name) if name else file)
+        except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
+            raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
 
 
 def _dump(parts: Labelled, group: netCDF4.Dataset) -> None:
