@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 from granular_response.observe.positive import check_positive
 
+from ..errors import GranularError
 
-class EventNotBracketed(ValueError):
+
+class EventNotBracketed(GranularError, ValueError):
     """The predicate says the same at both ends, so no event is known to lie between them."""
 
 

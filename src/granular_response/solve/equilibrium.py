@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..errors import SolveError
 from ..state import OPEN, Certificate, FloatArray, State
 from .line_search import shortened
 from .linear import Factor
@@ -30,7 +31,7 @@ FLAT = 0.1
 LONGEST_STEP = 0.05
 
 
-class EquilibriumError(RuntimeError):
+class EquilibriumError(SolveError, RuntimeError):
     """No static equilibrium was found near the start."""
 
 

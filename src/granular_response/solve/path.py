@@ -24,6 +24,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..errors import SolveError
 from ..state import Crossing, FloatArray, Reached, State
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .equilibrium import certify, external_force
@@ -90,7 +91,7 @@ TRIAL_TIME = 20.0
 TRIAL_INTEGRATOR, TRIAL_STEP = "leapfrog", 0.9
 
 
-class PathError(RuntimeError):
+class PathError(SolveError, RuntimeError):
     """The load path could not be continued."""
 
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..errors import GranularError
 from ..state import FloatArray, Reached, State
 from .choice import stop_energy
 from .dynamics import Dynamics, Stop
@@ -34,7 +35,7 @@ LISTED_AGAIN = 0.1
 SHORTEST_RAMP = 1.0
 
 
-class Collapsed(RuntimeError):
+class Collapsed(GranularError, RuntimeError):
     """The load has pushed its disk down farther than allowed, to ``height``."""
 
     def __init__(self, load: float, height: float) -> None:

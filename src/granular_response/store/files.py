@@ -22,6 +22,7 @@ import netCDF4
 import numpy as np
 
 from .. import __version__
+from ..errors import GranularError
 from . import atomic
 from .labelled import Labelled, labelled
 
@@ -42,7 +43,7 @@ _SEAL = b"granular_response sha256 "
 _GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
 
 
-class StoreError(Exception):
+class StoreError(GranularError, OSError):
     """A file that cannot be written or read as a dataset. The message is one line, first the path."""
 
 
@@ -87,7 +88,7 @@ def write(
     data += _SEAL + hashlib.sha256(data).digest()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        atomic.write_bytes(path, data, check=lambda written: _verify(path, written, groups))
+        atomic.write_bytes(path, data, check=lambda written: _verify(written, groups))
     except OSError as error:
         raise _error(path, f"cannot be written: {error.strerror or error}") from error
 
@@ -162,6 +163,8 @@ def _made(path: Path, groups: Mapping[str, Labelled]) -> bytes:
             except RuntimeError:
                 os.truncate(made, 0)  # HDF5 keeps it open, so its space would not be given back
                 raise
+    except StoreError:
+        raise
     except (OSError, RuntimeError) as error:
         raise _error(path, f"cannot be written: {error}; is there space in {tempfile.gettempdir()}?") from error
 
@@ -203,17 +206,17 @@ def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
         group.setncattr(name, value)
 
 
-def _verify(path: Path, data: bytes, groups: Mapping[str, Labelled]) -> None:
-    """Decode every variable of every group once before the file counts."""
+def _verify(data: bytes, groups: Mapping[str, Labelled]) -> None:
+    """Decode every variable of every group once before the file counts; raises OSError if one cannot be."""
     try:
         with netCDF4.Dataset(_NO_NAME, mode="r", memory=data) as file:
             for name, parts in groups.items():
                 group = file[name] if name else file
                 for key, variable in parts.variables.items():
                     if group[key][...].shape != variable.values.shape:
-                        raise _error(path, f"variable {name}/{key} reads back with another shape")
-    except (OSError, RuntimeError, IndexError, KeyError) as error:
-        raise _error(path, f"does not read back: {error}") from error
+                        raise OSError(f"variable {name}/{key} reads back with another shape")
+    except (RuntimeError, IndexError, KeyError) as error:
+        raise OSError(f"it does not read back: {error}") from error
 
 
 def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
