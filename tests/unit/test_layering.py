@@ -71,6 +71,14 @@ def outside_imports(part: Path) -> dict[str, str]:
     return found
 
 
+def test_the_library_imports_its_own_by_relative_names():
+    for path in sorted(PACKAGE.rglob("*.py")):
+        if "paper" not in path.relative_to(PACKAGE).parts:
+            nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
+            absolute = [str(node.module) for node in nodes if node.level == 0]
+            assert not [name for name in absolute if name.startswith("granular_response")], path
+
+
 PARTS = sorted(
     p for p in PACKAGE.iterdir() if (p.suffix == ".py" or (p / "__init__.py").exists()) and p.stem[:2] != "__"
 )

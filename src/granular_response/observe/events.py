@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from granular_response.observe.positive import check_positive
-
 from ..errors import GranularError
+from .positive import check_positive
 
 
 class EventNotBracketed(GranularError, ValueError):
