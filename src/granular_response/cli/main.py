@@ -146,7 +146,7 @@ def run(
     import time
 
     from ..api.terminal import TerminalProgress
-    from ..scene import Scene
+    from ..scene import Scene, SceneError
     from ..store import files as store
 
     started = time.perf_counter()
@@ -163,7 +163,7 @@ def run(
     try:
         with using(threads or cores()), TerminalProgress() as progress:
             solution = solve_scene(described, progress=progress)
-    except SOLVE_ERRORS as error:
+    except (SceneError, *SOLVE_ERRORS) as error:
         if not str(error).startswith(str(scene)):
             error.args = (f"{scene}: {error}", *error.args[1:])
         raise
