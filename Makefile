@@ -8,6 +8,7 @@ JOBS ?= $(shell expr $(CORES) + 2)
 WORKERS ?= $(shell expr \( $(CORES) + 1 \) / 2)
 REPRO ?=
 EXAMPLES ?= 1000
+BROKEN ?= 10000
 
 VENV := $(CURDIR)/.venv
 BIN := $(VENV)/bin
@@ -29,7 +30,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure survey test fuzz coverage lint docs notebooks archive restore package matrix
+.PHONY: help setup reproduce quote figure survey test fuzz broken coverage lint docs notebooks archive restore package matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -89,6 +90,9 @@ test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two p
 
 fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) "$(BIN)/python" -m pytest -m hypothesis -n $(JOBS)
+
+broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (half an hour)
+	"$(BIN)/python" tests/unit/broken_files.py $(BROKEN)
 
 coverage: setup ## Unit tests with compilation off, so that kernels count too
 	NUMBA_DISABLE_JIT=1 "$(BIN)/coverage" run -m pytest tests/unit

@@ -154,6 +154,9 @@ DAMAGE = {
     "no width": (lambda d: d.assign_attrs(width="wide"), "attribute width"),
     "other sides": (lambda d: d.assign_attrs(sides="open"), "attribute sides: must be walls or periodic"),
     "no JSON": (lambda d: d.assign_attrs(method="{"), "attribute method: must be a mapping as JSON"),
+    "deep JSON": (lambda d: d.assign_attrs(method="[" * 100_000 + "]" * 100_000), "attribute method: must be"),
+    "far away": (lambda d: spoil(d, "position", 1e300), "variable position: must be at most 1e+09 mean radii away"),
+    "too wide": (lambda d: d.assign_attrs(width=1e300), "attribute width: must be a number greater than 0, at most"),
 }
 
 

@@ -1,5 +1,6 @@
 """Packings from other programs, and back."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -548,3 +549,18 @@ def test_a_start_deep_inside_others_is_asked_about(tmp_path):
     lattice = {"kind": "slab", "layers": 3, "disks_per_row": 5, "polydispersity": 0.9}
     with pytest.raises(SceneError, match=r"take lattice_constant touching-largest or less polydispersity$"):
         solve_scene(Scene.from_dict({"packing": lattice, "loads": []}))
+
+
+@pytest.mark.parametrize("name", [f"a{suffix}" for suffix, _ in ENDINGS.values()])
+def test_devices_and_pipes_are_not_read(tmp_path, name):
+    """A device has no end, and a pipe nobody writes to waits for ever."""
+    (tmp_path / f"zero_{name}").symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / f"pipe_{name}")
+    for kind in ("zero", "pipe"):
+        with pytest.raises(SceneError, match=r": is not a regular file$"):
+            build(tmp_path / f"{kind}_{name}", width=3.0)
+        for arguments in (["run"], ["show"]):
+            output = ["-o", "a.nc"] if arguments == ["run"] else []
+            finished = call(*arguments, f"{kind}_{name}", *output, folder=tmp_path)
+            assert finished.returncode == 2 and finished.stderr.count("\n") == 1
+            assert finished.stderr.endswith(": cannot be read: is not a regular file\n")

@@ -1,5 +1,6 @@
 """What commands write: never over their inputs, never in place of what is no regular file."""
 
+import errno
 import fcntl
 import os
 import resource
@@ -217,3 +218,32 @@ def test_writers_of_one_file_all_succeed(tmp_path):
     content = (tmp_path / "a.bin").read_bytes()
     assert len(content) == 1000 and len(set(content)) == 1
     assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]
+
+
+@pytest.mark.parametrize("ending", ["folder", "read-only"])
+def test_what_was_computed_is_kept_where_its_file_cannot_be_written(tmp_path, monkeypatch, ending):
+    """After a long run the name may be a folder, or the disk full."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "out").mkdir()
+    path = tmp_path / "out" / "a.nc"
+    if ending == "folder":
+        path.mkdir()
+    else:
+        write = atomic.write_bytes
+
+        def full(target, *given, **kind):
+            if Path(target).parent == path.parent:
+                raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+            write(target, *given, **kind)
+
+        monkeypatch.setattr(atomic, "write_bytes", full)
+    data = xr.Dataset({"a": ("x", [1.0, 2.0], {"long_name": "a", "units": "1"})})
+    with pytest.raises(StoreError) as caught:
+        store.write(path, data, keep=True)
+    said, _, place = str(caught.value).partition("; what was computed is kept as ")
+    assert said.startswith(f"{path}: cannot be written: ") and Path(place).name.startswith("a.kept-")
+    assert Path(place).parent == (path.parent if ending == "folder" else Path())
+    xr.testing.assert_equal(store.read(place)[""], data)
+    with pytest.raises(StoreError) as caught:
+        store.write(path, data)
+    assert "what was computed" not in str(caught.value)

@@ -98,7 +98,7 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
     from ..store import files as store
     from ..store.result import to_labelled
 
-    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
     typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
     for remark in solution.remarks:
         typer.echo(f"granular-response: {output}: {remark}", err=True)
@@ -249,15 +249,22 @@ def simulate(
 
     _loaded()
 
-    with TerminalProgress() as progress:
-        path = simulation.simulate(
-            group,
-            output,
-            parameter_file=params,
-            workers=workers,
-            scheduler=scheduler,
-            progress=progress,
-        )
+    if before := simulation.finished(group, output):
+        typer.echo(f"granular-response: {group} goes on from {before} finished tasks of an earlier run", err=True)
+    try:
+        with TerminalProgress() as progress:
+            path = simulation.simulate(
+                group,
+                output,
+                parameter_file=params,
+                workers=workers,
+                scheduler=scheduler,
+                progress=progress,
+            )
+    except KeyboardInterrupt:
+        if count := simulation.finished(group, output):
+            typer.echo(f"granular-response: interrupted; run again, it goes on from {count} finished tasks", err=True)
+        raise
     typer.echo(str(path))
 
 
@@ -547,6 +554,12 @@ def _speak_any_name() -> None:
                 stream.reconfigure(errors="backslashreplace")
 
 
+def _forget_no_width() -> None:
+    """A terminal of 0 columns, as some say that do not know, would show nothing: the usual width is taken."""
+    if not os.environ.get("COLUMNS", "1").strip("0 "):
+        del os.environ["COLUMNS"]
+
+
 def _hush() -> None:
     """What standard output still holds goes nowhere, so that the end of the process does not try again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
@@ -575,6 +588,7 @@ def main() -> None:
     gc.disable()
     warnings.formatwarning = lambda message, *_, **__: f"granular-response: {message}\n"
     _speak_any_name()
+    _forget_no_width()
     without_dask.hide()
     try:
         try:

@@ -12,6 +12,7 @@ from typing import Any
 from granular_response.paper.groups import NAMES
 from granular_response.paper.pipeline import group_member, simulation
 from granular_response.scene import text
+from granular_response.scene.inputs import read_text
 from granular_response.store import atomic
 
 #: The groups at a size that takes seconds.
@@ -72,7 +73,7 @@ def _notebook(group: str, own: Path, reduced: Path) -> dict[str, Any]:
         _cell("code", f"reduced = {_literal(small)}"),
     ]
     if "survey" in full:
-        sections = text.read(reduced.read_text(encoding="utf-8"))
+        sections = text.read(read_text(reduced))
         cells += [
             _cell("markdown", "It reads the survey of disordered slabs (`make survey`), here a small one."),
             _cell("code", _surveyed(sections["survey"], Path(small["survey"]).parent)),

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
 from ..state import FloatArray
+from ..state.box import FARTHEST
 from . import formats
 from .base import Description, Positive, Sides, Vector, allowed
 from .errors import Problem, SceneError, describe, show
@@ -21,9 +22,8 @@ from .packing import Packing, exact_mean
 _FORMATS = " or ".join(formats.SUFFIXES)
 #: By which lengths of a file may be off, relatively: some formats have single precision.
 _ROUNDING = 1e-6
-#: Least mass and radius of a disk as parts of the largest, and farthest place in radii of the mean disk: beyond these,
-#: what a disk does is lost in the rounding of the others.
-LEAST_MASS, LEAST_RADIUS, FARTHEST = 1e-12, 1e-6, 1e9
+#: Least mass and radius of a disk as parts of the largest: what a smaller one does is lost in the rounding of others.
+LEAST_MASS, LEAST_RADIUS = 1e-12, 1e-6
 
 
 def _printable(text: str) -> str:

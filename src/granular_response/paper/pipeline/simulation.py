@@ -16,6 +16,7 @@ from granular_response.paper.parameters import Common
 from granular_response.paper.pipeline import GroupError, data_path, group_member
 from granular_response.scene import SceneError, text
 from granular_response.scene.base import Description
+from granular_response.scene.inputs import read_text
 from granular_response.store import files as store
 from granular_response.sweeps.resources import Progress, using
 
@@ -39,7 +40,7 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
     """
     kind: type[Description] = group_member(group, "parameters", "Parameters")
     try:
-        sections = deepcopy(_read(path.read_text(encoding="utf-8")))
+        sections = deepcopy(_read(read_text(path)))
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
     except UnicodeDecodeError:
@@ -94,7 +95,7 @@ def simulate(
     given, described = parameters(group, parameter_file)
     output = output or data_path(group)
     store.check_writable(output, [parameter_file])
-    kept = output.parent / f".{output.stem}.checkpoint"
+    kept = _checkpoint(output)
     rest_states = output.parent.absolute() / REST_STATES
     resources = using(workers=workers, scheduler=scheduler, progress=progress, checkpoint=kept, rest_states=rest_states)
     with _alone(kept, output), resources:
@@ -102,9 +103,18 @@ def simulate(
             datasets = function(described)
         except SceneError as error:
             raise SceneError(f"{parameter_file}: section {group}: {error}") from error
-        store.write(output, datasets, {"group": group, "parameters": text.write(given)})
+        store.write(output, datasets, {"group": group, "parameters": text.write(given)}, keep=True)
         shutil.rmtree(kept, ignore_errors=True)
     return output
+
+
+def finished(group: str, output: Path | None = None) -> int:
+    """How many tasks a run that ended early has left finished, which the next one takes over if nothing has changed."""
+    return sum(path.is_file() for path in _checkpoint(output or data_path(group)).rglob("*.npz"))
+
+
+def _checkpoint(output: Path) -> Path:
+    return output.parent / f".{output.stem}.checkpoint"
 
 
 @contextmanager
