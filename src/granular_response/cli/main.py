@@ -320,9 +320,10 @@ def show(
     from rich.console import Console
     from rich.text import Text
 
+    from ..api.terminal import columns
     from ..store.summary import summarise
 
-    console = Console(highlight=False, markup=False, emoji=False)
+    console = Console(highlight=False, markup=False, emoji=False, width=columns())
     for part in summarise(file):
         console.print(part, soft_wrap=isinstance(part, Text))
 
@@ -554,12 +555,6 @@ def _speak_any_name() -> None:
                 stream.reconfigure(errors="backslashreplace")
 
 
-def _forget_no_width() -> None:
-    """A terminal of 0 columns, as some say that do not know, would show nothing: the usual width is taken."""
-    if not os.environ.get("COLUMNS", "1").strip("0 "):
-        del os.environ["COLUMNS"]
-
-
 def _hush() -> None:
     """What standard output still holds goes nowhere, so that the end of the process does not try again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
@@ -588,7 +583,6 @@ def main() -> None:
     gc.disable()
     warnings.formatwarning = lambda message, *_, **__: f"granular-response: {message}\n"
     _speak_any_name()
-    _forget_no_width()
     without_dask.hide()
     try:
         try:

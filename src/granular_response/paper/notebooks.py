@@ -9,10 +9,10 @@ from pathlib import Path
 from pprint import pformat
 from typing import Any
 
+from granular_response.inputs import read_text
 from granular_response.paper.groups import NAMES
 from granular_response.paper.pipeline import group_member, simulation
 from granular_response.scene import text
-from granular_response.scene.inputs import read_text
 from granular_response.store import atomic
 
 #: The groups at a size that takes seconds.

@@ -11,10 +11,10 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from ..inputs import read_text
 from . import text as yaml_text
 from .base import MOST_STIFFNESS, PACKING_KINDS, Description
 from .errors import Problem, SceneError, from_validation, show, show_key, suggestion
-from .inputs import read_text
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, check_disk
 from .material import Contact, Wall

@@ -24,7 +24,7 @@ import netCDF4
 import numpy as np
 
 from .. import __version__
-from ..scene.inputs import check_regular
+from ..inputs import check_regular
 from . import atomic, hdf5_image
 from .labelled import Labelled, labelled
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ..scene.inputs import read_text
+from ..inputs import read_text
 from . import atomic
 
 

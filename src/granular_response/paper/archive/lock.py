@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from granular_response.inputs import read_text
 from granular_response.paper.archive import ArchiveError
 from granular_response.paper.groups import NAMES
 from granular_response.scene import SceneError, text
-from granular_response.scene.inputs import read_text
 
 LOCK, PIPELINE, IGNORED = "dvc.lock", "dvc.yaml", ".dvcignore"
 

@@ -9,9 +9,9 @@ import zipfile
 import zlib
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
+from granular_response.inputs import check_regular
 from granular_response.paper.archive import ArchiveError, lock
 from granular_response.paper.archive.lock import Item
-from granular_response.scene.inputs import check_regular
 from granular_response.store import atomic
 from granular_response.store import files as store
 

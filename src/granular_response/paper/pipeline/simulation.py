@@ -12,11 +12,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from granular_response.inputs import read_text
 from granular_response.paper.parameters import Common
 from granular_response.paper.pipeline import GroupError, data_path, group_member
 from granular_response.scene import SceneError, text
 from granular_response.scene.base import Description
-from granular_response.scene.inputs import read_text
 from granular_response.store import files as store
 from granular_response.sweeps.resources import Progress, using
 

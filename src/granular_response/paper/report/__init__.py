@@ -17,7 +17,7 @@ import jinja2
 import xarray as xr
 
 from granular_response import __version__
-from granular_response.scene.inputs import read_json
+from granular_response.inputs import read_json
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from granular_response.scene.inputs import read_json
+from granular_response.inputs import read_json
 
 from . import pictures
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from PIL import Image
 
+from granular_response.inputs import read_json
 from granular_response.machine import threads
 from granular_response.paper import captions
-from granular_response.scene.inputs import read_json
 
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
 SHOWN = 0.62

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..inputs import check_regular
+from ...inputs import check_regular
 from .table import FileBox, FormatError, Table, upward
 
 _REASON = "a GSD file does not say what bounds its particles"

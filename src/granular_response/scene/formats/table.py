@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ...inputs import read_text
 from ...state import FloatArray
-from ..inputs import read_text
 
 
 class FormatError(ValueError):
