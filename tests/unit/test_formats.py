@@ -521,6 +521,8 @@ def test_a_bond_to_nowhere_and_half_a_log_are_one_line(tmp_path):
         ("1e300,1,1,1", "x = 1e+300: must be between the side walls 0 and 9"),
         ("4,1e300,1,1", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
         ("4,1,1,1e300", "line 2: mass = 1.0: must be at least 1e+288, 1e-12 of the largest"),
+        ("4,1,1e300,1", "line 3: radius = 1e+300: must be at most 4.5, half the width of the box"),
+        ("4,1,-1e300,1", "line 3: radius = -1e+300: must be greater than 0"),
         ("4,1,1,1e-13", "line 3: mass = 1e-13: must be at least 1e-12, 1e-12 of the largest"),
         ("4,1,1e-7,1", "line 3: radius = 1e-07: must be at least 1e-06, a millionth of the largest"),
     ],

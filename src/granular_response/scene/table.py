@@ -123,9 +123,11 @@ class FilePacking(Description):
         radius, places = table.radius, table.places
         left, floor, width = self._sides(table.box)
         x, z = table.x - left, table.z - floor
-        mass = radius**2 if table.mass is None else table.mass
-        finite = np.isfinite([table.x, table.z, radius, mass]).all(axis=0)
-        self._check("radius", radius, finite & (radius > 0.0), "must be greater than 0", places)
+        for name, values in (("x", x), ("z", z), ("radius", radius)):
+            self._check(name, values, np.isfinite(values), "must be a finite number", places)
+        self._check("radius", radius, radius > 0.0, "must be greater than 0", places)
+        mass = (radius / radius.max()) ** 2 if table.mass is None else table.mass
+        self._check("mass", mass, np.isfinite(mass), "must be a finite number", places)
         mean = exact_mean(radius)
         far = FARTHEST * mean
         if width > far:
@@ -136,8 +138,8 @@ class FilePacking(Description):
         wide = half * (1.0 + _ROUNDING)
         large, heavy = LEAST_RADIUS * radius.max(), LEAST_MASS * mass.max()
         for name, values, good, rule in (
-            ("radius", radius, radius >= large, f"must be at least {large:g}, a millionth of the largest"),
             ("radius", radius, radius <= wide, f"must be at most {half:g}, half the width of the box"),
+            ("radius", radius, radius >= large, f"must be at least {large:g}, a millionth of the largest"),
             ("x", x, self.periodic | ((x > 0.0) & (x < width)), f"must be between the side walls 0 and {width:g}"),
             ("z", z, z > 0.0, "must be above the floor 0"),
             ("z", z, z <= far, f"must be at most {far:g}, 1e9 mean radii"),
@@ -190,7 +192,8 @@ class FilePacking(Description):
 
     def _read(self) -> formats.Table:
         try:
-            return formats.read(self.file, self.format or formats.by_suffix(self.path))
+            with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused where it stands
+                return formats.read(self.file, self.format or formats.by_suffix(self.path))
         except formats.FormatError as error:
             raise self._error(str(error), error.place) from None
         except FileNotFoundError:
