@@ -284,10 +284,11 @@ def draw(
 
     _loaded()
 
+    numbers = measuring.measure(group, data) if measured else None  # first: they do not wait for pictures
     for path in drawing.draw(group, data, output):
         typer.echo(str(path))
-    if measured:
-        typer.echo(str(measuring.measure(group, data)))
+    if numbers is not None:
+        typer.echo(str(numbers))
 
 
 @_command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")

@@ -14,10 +14,11 @@ from typing import Any
 
 from granular_response.inputs import read_text
 from granular_response.paper.parameters import Common
-from granular_response.paper.pipeline import GroupError, data_path, group_member
+from granular_response.paper.pipeline import TOO_LITTLE, GroupError, data_path, group_member
 from granular_response.scene import SceneError, text
 from granular_response.scene.base import Description
 from granular_response.store import files as store
+from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Progress, using
 
 PARAMETERS = Path("params.yaml")
@@ -89,7 +90,8 @@ def simulate(
     Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
     continues; rest states are kept there for other groups.
 
-    Raises what ``parameters`` raises, and GroupError while another run makes the same file.
+    Raises what ``parameters`` raises, and GroupError while another run makes the same file, or where its parameters
+    leave nothing to be measured.
     """
     function = group_member(group, "simulate", "simulate")
     given, described = parameters(group, parameter_file)
@@ -103,6 +105,11 @@ def simulate(
             datasets = function(described)
         except SceneError as error:
             raise SceneError(f"{parameter_file}: section {group}: {error}") from error
+        except (*TOO_LITTLE, SweepError) as error:
+            if isinstance(error, SweepError) and not isinstance(error.__cause__, TOO_LITTLE):
+                raise
+            problem = " ".join(str(error).split())
+            raise GroupError(f"{parameter_file}: section {group} cannot be measured: {problem}") from error
         store.write(output, datasets, {"group": group, "parameters": text.write(given)}, keep=True)
         shutil.rmtree(kept, ignore_errors=True)
     return output
