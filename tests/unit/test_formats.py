@@ -502,10 +502,10 @@ def test_a_bond_to_nowhere_and_half_a_log_are_one_line(tmp_path):
     whole = {"origin": [0.0, 0.0, 0.0], "box_width": [10.0], "periodic": [0]}
     assert build(written(**whole)).width * 1.25 == 10
     for part, said in (
-        ({"box_width": []}, "log entries origin, box_width, periodic: must be 3, 1 and 1 numbers"),
+        ({"box_width": []}, "chunk log/box_width: has 0 values, must have 1"),
         ({"box_width": [np.nan]}, "log entries origin, box_width, periodic: must be places, a width and 0 or 1"),
         ({"periodic": [7]}, "log entries origin, box_width, periodic: must be places, a width and 0 or 1"),
-        ({"origin": [0.0]}, "log entries origin, box_width, periodic: must be 3, 1 and 1 numbers"),
+        ({"origin": [0.0]}, "chunk log/origin: has 1 values, must have 3"),
     ):
         with pytest.raises(SceneError) as caught:
             build(written(**{**whole, **part}))
@@ -566,3 +566,42 @@ def test_devices_and_pipes_are_not_read(tmp_path, name):
             finished = call(*arguments, f"{kind}_{name}", *output, folder=tmp_path)
             assert finished.returncode == 2 and finished.stderr.count("\n") == 1
             assert finished.stderr.endswith(": cannot be read: is not a regular file\n")
+
+
+def test_gsd_takes_from_the_first_frame_what_the_last_one_leaves_out(tmp_path):
+    """As the library of the format does."""
+    hoomd = pytest.importorskip("gsd.hoomd")
+    with hoomd.open(str(tmp_path / "a.gsd"), "w") as file:
+        for lift in (0.0, 0.25):
+            frame = hoomd.Frame()
+            frame.configuration.box = [10, 8, 0, 0, 0, 0]
+            frame.particles.N = 2
+            frame.particles.position = [[-4, -3 + lift, 0], [-1, -2.5 + lift, 0]]
+            frame.particles.diameter = [2, 3]
+            frame.particles.mass = [4, 1]
+            file.append(frame)
+    with hoomd.open(str(tmp_path / "a.gsd"), "r") as file:
+        expected = file[1].particles
+        assert not file.file.chunk_exists(frame=1, name="particles/mass")
+    table = formats.read(tmp_path / "a.gsd", "gsd")
+    np.testing.assert_array_equal(table.radius, 0.5 * expected.diameter)
+    np.testing.assert_array_equal(table.mass, expected.mass)
+    np.testing.assert_array_equal(np.column_stack([table.x, table.z]), expected.position[:, :2])
+
+
+@pytest.mark.filterwarnings("ignore:.*no springs of friction")
+def test_every_damaged_byte_of_a_gsd_file_is_met(periodic, tmp_path):
+    """The library of the format ends the process at some of them."""
+    whole = export(periodic, tmp_path / "a.gsd").read_bytes()
+    refused = 0
+    for at in [*range(56), *range(56, len(whole), 97)]:
+        for bit in (0, 3, 7):
+            damaged = bytearray(whole)
+            damaged[at] ^= 1 << bit
+            (tmp_path / "b.gsd").write_bytes(bytes(damaged))
+            try:
+                build(tmp_path / "b.gsd", sides="periodic")
+            except SceneError as error:
+                assert "\n" not in str(error)
+                refused += 1
+    assert refused > 60

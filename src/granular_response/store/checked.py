@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..state import status
+from ..state import Certificate, status
 from ..state.box import FARTHEST, WALL_MEANINGS
 from . import files
 from .result import ResultError, described_forces, indexed, load_coordinates, state_from
@@ -53,6 +54,7 @@ _CODES = {
     "wall_status": len(status.MEANINGS),
 }
 _POSITIVE = ("radius", "mass")
+_CERTIFICATE = tuple(f"certificate_{field.name}" for field in fields(Certificate))
 _CROSSINGS = {"crossing_start": _REAL, "crossing_end": _REAL, "crossing_displacement": _REAL, "crossing_reason": _TEXT}
 
 
@@ -99,6 +101,9 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
         _fail(f"variable position: must be at most {FARTHEST:g} mean radii away")
     if np.any(dataset["contact_disk"].values == dataset["contact_partner"].values):
         _fail("variables contact_disk, contact_partner: a disk touches itself")
+    if any(name in dataset for name in _CERTIFICATE):
+        for name in _CERTIFICATE:
+            _check_variable(dataset, name, ("state",), _REAL, finite=False)
     found = [name for name in _CROSSINGS if name in dataset]
     for name in _CROSSINGS if found else ():
         _check_variable(dataset, name, ("crossing",), _CROSSINGS[name])
