@@ -28,6 +28,7 @@ import xarray as xr
 import granular_response
 from granular_response.cli import main as cli
 from granular_response.scene import FilePacking, Packing, Scene, SceneError
+from granular_response.scene.formats.table import NO_MASSES
 from granular_response.solve import solve_scene
 from granular_response.store import files as store
 from granular_response.store.export import export
@@ -214,7 +215,7 @@ def outcome(code: int, said: str) -> str:
         return "killed"
     if "Traceback" in said:
         return "traceback"
-    if code == 2 and said.count("\n") != 1:
+    if code == 2 and sum(NO_MASSES not in line for line in said.splitlines()) != 1:  # a remark may come before
         return "several lines"
     if "not enough memory" in said:
         return "too much memory"

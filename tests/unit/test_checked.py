@@ -155,6 +155,7 @@ DAMAGE = {
     "other sides": (lambda d: d.assign_attrs(sides="open"), "attribute sides: must be walls or periodic"),
     "no JSON": (lambda d: d.assign_attrs(method="{"), "attribute method: must be a mapping as JSON"),
     "deep JSON": (lambda d: d.assign_attrs(method="[" * 100_000 + "]" * 100_000), "attribute method: must be"),
+    "no applied force": (lambda d: d.drop_vars("total_force"), "variable total_force is missing"),
     "half a certificate": (lambda d: d.drop_vars("certificate_loose_disks"), "variable certificate_loose_disks is"),
     "far away": (lambda d: spoil(d, "position", 1e300), "variable position: must be at most 1e+09 mean radii away"),
     "too wide": (lambda d: d.assign_attrs(width=1e300), "attribute width: must be a number greater than 0, at most"),

@@ -110,6 +110,8 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
     several = ("load",) if states > 2 else ()
     for name in ("floor_force", "floor_response"):  # nan under a load of nothing
         _check_variable(dataset, name, (*several, "floor_disk"), _REAL, finite=False)
+    if states > 1:
+        _check_variable(dataset, "total_force", several, _REAL)
     if "reaction" in dataset:
         _check_variable(dataset, "reaction", (*several, "load_point", "axis"), _REAL)
     if several and dataset.sizes["load"] != states - 1:
