@@ -185,6 +185,18 @@ ITEM: ATOMS id xs yu z diameter mass
 WALLS = {"width": 10.0, "origin": (10.0, -5.0)}
 
 
+#: A frame whose bounds come last, cut before they do.
+LATE_BOX = """\
+ITEM: TIMESTEP
+0
+ITEM: NUMBER OF ATOMS
+1
+ITEM: ATOMS id x y z radius
+1 5 1 0 1
+ITEM: BOX BOUNDS ff ff pp
+"""
+
+
 def test_lammps_data(tmp_path):
     packing = build(tmp_path / "a.data", DATA, **WALLS)
     scale = 2.5 / 3
@@ -282,6 +294,9 @@ def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
         ("a.data", "", "is not a whole LAMMPS data file"),
         ("a.dump", DUMP.replace("diameter", "size"), "line 19: column radius or diameter is missing"),
         ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),
+        ("a.dump", LATE_BOX, "line 7: must be followed by three lines of bounds, and have flags of three axes or none"),
+        ("a.dump", LATE_BOX + "0 10\n0\n-1 1\n", "line 9: has 1 values, must have lo hi"),
+        ("a.dump", LATE_BOX + "10 0\n0 9\n-1 1\n", "line 8: bounds of the box in x: the upper one must be greater"),
         ("a.dump", "x,z,radius\n", "is not a LAMMPS dump file of text"),
         ("a.dump", DUMP.replace("yu", "vy"), "line 19: column y is missing"),
         ("a.txt", "1 0 1\n", "line 1: has 3 values, must have x y z r"),
@@ -523,6 +538,7 @@ def test_a_bond_to_nowhere_and_half_a_log_are_one_line(tmp_path):
         ("4,1,1,1e300", "line 2: mass = 1.0: must be at least 1e+288, 1e-12 of the largest"),
         ("4,1,1e300,1", "line 3: radius = 1e+300: must be at most 4.5, half the width of the box"),
         ("4,1,-1e300,1", "line 3: radius = -1e+300: must be greater than 0"),
+        ("4,1,1,1e-300", "line 3: mass = 1e-300: must be at least 1e-12, 1e-12 of the largest"),
         ("4,1,1,1e-13", "line 3: mass = 1e-13: must be at least 1e-12, 1e-12 of the largest"),
         ("4,1,1e-7,1", "line 3: radius = 1e-07: must be at least 1e-06, a millionth of the largest"),
     ],
