@@ -415,9 +415,7 @@ def test_masses_come_back_or_it_is_said(tmp_path, name):
     gr.solve({"packing": packing, **smooth}).save(tmp_path / "a.nc")
     path = tmp_path / f"a{ENDINGS[name][0]}"
     if name == "yade":
-        with pytest.warns(
-            UserWarning, match=r"a\.txt: the format has no masses: read again, disks are of one"
-        ):
+        with pytest.warns(UserWarning, match=r"a\.txt: the format has no masses: read again, disks are of one"):
             export(tmp_path / "a.nc", path)
         np.testing.assert_allclose(build(path).mass, [1.8, 0.2, 0.2, 1.8])
         return
