@@ -481,6 +481,8 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     if not same or packed.box != rest.box:
         raise ResultError("the table of disks has changed since the result was made")
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
+    if rest.reached.certificate is None:
+        raise ResultError("holds no certificates, from which a run goes on")
     if loaded and "crossing_start" in dataset:
         columns = [dataset[f"crossing_{field.name}"].values.tolist() for field in fields(Crossing)]
         crossings = tuple(Crossing(*values) for values in zip(*columns, strict=True))
