@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from .base import Count, Description, Flag, NonNegative, Part, Positive, allowed
+from .base import Count, Description, Flag, NonNegative, Positive, allowed
 
 TimeStep = Annotated[
     Annotated[float, Field(strict=True, gt=0)] | Literal["auto"],
@@ -21,7 +21,7 @@ LoadFactors = Annotated[
     Field(min_length=1),
     allowed("must be a list of one or more finite numbers"),
 ]
-Method = Literal["auto", "dynamics", "path", "stages", "minimise"]
+Method = Literal["auto", "dynamics", "path", "minimise"]
 Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
@@ -47,10 +47,8 @@ class Protocol(Description):
     method: Method = Field(
         default="auto",
         description="auto: the cheapest method that is valid for the scene; dynamics: equations of motion "
-        "until rest, as in the paper; path: a sequence of equilibria under a slowly growing "
-        "load; stages: from each load factor to the next by plain static increments, and by dynamics over ramp_time "
-        "where these fail, which is cheaper than a path in disordered packings with friction; "
-        "minimise: the nearest minimum of the energy, for scenes without friction, where stages minimise too.",
+        "until rest, as in the paper; path: equilibria under a slowly growing load, "
+        "from one contact event to the next; minimise: the nearest minimum of the energy, for scenes without friction.",
     )
     load_factors: LoadFactors = Field(
         default=(1.0,),
@@ -63,24 +61,6 @@ class Protocol(Description):
         description="Integrator of the equations of motion: Beeman, velocity Verlet, leapfrog (Verlet whose dashpots "
         "see the velocity half a step earlier, stable for twice the step), or the Gear predictor-corrector with five "
         "values.",
-    )
-    inertia: Literal["disks", "rings"] = Field(
-        default="disks",
-        description="Inertia in the dynamics of stages, which only tends to the quasi-static limit. disks: that of the "
-        "disks; rings: mean mass, and moment of inertia of a ring of the disk's radius, for every disk, while weights "
-        "stay as they are. Turning limits the time step less then, and the step grows with the limit.",
-    )
-    stage_damping: Part = Field(
-        default=1.0,
-        description="Part of all dashpots that is left in the dynamics of stages, which only tends to the quasi-static "
-        "limit. The time step grows with its limit: with a quarter of the dashpots it is more than twice as long. "
-        "Swings last longer, so small loads ask for longer ramps.",
-    )
-    path_tolerance: Positive | None = Field(
-        default=None,
-        description="Error of a floor or wall force, as a part of the load, that the increments of a path may leave by "
-        "their own estimate. Their lengths follow from it, and with 1e-5 there are fewer. With a loose one dynamics "
-        "takes the rest of the way where that costs less. Left out, they are short throughout.",
     )
     time_step: TimeStep | None = Field(
         default=None,

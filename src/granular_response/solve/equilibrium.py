@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..state import OPEN, Certificate, FloatArray, State
-from .line_search import shortened
-from .linear import Factor
 from .problem import Problem
+from .stability import negative_modes
 from .system import Configuration, StaticSystem, Trial
 
 #: Largest force or torque left on any disk, in units of a mean disk weight.
@@ -69,16 +68,13 @@ def newton(
     tolerance: float = TOLERANCE,
     enough: float = ENOUGH,
     maximum_iterations: int = NEWTON_ITERATIONS,
-    runaway: float = np.inf,
 ) -> tuple[Trial, NewtonReport]:
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
     Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
     for a moment). A factorisation serves as long as no contact changes its status and the residual falls
-    tenfold with it. Where contacts go to and fro between two states (they touch with so little force that they slide
-    one way, then the other), a system that brings its factorisation up to date stops between the two.
-    The end is a residual below ``enough``, or below ``tolerance`` where it falls no further, or a step that would move
-    or turn a disk by more than ``runaway`` (mean radii, radians).
+    tenfold with it.
+    The end is a residual below ``enough``, or below ``tolerance`` where it falls no further.
     Returns the last trial and a report; ``report.converged`` says whether it is a solution,
     ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """
@@ -90,22 +86,12 @@ def newton(
     best = size
     stalled = iterations = 0
     slow = False
-    sense = trial.sense
-    before = sense  # the statuses of two trials ago
     while True:
         if size < enough or (size < tolerance and stalled):
             return trial, NewtonReport(True, iterations, size)
-        factor: Factor | None
         try:
-            if system.updated:
-                if iterations == maximum_iterations:
-                    break
-                factor, made = system.updated_factor(trial, anew=slow)
-                iterations += made
-                reused = not made
-            else:
-                factor = None if slow else system.kept_factor(trial)
-                reused = factor is not None
+            factor = None if slow else system.kept_factor(trial)
+            reused = factor is not None
             if factor is not None:
                 step = system.deinterleave(factor.solve(system.interleave(r)))
             else:
@@ -117,8 +103,6 @@ def newton(
             break
         if not np.isfinite(step).all():
             break
-        if float(np.abs(step).max()) > runaway:
-            break
         length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, LONGEST_STEP / length) if length > 0 else 1.0
         for _ in range(6):
@@ -128,17 +112,9 @@ def newton(
             if size_new < 10.0 * size or size_new < tolerance:
                 break
             scale *= 0.5
-        if system.updated:
-            there_and_back = np.array_equal(new.sense, before) and not np.array_equal(new.sense, sense)
-            if there_and_back and scale == 1.0 and (slope := float(r @ step)) > 0.0:
-                step, new = shortened(system, known, external, q, step, slope, full=new, until=FLAT)
-                r_new = new.contact_force + external
-                size_new = float(np.abs(r_new).max())
-            before, sense = sense, new.sense
         slow = reused and size_new > 0.1 * size
         if slow and size_new > size:
-            sense = before = trial.sense  # this step is not taken
-            continue
+            continue  # this step is not taken
         q, trial, r, size = q + scale * step, new, r_new, size_new
         stalled = stalled + 1 if size > 0.5 * best else 0
         best = min(best, size)
@@ -262,6 +238,6 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_I
             f"(largest unbalanced force {report.residual:.1e}); {_cure(problem)}"
         )
     solved = system.state(trial, factor)
-    certificate = certify(problem, solved, modes=system.negative_modes(trial))
+    certificate = certify(problem, solved, modes=negative_modes(system, trial))
     reached = replace(state.reached, newton_iterations=report.iterations, certificate=certificate)
     return replace(solved, reached=reached)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
+from .events import Event
+
 
 @dataclass(frozen=True)
 class Certificate:
@@ -27,16 +29,6 @@ class Certificate:
     def stable(self) -> bool | None:
         """Whether no direction is unstable; None where that was not determined."""
         return None if self.negative_modes is None else self.negative_modes == 0
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """A stretch of load that dynamics crossed: between these load factors the static branch ended."""
-
-    start: float
-    end: float
-    reason: str  #: unstable, no equilibrium, too much work, or rearrangement
-    displacement: float  #: largest displacement of a disk on the way (mean radii)
 
 
 @dataclass(frozen=True)
@@ -66,7 +58,9 @@ class Reached:
     escapes: int | None = None  #: saddles of the energy that were left
     increments: int | None = None  #: of the path so far
     factorisations: int | None = None  #: of the path so far
-    crossings: tuple[Crossing, ...] = ()  #: of the path so far
+    events: tuple[Event, ...] = ()  #: of the path since the state before
+    events_within: float | None = None  #: load within which a path took events together (mean weights)
+    events_error: float | None = None  #: what that leaves out of a floor or wall force, per load, as measured
 
     def after(self, earlier: Reached) -> Reached:
         """This record, and what only the one ``earlier`` knows."""

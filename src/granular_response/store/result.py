@@ -22,7 +22,7 @@ from ..solve.choice import load_method, rest_method
 from ..solve.problem import Problem
 from ..solve.solution import Solution
 from ..solve.timestep import time_step_reason
-from ..state import Box, Certificate, Contacts, Crossing, Reached, State, box, status
+from ..state import CONTACT_EVENTS, LOST_EVENTS, Box, Certificate, Contacts, Event, Reached, State, box, status
 from .labelled import Labelled, Values
 
 if TYPE_CHECKING:
@@ -142,21 +142,67 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
     }
 
 
-def _crossings(loaded: Sequence[State]) -> dict[str, Values]:
-    """Stretches of load that dynamics crossed on the way, none where there were none."""
-    found = list(dict.fromkeys(crossing for state in loaded for crossing in state.reached.crossings))
+#: What is stored of the events of a path.
+_EVENTS = {
+    "load_factor": "load factor at which it happens",
+    "kind": "what happens",
+    "first": "disk that it happens to; the one that moves farthest where an equilibrium is lost",
+    "second": "the other disk, or the wall; -1 where an equilibrium is lost",
+    "at_wall": "whether the contact is with a wall",
+    "x": f"place of the contact, or of the disk {LENGTH}",
+    "z": f"height of the contact, or of the disk {LENGTH}",
+    "until": "load factor at which the path goes on",
+    "displacement": f"largest displacement of a disk from a lost equilibrium to the next {LENGTH}",
+    "reason": "why an equilibrium is lost",
+}
+_EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS
+
+
+def _events(states: Sequence[State]) -> dict[str, Values]:
+    """Events on the way to each state, none where there were none."""
+    found = [(k, event) for k, state in enumerate(states) for event in state.reached.events]
     if not found:
         return {}
-    texts = {
-        "start": "load factor at which statics ended",
-        "end": "load factor at which statics went on",
-        "displacement": f"largest displacement of a disk on the way {LENGTH}",
-        "reason": "why dynamics crossed",
-    }
-    return {
-        f"crossing_{name}": described("crossing", [getattr(c, name) for c in found], text)
-        for name, text in texts.items()
-    }
+    data = {}
+    for name, text in _EVENTS.items():
+        values: Any = [getattr(event, name) for _, event in found]
+        if name == "kind":
+            codes = np.array([_EVENT_KINDS.index(kind) for kind in values], np.int8)
+            data["event_kind"] = described("event", codes, text, **flags(_underlined(_EVENT_KINDS)))
+            continue
+        if name == "reason":
+            values = np.array(values, str)
+        elif name == "at_wall":
+            values = np.array(values, np.int8)
+        data[f"event_{name}"] = described("event", values, text)
+    data["event_state"] = described("event", [k for k, _ in found], "state that the path led to with this event")
+    return data
+
+
+def _underlined(kinds: Sequence[str]) -> list[str]:
+    """Names without spaces, which part the meanings of flags."""
+    return [kind.replace(" ", "_") for kind in kinds]
+
+
+def _events_of(dataset: xr.Dataset, index: int) -> tuple[Event, ...]:
+    """The events on the way to one state."""
+    return _events_from(dataset, dataset.sizes["state"])[index] if "state" in dataset.dims else ()
+
+
+def _events_from(dataset: xr.Dataset, count: int) -> list[tuple[Event, ...]]:
+    """The events on the way to each of ``count`` states; of a file from before events, what it says of lost equilibria."""
+    found: list[list[Event]] = [[] for _ in range(count)]
+    if "event_load_factor" in dataset:
+        columns = {name: dataset[f"event_{name}"].values.tolist() for name in (*_EVENTS, "state")}
+        for row in zip(*columns.values(), strict=True):
+            one = dict(zip(columns, row, strict=True))
+            k = one.pop("state")
+            found[k].append(Event(**{**one, "kind": _EVENT_KINDS[one["kind"]], "at_wall": bool(one["at_wall"])}))
+    elif "crossing_start" in dataset and count > 1:
+        columns = {name: dataset[f"crossing_{name}"].values.tolist() for name in ("start", "end", "displacement", "reason")}
+        for start, end, displacement, reason in zip(*columns.values(), strict=True):
+            found[1].append(Event(start, "jump", until=end, displacement=displacement, reason=str(reason)))
+    return [tuple(events) for events in found]
 
 
 #: What is stored of the record of each state, where it is known for one of them.
@@ -334,7 +380,7 @@ def to_labelled(solution: Solution) -> Labelled:
         **_listed(own, states),
         **_certificates(states, "state"),
         **_reached(states),
-        **_crossings(loaded),
+        **_events([solution.rest, *solution.loaded]),
         "floor_disk": described("floor_disk", disks, "index of the floor disk"),
         "x": described("floor_disk", x, f"rest position from the loaded disk {LENGTH}"),
         "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
@@ -456,7 +502,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         walls=contacts("wall", "wall_index"),
         box=Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic"),
         load_factor=float(one["state_load_factor" if "state_load_factor" in one else "load_factor"]),
-        reached=Reached(certificate=certificate, **_reached_from(one)),
+        reached=Reached(certificate=certificate, events=_events_of(dataset, index), **_reached_from(one)),
     )
 
 
@@ -480,10 +526,6 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     if not same or packed.box != rest.box:
         raise ResultError("the table of disks has changed since the result was made")
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
-    if loaded and "crossing_start" in dataset:
-        columns = [dataset[f"crossing_{field.name}"].values.tolist() for field in fields(Crossing)]
-        crossings = tuple(Crossing(*values) for values in zip(*columns, strict=True))
-        loaded[0] = replace(loaded[0], reached=replace(loaded[0].reached, crossings=crossings))
     return Solution(
         scene=scene,
         problem=problem,
