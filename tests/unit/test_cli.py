@@ -352,12 +352,12 @@ def test_a_second_run_of_a_group_is_refused_while_the_first_one_lasts(group, mon
 
     def second(done, total, what=""):
         if done == 2 and not said:
-            kept = sorted(Path("data/.squares.checkpoint").rglob("*.npz"))
+            kept = sorted(Path("data/.squares.checkpoint").rglob("*.kept"))
             with pytest.raises(pipeline.GroupError) as caught:
                 simulation.simulate(group, workers=1)
             said.append(str(caught.value))
             assert simulation.simulate(group, Path("data/other.nc"), workers=1) == Path("data/other.nc")
-            assert sorted(Path("data/.squares.checkpoint").rglob("*.npz")) == kept and len(kept) == 2
+            assert sorted(Path("data/.squares.checkpoint").rglob("*.kept")) == kept and len(kept) == 2
 
     simulation.simulate(group, workers=1, progress=second)
     assert said == ["data/squares.nc: another run is making it; wait for it, or give another --output"]
@@ -390,7 +390,7 @@ def test_finished_tasks_outlive_an_interruption(group, monkeypatch):
 
     with pytest.raises(KeyboardInterrupt):
         simulation.simulate(group, workers=1, progress=interrupt)
-    assert len(list(Path("data/.squares.checkpoint").rglob("*.npz"))) == 2
+    assert len(list(Path("data/.squares.checkpoint").rglob("*.kept"))) == 2
     assert not Path("data/squares.nc").exists()
     assert current() == Resources()
     calls = []

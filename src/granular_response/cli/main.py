@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .. import __version__
+from ..errors import GranularError
 from ..machine import floating_point, without_dask
 
 # Before anything loads numpy: the stages of the pipeline give the same digits on every x86 machine.
@@ -510,29 +511,6 @@ def print_version() -> None:
     typer.echo(f"granular-response {__version__}")
 
 
-def _expected_errors() -> tuple[type[BaseException], ...]:
-    """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
-    names = (
-        "paper.archive.ArchiveError",
-        "paper.claims.table.ClaimsError",
-        "paper.pipeline.GroupError",
-        "paper.report.ReportError",
-        "plot.pictures.PictureError",
-        "scene.SceneError",
-        "solve.SOLVE_ERRORS",
-        "store.export.ExportError",
-        "store.files.StoreError",
-        "store.generated.GeneratedError",
-        "store.result.ResultError",
-        "sweeps.errors.SweepError",
-    )
-    found: list[type[BaseException]] = []
-    for module, _, attribute in (name.rpartition(".") for name in names):
-        errors = getattr(sys.modules.get(f"granular_response.{module}"), attribute, ())
-        found += errors if isinstance(errors, tuple) else (errors,)
-    return tuple(found)
-
-
 #: Errors of a stream, which has no name.
 _NOT_WRITTEN = (errno.EIO, errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
@@ -561,9 +539,9 @@ def _said(error: Exception) -> str | None:
         return f"not enough memory: {error or 'the scene is too large'}"
     if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
         return f"{error.filename}: {error.strerror}"
-    expected, cause = _expected_errors(), error.__cause__
-    programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
-    return str(error) if isinstance(error, expected) and not programming else None
+    cause = error.__cause__
+    programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, GranularError)
+    return str(error) if isinstance(error, GranularError) and not programming else None
 
 
 def main() -> None:

@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
+from ..errors import GranularError
 from ..observe.floor import origin_of
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
 from ..state import OPEN, SLIDING, Box, FloatArray, wall_normals
@@ -30,7 +31,7 @@ from .field import draw_field, root_norm
 Scale = Literal["linear", "sqrt", "percentile"]
 
 
-class PictureError(ValueError):
+class PictureError(GranularError, ValueError):
     """A picture that cannot be drawn as asked. The message is one line."""
 
 

@@ -22,7 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from granular_response.store import atomic
+from ..store import atomic
 
 #: Column widths of the journal in inches.
 SINGLE, DOUBLE = 3.4, 7.0

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ..errors import SolveError
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls
@@ -44,7 +45,7 @@ ENVELOPE_TIME = 20.0
 Ramp = tuple[float, float, float]
 
 
-class DynamicsError(RuntimeError):
+class DynamicsError(SolveError, RuntimeError):
     """A run that blew up."""
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..errors import SolveError
 from ..state import OPEN, Certificate, FloatArray, State
 from .problem import Problem
 from .stability import negative_modes
@@ -29,7 +30,7 @@ FLAT = 0.1
 LONGEST_STEP = 0.05
 
 
-class EquilibriumError(RuntimeError):
+class EquilibriumError(SolveError, RuntimeError):
     """No static equilibrium was found near the start."""
 
 

@@ -26,6 +26,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..errors import SolveError
 from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
 from .equilibrium import ENOUGH, attainable, certify, external_force
@@ -74,11 +75,11 @@ class PathOptions:
 OPTIONS = PathOptions()
 
 
-class PathError(RuntimeError):
+class PathError(SolveError, RuntimeError):
     """The load path could not be continued."""
 
 
-class Collapsed(RuntimeError):
+class Collapsed(SolveError, RuntimeError):
     """The load has pushed its disk down farther than allowed, to ``height``."""
 
     def __init__(self, load: float, height: float) -> None:

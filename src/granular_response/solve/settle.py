@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from ..errors import SolveError
 from ..state import FloatArray, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
@@ -22,7 +23,7 @@ from .timestep import resolve_time_step
 NUDGE = 1e-6
 
 
-class NotSettled(RuntimeError):
+class NotSettled(SolveError, RuntimeError):
     """A packing did not come to rest."""
 
 

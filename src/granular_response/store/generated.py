@@ -8,10 +8,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from ..errors import GranularError
 from . import atomic
 
 
-class GeneratedError(Exception):
+class GeneratedError(GranularError):
     """A file without a place for generated lines. The message is one line."""
 
 

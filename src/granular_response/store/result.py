@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import __version__
+from ..errors import GranularError
 from ..observe.difference import match_candidates, pair_force_difference, wall_force_difference
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
@@ -61,7 +62,7 @@ _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 NOT_DETERMINED = -1
 
 
-class ResultError(ValueError):
+class ResultError(GranularError, ValueError):
     """A dataset that is not a result, or not one that can be continued. The message is one line."""
 
 

@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from ...errors import GranularError
 from .words import Bounds
 
 #: What an interval means: none (a number of one deterministic run); the event lies inside; 95 % of the bootstrap draws;
@@ -29,7 +30,7 @@ Outcome = Literal["holds", "fails", "open"]
 _SAME = 1e-9
 
 
-class NotMeasured(Exception):
+class NotMeasured(GranularError):
     """What a claim needs is not stored. The message names it."""
 
 

@@ -15,6 +15,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from granular_response.errors import GranularError
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
@@ -62,7 +63,7 @@ KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "ran
 KEYS = {"counts", "verdicts", "verdict_kinds", "words", "sensitivity", "table"}
 
 
-class ClaimsError(Exception):
+class ClaimsError(GranularError):
     """Nothing to judge, or no stored table. The message is one line."""
 
 

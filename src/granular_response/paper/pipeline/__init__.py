@@ -10,10 +10,11 @@ import importlib
 from pathlib import Path
 from typing import Any
 
+from granular_response.errors import GranularError
 from granular_response.paper.groups import NAMES
 
 
-class GroupError(Exception):
+class GroupError(GranularError):
     """A figure group, or its parameters, that does not exist. The message is one line."""
 
 

@@ -18,9 +18,9 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
 
     Raises
     ------
-    granular_response.pipeline.GroupError
+    granular_response.paper.pipeline.GroupError
         If there is no such group, or the datasets are those of another one or of other parameters than it has now.
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If its datasets cannot be read.
     """
     function = group_member(group, "draw", "draw")

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...errors import GranularError
 from ...state import FloatArray
 
 
-class FormatError(ValueError):
+class FormatError(GranularError, ValueError):
     """A file that is not of its format. ``place`` is where in the file, such as ``line 7``."""
 
     def __init__(self, rule: str, place: str = "") -> None:

@@ -23,6 +23,7 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
+from ...errors import GranularError
 from ...scene import formats
 from .. import atomic
 from ..checked import read_result
@@ -46,7 +47,7 @@ SUFFIXES = tuple(sorted(_WRITERS))
 Writer = Callable[..., dict[Path, bytes]]
 
 
-class ExportError(Exception):
+class ExportError(GranularError):
     """A result that cannot be exported. The message is one line."""
 
 
