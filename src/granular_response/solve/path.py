@@ -16,7 +16,7 @@ that is none, or not near, and in the second case, the motion of the disks leads
 these are events of the result.
 
 In packings too large for a banded factorisation events are taken together within an increment of the load; what that
-leaves out is measured by halving the last increment.
+leaves out is measured by a path in increments of twice the length.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ class PathOptions:
     listed_again: float = 0.25
     #: Increment of a large packing that takes events together: this times the square root of the number of disks, since
     #: a deeper packing takes more load to change as many contacts; and at most ``longest``.
-    together: float = 0.0033
-    longest: float = 1.6
+    together: float = 0.0066
+    longest: float = 3.2
 
 
 #: As measured in docs/benchmarks.md.
@@ -163,23 +163,38 @@ class _Path:
 
     def to(self, start: State, target: float) -> State:
         """The state at load factor ``target`` on the way from ``start``."""
-        self.begun, self.begun_at = len(self.record.events), start.load_factor
-        self.increments, self.before = 0, None
+        self.begun = len(self.record.events)
         self.target, self.direction = target, 1.0 if target >= start.load_factor else -1.0
         self.jump = self.options.jump / self.unit
-        point = self._balanced(self._at(start))
-        state: State | None = None
-        while state is None or state.certificate.stable is False:
-            if point.factor != target:
+        self.together = self.asked or None
+        point = self._at(start)
+        if self.asked is None and self.system.dissected:
+            self.together = min(self.options.together * self.problem.n**0.5, self.options.longest)
+        if self.together is None or point.factor == target:
+            return self._followed(point)
+        # what increments leave out, from those of twice the length
+        once, self.together = self.together, 2.0 * self.together
+        coarse = self._followed(point).wall_force()
+        del self.record.events[self.begun :]
+        self.together = once
+        state = self._followed(self._at(start))
+        off = np.abs(state.wall_force() - coarse).max(initial=0.0) if len(coarse) == len(state.wall_force()) else np.inf
+        error = float(off) / (self.unit * abs(target - start.load_factor))
+        return replace(state, reached=replace(state.reached, events_within=once, events_error=error))
+
+    def _followed(self, point: Point) -> State:
+        """The certified state at the target, from a point on the way there."""
+        point = self._balanced(point)
+        while True:
+            while point.factor != self.target:
                 point = self._advance(point)
                 self._look_down(point)
                 if self.progress is not None:
                     self.progress(point.factor)
-            elif state is None:
-                state = self._kept(point)
-            else:
-                point, state = self._by_motion(point, "bifurcation", "unstable", None), None
-        return state
+            state = self._state(point)
+            if state.certificate.stable is not False:
+                return replace(state, reached=replace(state.reached, events=tuple(self.record.events[self.begun :])))
+            point = self._by_motion(point, "bifurcation", "unstable", None)
 
     def _external(self, factor: float) -> FloatArray:
         """(dof,) gravity and loads; nothing on what is held."""
@@ -194,10 +209,6 @@ class _Path:
         self.event = force
         self.velocity: FloatArray | None = None
         self.suspect = 0  #: negative pivots at the last stability check
-        together = self.asked
-        if together is None and self.system.dissected:
-            together = min(self.options.together * self.problem.n**0.5, self.options.longest)
-        self.together = together
         return Point(state.load_factor, trial, trial.sense, trial.sense)
 
     def _balanced(self, point: Point) -> Point:
@@ -244,48 +255,45 @@ class _Path:
         """Where the next contact changes, or the target if that comes first."""
         changes, left = rates.changes, abs(self.target - point.factor)
         contact, length = changes.first()
+        what = int(changes.what[contact])
         for _ in range(self.options.landings):
-            at = contact if length < left else None
-            found = self._smooth(point, rates, min(length, left), at)
+            event = (contact, what) if length < left else None
+            found = self._smooth(point, rates, min(length, left), event)
             if found is None:
                 return None
             factor, trial, then = found
-            if at is not None and not (then.rate[at] > 0.0 and then.left[at] <= self.event):  # it does not change
-                changes.rate[at] = 0.0
-                contact, length = changes.first()
-                continue
             passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.event))
             if not len(passed):
                 self.record.work.increments += 1
                 self.jump = self.options.jump / self.unit
                 due = then.due(self.event)
                 # rates are those of the start: what they say of contacts that bear nothing is the turn on the way
-                due = due[rates.changes.rate[due] > 0.0]
+                due = due[(changes.rate[due] > 0.0) | (due == contact)]
                 return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
+            # another contact came first
             back = -then.left[passed] / then.rate[passed]
             contact = int(passed[np.argmax(back)])
-            length = max(abs(factor - point.factor) - float(back.max()), 0.0)
+            what, length = int(then.what[contact]), max(abs(factor - point.factor) - float(back.max()), 0.0)
         return None
 
     def _smooth(
-        self, point: Point, rates: Rates, length: float, contact: int | None
+        self, point: Point, rates: Rates, length: float, event: tuple[int, int] | None
     ) -> tuple[float, Trial, Changes] | None:
         """Equilibrium with the statuses of ``rates`` a ``length`` of the load factor on, and what changes then.
 
-        With a ``contact`` the load factor is an unknown too: that at which the contact is at its change. Newton's method
-        by the tangent at ``point``, or by that of the last iterate where the residual does not fall as it should.
+        With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
+        it. Newton's method by the tangent at ``point``, or by that of an iterate where that does not lead there soon.
         """
         options, known = self.options, point.known
-        factor = self._towards(point.factor, length) if contact is None else point.factor + self.direction * length
+        factor = self._towards(point.factor, length) if event is None else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-        before, enough = np.inf, ENOUGH if contact is None else options.passing
-        what = 0 if contact is None else int(rates.changes.what[contact])
+        before, enough = np.inf, ENOUGH if event is None else options.passing
         for done in range(options.newton):
             trial = system.trial(known, q, fixed=rates.sense, tangent=False)
             force = trial.contact_force + self._external(factor)
             size = float(np.abs(force).max(initial=0.0))
-            left = 0.0 if contact is None else self.rates.left(trial, contact, what)
+            left = 0.0 if event is None else self.rates.left(trial, *event)
             if not np.isfinite(size):
                 return None
             balanced = size <= enough or (size <= attainable(system, q) and size > 0.5 * before)
@@ -299,13 +307,14 @@ class _Path:
                     return None
             before = size
             step = system.deinterleave(by.solve(system.interleave(force)))
-            if contact is not None:
-                rate = self.rates.fall(q, contact, what, velocity)
-                if rate <= 0.0:  # it does not change
-                    return factor, trial, self.rates.changes(trial, velocity, rates.sense)
-                further = (left - self.rates.fall(q, contact, what, step)) / rate
-                factor += self.direction * further
-                step += further * velocity
+            if event is not None:
+                rate = self.rates.fall(q, *event, velocity)
+                if rate <= 0.0:  # it does not come nearer: on with new rates from here
+                    event = None
+                else:
+                    further = (left - self.rates.fall(q, *event, step)) / rate
+                    factor += self.direction * further
+                    step += further * velocity
             q = system.displaced(q + step, factor)
         return None
 
@@ -385,49 +394,17 @@ class _Path:
 
     def _increment(self, point: Point, new: float) -> Point:
         """One increment with the return map, whatever changes within it."""
-        self.before = point
         found = self._increased(point, new)
         if found is None:
             return self._lost(point, "no equilibrium with the return map")
         self.velocity = (found.configuration.q - point.known.q) / abs(new - point.factor)
         self._record(replace(point, factor=new), found.sense)
-        self.increments += 1
         return Point(new, found, found.sense, found.sense)
 
     def _increased(self, point: Point, new: float) -> Trial | None:
         guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
         guess = self.system.displaced(guess, new)
-        return solve_increment(
-            self.system, point.known, self._external(new), guess, self.record.work
-        )
-
-    def _error_of_increments(self, point: Point) -> float:
-        """What increments since the last kept state leave out: of the last one, by halving it, times their number.
-
-        Largest difference of a force of the floor or a wall, per load.
-        """
-        if self.before is None:
-            return 0.0
-        start = self.before
-        half = self._increased(start, 0.5 * (start.factor + point.factor))
-        middle = None if half is None else replace(start, factor=0.5 * (start.factor + point.factor), trial=half)
-        end = None if middle is None else self._increased(middle, point.factor)
-        if end is None:
-            return float("inf")
-        off = np.abs(end.normal - point.trial.normal), np.abs(end.tangential - point.trial.tangential)
-        largest = max(float(self.system.split(one)[1].max(initial=0.0)) for one in off)
-        return self.increments * largest / (self.unit * abs(self.target - self.begun_at))
-
-    def _kept(self, point: Point) -> State:
-        """The state at the target, with its certificate."""
-        state = self._state(point)
-        reached = replace(
-            state.reached,
-            events=tuple(self.record.events[self.begun :]),
-            events_within=self.together,
-            events_error=None if self.together is None else self._error_of_increments(point),
-        )
-        return replace(state, reached=reached)
+        return solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
 
     def _state(self, point: Point) -> State:
         """The certified state of a point."""
