@@ -108,7 +108,7 @@ def next_changes(
     ``q``, ``v`` (dof,) : displacements and their rates; ``status`` (m + w,) : negative for contacts that slide under a
     negative force; ``normal``, ``tangential``, ``overlap`` (m + w,); ``tip``, ``negligible`` : a force and a rate of a
     force that are none; ``count`` (2, n) : zeros, to count contacts in. A rattler that rests on one contact and is pushed along by another bears nothing there, however
-    it moves: nothing happens at such a contact but that it closes.
+    it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
     """
     m = pairs.first.size
     turn = q.size == 3 * n
@@ -117,8 +117,12 @@ def next_changes(
     for c in range(m):
         i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         if status[c] != OPEN and normal[c] <= tip:
-            if (closed[i] <= 2 and bearing[i] <= 1) or (closed[j] <= 2 and bearing[j] <= 1):
-                what[c], left[c], rate[c] = NOTHING, 0.0, 0.0
+            first = closed[i] <= 2 and bearing[i] <= 1
+            if first or (closed[j] <= 2 and bearing[j] <= 1):
+                # the velocity of the rattler towards the other disk: one that would be drawn along stays behind
+                drawn = (v[j] * dx + v[n + j] * dz) / d if not first else -(v[i] * dx + v[n + i] * dz) / d
+                drawn *= pairs.law.normal_stiffness
+                what[c], left[c], rate[c] = (OPENS, 0.0, drawn) if drawn > negligible else (NOTHING, 0.0, 0.0)
                 continue
         nx, nz = dx / d, dz / d
         wx, wz = v[i] - v[j], v[n + i] - v[n + j]

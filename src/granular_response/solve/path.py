@@ -29,7 +29,7 @@ import numpy as np
 from ..errors import SolveError
 from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
-from .equilibrium import ENOUGH, attainable, certify, external_force
+from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
 from .increment import Work, solve_increment
 from .problem import Problem
 from .rates import Changes, RateProblem, Rates, changed
@@ -48,8 +48,9 @@ class PathOptions:
     #: Rate of a contact force, per load, below which the contact has no part in the load: rattlers, whose contacts open
     #: and close at the rounding of a force, make no events.
     negligible: float = 1e-9
-    #: Newton steps with one factorisation; two or three are usual.
+    #: Newton steps with one factorisation, and part of the residual that a step may leave; two or three are usual.
     same_tangent: int = 6
+    slow: float = 0.3
     #: Unbalanced force that is left at an event: the next increment takes it up.
     passing: float = 1e-10
     #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
@@ -299,7 +300,7 @@ class _Path:
             balanced = size <= enough or (size <= attainable(system, q) and size > 0.5 * before)
             if balanced and abs(left) <= 0.5 * self.event:
                 return factor, trial, self.rates.changes(trial, velocity, rates.sense)
-            if size > before or done % options.same_tangent == options.same_tangent - 1:
+            if size > options.slow * before or done % options.same_tangent == options.same_tangent - 1:
                 try:
                     by = system.renewed_factor(trial.configuration, rates.sense)
                     velocity = self.rates.velocity(trial.configuration, rates.sense, by)
@@ -307,6 +308,9 @@ class _Path:
                     return None
             before = size
             step = system.deinterleave(by.solve(system.interleave(force)))
+            longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))
+            if longest > LONGEST_STEP:  # a contact of the 3/2 law that has just closed has no stiffness yet
+                step *= LONGEST_STEP / longest
             if event is not None:
                 rate = self.rates.fall(q, *event, velocity)
                 if rate <= 0.0:  # it does not come nearer: on with new rates from here
