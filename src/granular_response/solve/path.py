@@ -57,9 +57,11 @@ class PathOptions:
     newton: int = 40
     #: Times that an increment is shortened to an event that came before the one expected.
     landings: int = 12
-    #: Load by which the next equilibrium is looked for first where one is lost, doubled up to the last.
-    first_beyond: float = 0.01
-    last_beyond: float = 0.64
+    #: Loads by which the next equilibrium is looked for, with limits of friction held fixed, where none are found for
+    #: the rates: after the first one mostly the path goes on, only with other statuses.
+    beyond: tuple[float, ...] = (1e-4, 1e-2, 1e-1)
+    #: Times by which disks may be faster than before there, or the equilibrium before was lost.
+    faster: float = 10.0
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
     #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
@@ -348,22 +350,25 @@ class _Path:
 
     def _lost(self, point: Point, reason: str) -> Point:
         """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
-        work, step = self.record.work, self.options.first_beyond / self.unit
-        while step * self.unit <= self.options.last_beyond:
-            new = self._towards(point.factor, step)
-            guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
-            external, guess = self._external(new), self.system.displaced(guess, new)
-            found = solve_increment(self.system, point.known, external, guess, work, outer=False)
-            if found is not None:
-                moved = float(np.abs(found.configuration.q - guess)[: 2 * self.problem.n].max(initial=0.0))
-                if moved > self.options.nearby:
+        n, usual = 2 * self.problem.n, 0.0
+        if self.velocity is not None:
+            usual = self.options.faster * float(np.abs(self.velocity[:n]).max(initial=0.0))
+        for beyond in self.options.beyond:
+            new = self._towards(point.factor, beyond / self.unit)
+            guess = self.system.displaced(point.known.q, new)
+            found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+            if found is None:
+                if new == self.target:
                     break
-                self._record_lost("stepped over", point, new, found.configuration.q - guess, reason)
-                self._record(point, found.sense)
-                return Point(new, found, found.sense, found.sense)
-            if new == self.target:
+                continue
+            moved = found.configuration.q - point.known.q
+            far = float(np.abs(moved[:n]).max(initial=0.0))
+            if far > self.options.nearby:
                 break
-            step *= 2.0
+            if far > usual * abs(new - point.factor):
+                self._record_lost("stepped over", point, new, moved, reason)
+            self._record(point, found.sense)
+            return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)
 
     def _by_motion(self, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
