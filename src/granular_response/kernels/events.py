@@ -6,6 +6,8 @@ is left to Coulomb's limit has fallen to zero; one that slides sticks as soon as
 
 from __future__ import annotations
 
+import math
+
 from ..contact.law import stiffness
 from ..machine.machine_code import kernel
 from ..state.status import OPEN, SLIDING
@@ -107,8 +109,9 @@ def next_changes(
 
     ``q``, ``v`` (dof,) : displacements and their rates; ``status`` (m + w,) : negative for contacts that slide under a
     negative force; ``normal``, ``tangential``, ``overlap`` (m + w,); ``tip``, ``negligible`` : a force and a rate of a
-    force that are none; ``count`` (2, n) : zeros, to count contacts in. A rattler that rests on one contact and is pushed along by another bears nothing there, however
-    it moves: such a contact opens when the other disk withdraws, and nothing else happens to it.
+    force that are none; ``count`` (2, n) : zeros, to count contacts in. A rattler that rests on one contact and is
+    pushed along by another bears nothing there, however it moves: such a contact opens when the other disk withdraws,
+    and nothing else happens to it.
     """
     m = pairs.first.size
     turn = q.size == 3 * n
@@ -147,6 +150,16 @@ def next_changes(
             status[w], overlap[w], normal[w], tangential[w], v[i] * nx + v[n + i] * nz, along, k, walls.law, tip,
             negligible,
         )  # fmt: skip
+
+
+@kernel
+def first_change(left, rate):
+    """The contact that changes first, and after which growth of the load factor; 0 and infinity where none does."""
+    first, length = 0, math.inf
+    for c in range(rate.size):
+        if rate[c] > 0.0 and max(left[c], 0.0) < length * rate[c]:
+            first, length = c, max(left[c], 0.0) / rate[c]
+    return first, length
 
 
 @kernel

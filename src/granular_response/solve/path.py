@@ -9,11 +9,11 @@ frictionless arrays):
    finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``;
 3. contacts that are at their change change, a mirror pair together, and so on from 1.
 
-An equilibrium is lost where no statuses solve the rate problem (a snap-through), or where the tangent has an unstable
-direction along which the contacts that slide go on sliding (divergence; at a bifurcation of a symmetric branch). In the
-first case the nearest equilibrium under a slightly larger load is looked for (:func:`.increment.solve_increment`); where
-that is none, or not near, and in the second case, the motion of the disks leads to the next one (:mod:`.settle`). All of
-these are events of the result.
+Where no statuses are found for the rates the equilibrium under a slightly larger load is looked for with the limits of
+friction held fixed (:func:`.increment.solve_increment`): mostly the path goes on. An equilibrium is lost where there is
+none nearby (a snap-through), or where the tangent has an unstable direction along which the contacts that slide go on
+sliding (divergence; at a bifurcation of a symmetric branch). The motion of the disks then leads to the next one
+(:mod:`.settle`). Both are events of the result.
 
 In packings too large for a banded factorisation events are taken together within an increment of the load; what that
 leaves out is measured by a path in increments of twice the length.
@@ -285,7 +285,7 @@ class _Path:
         """Equilibrium with the statuses of ``rates`` a ``length`` of the load factor on, and what changes then.
 
         With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
-        it. Newton's method by the tangent at ``point``, or by that of an iterate where that does not lead there soon.
+        it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
         """
         options, known = self.options, point.known
         factor = self._towards(point.factor, length) if event is None else point.factor + self.direction * length
@@ -299,7 +299,7 @@ class _Path:
             left = 0.0 if event is None else self.rates.left(trial, *event)
             if not np.isfinite(size):
                 return None
-            balanced = size <= enough or (size <= attainable(system, q) and size > 0.5 * before)
+            balanced = size <= enough or (size > 0.5 * before and size <= attainable(system, q))
             if balanced and abs(left) <= 0.5 * self.event:
                 return factor, trial, self.rates.changes(trial, velocity, rates.sense)
             if size > options.slow * before or done % options.same_tangent == options.same_tangent - 1:
@@ -440,21 +440,18 @@ class _Path:
         contacts = np.flatnonzero(point.sense != after)
         if not len(contacts):
             return
-        system, q, n = self.system, point.known.q, self.problem.n
-        position = system.reference + q[: 2 * n].reshape(2, n).T
-        radius, m = self.problem.packing.radius, len(system.first)
-        for c in contacts:
-            at_wall = bool(c >= m)
-            i = int(system.wall_disk[c - m] if at_wall else system.first[c])
-            j = int(system.wall[c - m] if at_wall else system.second[c])
-            towards = (
-                -system.wall_normals[c - m]
-                if at_wall
-                else self.problem.packing.box.separation(position[j : j + 1], position[i : i + 1])[0]
-            )
-            x, z = position[i] + radius[i] * towards / np.hypot(*towards)
-            kind = _kind(int(point.sense[c]), int(after[c]))
-            self.record.events.append(Event(point.factor, kind, i, j, at_wall, float(x), float(z), point.factor))
+        system, n, m = self.system, self.problem.n, len(self.system.first)
+        position = system.reference + point.known.q[: 2 * n].reshape(2, n).T
+        at_wall = contacts >= m
+        pair, wall = contacts[~at_wall], contacts[at_wall] - m
+        first = np.concatenate([system.first[pair], system.wall_disk[wall]])
+        second = np.concatenate([system.second[pair], system.wall[wall]])
+        apart = self.problem.packing.box.separation(position[system.second[pair]], position[system.first[pair]])
+        towards = np.concatenate([apart, -system.wall_normals[wall]])
+        place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
+        kinds = map(_kind, point.sense[contacts].tolist(), after[contacts].tolist())
+        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
+        self.record.events += [Event(point.factor, *row, point.factor) for row in rows]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
         """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""

@@ -131,6 +131,7 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
         "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
         "negative_modes": f"unstable directions of the tangent stiffness ({NOT_DETERMINED}: not determined)",
         "loose_disks": "disks with fewer than two contacts",
+        "unbalanced_part": "largest unbalanced force on a disk, as a part of what it bears",
     }
     certificates: list[Certificate] = [s.certificate for s in states]
 
@@ -222,6 +223,7 @@ _REACHED = {
     "loose_disks": "disks with fewer than two contacts, at that moment",
     "more_relaxations": "stretches of dynamics between tries of the static finish",
     "newton_iterations": "iterations of Newton's method",
+    "finish_displacement": f"largest displacement of a disk in the static finish {LENGTH}",
     "escapes": "saddles of the energy that were left",
     "increments": "increments of the path so far, in the command that made the state",
     "factorisations": "factorisations of the path so far, in the command that made the state",
@@ -484,8 +486,11 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     one = dataset.isel(state=index)
     stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
     certificate = None
-    if set(stored.values()) <= set(one.variables):
-        numbers: dict[str, Any] = {name: one[variable].values.item() for name, variable in stored.items()}
+    # files from before have no such part
+    if set(stored.values()) - {"certificate_unbalanced_part"} <= set(one.variables):
+        numbers: dict[str, Any] = {
+            name: one[variable].values.item() for name, variable in stored.items() if variable in one.variables
+        }
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
         certificate = Certificate(**numbers)
