@@ -192,7 +192,7 @@ def _events_of(dataset: xr.Dataset, index: int) -> tuple[Event, ...]:
 
 
 def _events_from(dataset: xr.Dataset, count: int) -> list[tuple[Event, ...]]:
-    """The events on the way to each of ``count`` states; of a file from before events, what it says of lost equilibria."""
+    """The events on the way to each of ``count`` states; of an older file, the lost equilibria that it knows of."""
     found: list[list[Event]] = [[] for _ in range(count)]
     if "event_load_factor" in dataset:
         columns = {name: dataset[f"event_{name}"].values.tolist() for name in (*_EVENTS, "state")}
@@ -201,8 +201,9 @@ def _events_from(dataset: xr.Dataset, count: int) -> list[tuple[Event, ...]]:
             k = one.pop("state")
             found[k].append(Event(**{**one, "kind": _EVENT_KINDS[one["kind"]], "at_wall": bool(one["at_wall"])}))
     elif "crossing_start" in dataset and count > 1:
-        columns = {name: dataset[f"crossing_{name}"].values.tolist() for name in ("start", "end", "displacement", "reason")}
-        for start, end, displacement, reason in zip(*columns.values(), strict=True):
+        names = ("start", "end", "displacement", "reason")
+        columns = [dataset[f"crossing_{name}"].values.tolist() for name in names]
+        for start, end, displacement, reason in zip(*columns, strict=True):
             found[1].append(Event(start, "jump", until=end, displacement=displacement, reason=str(reason)))
     return [tuple(events) for events in found]
 
@@ -532,6 +533,8 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     if not same or packed.box != rest.box:
         raise ResultError("the table of disks has changed since the result was made")
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
+    if rest.reached.certificate is None:
+        raise ResultError("holds no certificates, from which a run goes on")
     return Solution(
         scene=scene,
         problem=problem,
