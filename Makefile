@@ -4,15 +4,14 @@ PYTHON ?= python3
 CORES := $(shell getconf _NPROCESSORS_ONLN)
 # More than there are cores: tests wait for processes that they start.
 JOBS ?= $(shell expr $(CORES) + 2)
-# Of each half of the pipeline.
-WORKERS ?= $(shell expr \( $(CORES) + 1 \) / 2)
 REPRO ?=
 EXAMPLES ?= 1000
+BROKEN ?= 10000
+SCENES ?= 5000
 
 VENV := $(CURDIR)/.venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
-GROUP_LIST := src/granular_response/paper/groups/groups.json
 
 # The same order and width of floating-point operations on every x86 machine
 # (src/granular_response/machine/floating_point.py, which the command line applies by itself).
@@ -29,7 +28,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure survey test fuzz coverage lint docs notebooks archive restore package matrix
+.PHONY: help setup reproduce quote figure survey test fuzz broken scenes coverage lint docs notebooks archive restore package matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -46,20 +45,10 @@ $(STAMP): requirements.lock pyproject.toml
 	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation -e .
 	@touch "$@"
 
-# DVC runs one stage after another, and what is left of a stage when one core has finished is waste. So two of it run at
-# once, each with half of the cores on the groups of its half of the list, which take as long as those of the other (a
-# test adds up what the benchmarks measured). What a clash of theirs left undone, and what stands on all groups, comes
-# last; the report is made by quote, whatever is up to date.
+# Quoting makes the report again, with benchmarks that are no dependency of its stage.
 reproduce: setup ## Run what is not up to date: simulations, figures, claims, report (REPRO=--force: all, whatever is)
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	@for half in 0 1; do \
-	  GRANULAR_RESPONSE_WORKERS=$(WORKERS) "$(BIN)/dvc" --wait-for-lock repro $(REPRO) \
-	    $$(sed -n "s/^ *\"\([a-z_]*\)\": {.*\"half\": $$half}.*/draw@\1/p" $(GROUP_LIST)) < /dev/null & \
-	  halves="$$halves $$!"; \
-	done; \
-	for half in $$halves; do wait $$half || undone=yes; done; \
-	test -z "$$undone" || "$(BIN)/dvc" repro draw < /dev/null
-	"$(BIN)/dvc" repro $(if $(REPRO),$(REPRO) --single-item) claims < /dev/null
+	"$(BIN)/dvc" repro $(REPRO) < /dev/null
 	@$(MAKE) --no-print-directory quote
 
 # Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand. The page is made
@@ -89,6 +78,12 @@ test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two p
 
 fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) "$(BIN)/python" -m pytest -m hypothesis -n $(JOBS)
+
+broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (half an hour)
+	"$(BIN)/python" tests/unit/broken_files.py $(BROKEN)
+
+scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (hours)
+	"$(BIN)/python" -W ignore -m granular_response.paper.trials.random_scenes $(SCENES)
 
 coverage: setup ## Unit tests with compilation off, so that kernels count too
 	NUMBA_DISABLE_JIT=1 "$(BIN)/coverage" run -m pytest tests/unit

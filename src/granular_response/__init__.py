@@ -5,7 +5,8 @@ first use. Everything below it may change from version to version.
 
 ``Scene`` says what is simulated, ``solve`` settles and loads it, and a ``Result`` holds what came of it: states,
 certificates, floor response, contacts, stress. ``plot`` draws results, ``open_result`` reads a stored one. ``sweep``
-solves a scene with many values of its keys, ``find_event`` narrows down where something happens.
+solves a scene with many values of its keys, ``find_event`` narrows down where something happens. Everything that goes
+wrong is a ``GranularError``.
 
 >>> import granular_response as gr
 >>> result = gr.solve(gr.Scene().updated({"contact.friction": 0.2}))
@@ -27,12 +28,24 @@ if TYPE_CHECKING:
     from .api.result import open_result as open_result
     from .api.result import solve as solve
     from .api.sweep import sweep as sweep
+    from .errors import GranularError as GranularError
+    from .errors import SolveError as SolveError
     from .scene import Scene as Scene
+    from .scene import SceneError as SceneError
+    from .store.files import StoreError as StoreError
+    from .store.result import ResultError as ResultError
+    from .sweeps.errors import SweepError as SweepError
 
 #: Where the public names are; those of "" are modules.
 _HOME = {
+    "GranularError": "errors",
     "Result": "api.result",
+    "ResultError": "store.result",
     "Scene": "scene",
+    "SceneError": "scene",
+    "SolveError": "errors",
+    "StoreError": "store.files",
+    "SweepError": "sweeps.errors",
     "find_event": "api.event",
     "open_result": "api.result",
     "plot": "",
@@ -59,4 +72,19 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *_HOME})
 
 
-__all__ = ["Result", "Scene", "__version__", "find_event", "open_result", "plot", "solve", "sweep"]
+__all__ = [
+    "GranularError",
+    "Result",
+    "ResultError",
+    "Scene",
+    "SceneError",
+    "SolveError",
+    "StoreError",
+    "SweepError",
+    "__version__",
+    "find_event",
+    "open_result",
+    "plot",
+    "solve",
+    "sweep",
+]

@@ -6,6 +6,7 @@ import functools
 import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -78,8 +79,14 @@ def scaled(factor):
     return lambda item: factor * item
 
 
+def test_equal_parts_count_as_equal_whether_or_not_they_are_one_object():
+    one = np.arange(3.0)
+    assert digest([one, one, "text"]) == digest([one, one.copy(), "te" + "xt"])
+
+
 def test_functions_without_a_name_of_their_own_count_by_their_code():
-    lambdas = [lambda x: x, lambda x: x + 1, lambda x: x + 2, lambda x, y=1: x, lambda x, y=2: x, scaled(2), scaled(3)]
+    lambdas = [lambda x: x, lambda *x: x, lambda x: x + 1, lambda x: x + 2, lambda x, y=1: x, lambda x, y=2: x]
+    lambdas += [scaled(2), scaled(3)]
     assert len({digest(function) for function in lambdas}) == len(lambdas)
     assert digest(scaled(2)) == digest(scaled(2))
 
@@ -121,7 +128,7 @@ def test_what_cannot_be_told_apart_has_no_name():
     class Local:
         pass
 
-    for value in (Local(), Local, object(), np.array([object()]), iter([1]), [Local()], lambda: Local):
+    for value in (Local(), Local, threading.Lock(), (n for n in [1]), [Local()], lambda: Local):
         with pytest.raises(Indistinct) as refused:
             digest(value)
         assert "\n" not in str(refused.value)

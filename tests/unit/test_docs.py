@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pkgutil
 import re
 from functools import cache
 from pathlib import Path
@@ -160,3 +161,25 @@ def test_laboratory_units_are_as_the_page_says():
         else:
             assert eval(expression, names) == pytest.approx(float(said.split()[0]), rel=5e-3), line
     assert isinstance(names["units"], LaboratoryUnits)
+
+
+def docstrings() -> list[tuple[str, str]]:
+    """Every docstring of the package with the file it stands in."""
+    found = []
+    for path in sorted((ROOT / "src").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and (text := ast.get_docstring(node)):
+                found.append((path.relative_to(ROOT).as_posix(), text))
+    return found
+
+
+def test_what_docstrings_name_by_its_full_address_is_there():
+    named = {(file, name) for file, text in docstrings() for name in re.findall(r"granular_response(?:\.\w+)+", text)}
+    assert len(named) > 20
+    missing = []
+    for file, name in sorted(named):
+        try:
+            pkgutil.resolve_name(name)
+        except (ImportError, AttributeError):
+            missing.append(f"{file}: {name}")
+    assert missing == []

@@ -1,11 +1,14 @@
 """What is kept on disk comes back to the last bit, and no file can make anything run."""
 
 import dataclasses
-import json
+import functools
+import os
 import pickle
+import subprocess
 from collections import namedtuple
-from io import BytesIO
+from pathlib import Path
 
+import cloudpickle
 import numpy as np
 import pytest
 import xarray as xr
@@ -30,13 +33,14 @@ class Kept:
 def test_plain_values_come_back_equal():
     values = [
         None, True, 3, -0.0, 1e-300, float("inf"), "text with ü", b"\0\xff", 2**80, (1, (2.0, "x")), [1, [2]],
-        {"a": 1, 2: "b", (1, 2): [3]}, {1, 2}, frozenset({"a"}), np.float32(1.5), np.int8(3), np.bool_(True),
+        {"a": 1, 2: "b", (1, 2): [3]}, Path("a") / "b", {1, 2}, frozenset({"a"}), np.float32(1.5), np.int8(3),
+        np.bool_(True),
         np.arange(6.0).reshape(2, 3), np.asfortranarray(np.arange(6.0).reshape(2, 3)), np.array("text"),
         np.array([True]), np.zeros((0, 3), np.int8), Pair(1, np.ones(2)), Kept(np.ones(3), {"a": np.float64(1)}),
     ]  # fmt: skip
     again = decode(encode(values, HERE), HERE)
     assert digest(again) == digest(values)
-    assert again[18].flags.f_contiguous and again[17].flags.writeable
+    assert again[19].flags.f_contiguous and again[18].flags.writeable
     assert np.isnan(decode(encode(float("nan"))))
 
 
@@ -61,25 +65,28 @@ def test_what_holds_code_is_not_kept():
     class Local:
         pass
 
-    loop: list = []
-    loop.append(loop)
-    for value in (Local(), len, lambda: 1, np.array([None]), Kept, loop, Kept(np.ones(1), {}), {"a": object()}):
+    for value in (Local(), len, lambda: 1, np.array([len]), Kept, Kept(np.ones(1), {}), {"a": object()}, Runs()):
         with pytest.raises(NotEncodable) as refused:
             encode(value)
         assert "\n" not in str(refused.value)
 
 
-def planted(tree, **arrays):
-    stream = BytesIO()
-    np.savez(stream, tree=np.frombuffer(json.dumps(tree).encode(), np.uint8), **arrays)
-    return stream.getvalue()
+class Calls:
+    """Its pickle calls something when it is read."""
 
-
-class Runs:
-    """Its pickle leaves a mark when it is read."""
+    def __init__(self, called, *arguments):
+        self.reduced = called, arguments
 
     def __reduce__(self):
-        return (exec, ("import builtins; builtins.planted_code_has_run = True",))
+        return self.reduced
+
+
+Runs = functools.partial(Calls, exec, "import builtins; builtins.planted_code_has_run = True")
+
+
+def named(module, name):
+    """A pickle of what a module calls ``name``."""
+    return b"\x80\x04" + b"".join(b"\x8c" + bytes([len(text)]) + text.encode() for text in (module, name)) + b"\x93."
 
 
 @pytest.mark.parametrize(
@@ -88,22 +95,22 @@ class Runs:
         b"",
         b"PK\3\4 damaged",
         pickle.dumps(Runs()),
-        planted({"array": "a0"}, a0=np.array([Runs()], dtype=object)),
-        planted({"array": "a9"}),
-        planted({"unknown": 1}),
-        planted([1, 2]),
-        planted({"dataclass": "os:system", "fields": {}}),
-        planted({"dataclass": "subprocess:Popen", "fields": {"args": "ls"}}),
-        planted({"dataclass": "granular_response.__main__:x", "fields": {}}),
-        planted({"dataclass": "granular_response.cli.main:Path", "fields": {}}),
-        planted({"dataclass": "granular_response.state.state:np.ndarray", "fields": {}}),
-        planted({"dataclass": "granular_response.state.state:State", "fields": {"position": 1}}),
-        planted({"dataclass": "granular_response.nowhere:State", "fields": {}}),
-        planted({"named": "granular_response.store.labelled:Values", "parts": [1]}),
-        planted({"enumeration": "granular_response.state.state:State", "name": "x"}),
-        planted({"description": "granular_response.scene.scene:Scene", "values": {"packing": 3}}),
-        planted({"scene": {"packing": {"kind": "sphere"}}, "folder": None}),
-        planted({"dataset": [[["x", ["i", "j"], {"array": "a0"}, {"dict": []}]], [], {"dict": []}]}, a0=np.ones(3)),
+        pickle.dumps([np.array([Runs()])]),
+        pickle.dumps(Kept(np.ones(1), {"inner": Runs()})),
+        pickle.dumps(Calls(os.system, "ls")),
+        pickle.dumps(Calls(subprocess.Popen, "ls")),
+        pickle.dumps(Calls(getattr, Kept, "__init__")),
+        pickle.dumps(Calls(np.load, "file.npy")),
+        pickle.dumps(Calls(Scene, 3)),
+        cloudpickle.dumps(lambda: 1),
+        named("granular_response.__main__", "x"),
+        named("granular_response.cli.main", "Path"),
+        named("granular_response.state.state", "np.ndarray"),
+        named("granular_response.state.state", "np"),
+        named("granular_response.nowhere", "State"),
+        named("granular_response.sweeps.encoding", "decode"),
+        named("numpy", "ndarray.tofile"),
+        named("builtins", "eval"),
     ],
 )
 def test_a_planted_file_runs_nothing_and_is_refused(data):

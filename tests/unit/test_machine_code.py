@@ -11,7 +11,7 @@ import numba as nb
 import numpy as np
 import pytest
 
-from granular_response.machine import machine_code, turns
+from granular_response.machine import machine_code
 
 PACKAGE = Path(machine_code.__file__).parents[1]
 #: Processors to compile for, with what they ask of the one that runs it.
@@ -46,63 +46,32 @@ def test_an_edit_of_one_file_reaches_the_kernels_of_another(tmp_path):
     assert kept < set(cache.rglob("*.nbc"))  # nothing is deleted
 
 
-def test_of_processes_that_ask_for_a_kernel_one_compiles_it(tmp_path):
-    script = SCRIPT + "print(sum(frictionless_pair.stats.cache_misses.values()))"
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    command = [sys.executable, "-c", script]
-    running = [subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) for _ in range(3)]
-    said = [process.communicate()[0].split() for process in running]
-    assert len({force for force, _ in said}) == 1
-    assert sorted(compiled for _, compiled in said) == ["0", "0", "1"]
-
-
-#: Takes a turn in the folder where it runs, says whether it has it, and keeps it.
-HOLD = """
-import sys
-from granular_response.machine import turns
-turns.LONGEST_WAIT = 0.0
-print(turns.Turns("turns").take(sys.argv[1]), flush=True)
-sys.stdin.read()
+#: Compiles a kernel for one type while another process does so for another one; the index takes long to write.
+KEEP = """
+import sys, time
+import numpy as np
+from numba.core.caching import IndexDataCacheFile
+from granular_response.machine.machine_code import kernel
+from shared_kernel import doubled
+write = IndexDataCacheFile._save_index
+IndexDataCacheFile._save_index = lambda *given: (time.sleep(0.5), write(*given))
+print(doubled(np.dtype(sys.argv[1]).type(3)), sum(doubled.stats.cache_hits.values()))
 """
 
 
-def test_a_turn_ends_with_the_process_that_has_it(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(turns, "LONGEST_WAIT", 0.1)
-    command = [sys.executable, "-c", HOLD, "a"]
-    here = turns.Turns(tmp_path / "turns")
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
-        assert other.stdout.readline() == "True\n"
-        assert not here.take("a")
-        with here.taken("a"):  # not waited for any longer
-            assert here.take("b")
-        other.kill()
-    assert here.take("a")
-
-
-def test_a_kernel_that_cannot_be_compiled_leaves_no_turn(tmp_path, monkeypatch):
-    monkeypatch.setattr(machine_code, "cache_folder", lambda: tmp_path)
-    ended, give_back = [], turns.Turns.give_back
-    monkeypatch.setattr(turns.Turns, "give_back", lambda self, name: (ended.append(name), give_back(self, name)))
-
-    @machine_code.kernel
-    def impossible(a):
-        return a.nothing
-
-    with pytest.raises(nb.TypingError):
-        impossible(1.0)
-    name = f"{impossible.py_func.__module__}.{impossible.py_func.__qualname__}(float64,)"
-    assert ended == [name]
-    command = [sys.executable, "-c", HOLD, name]
-    run = subprocess.run(command, cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    assert run.stdout == "True\n"
-
-
-def test_where_there_are_no_locks_nobody_waits(tmp_path):
-    nowhere = turns.Turns(tmp_path / "no-folder" / "turns")
-    assert not nowhere.take("a")
-    with nowhere.taken("a"):
-        pass
+@pytest.mark.skipif(nb.config.DISABLE_JIT, reason="nothing is compiled")
+def test_processes_that_compile_a_kernel_at_once_for_different_types_keep_each_their_own(tmp_path):
+    source = "from granular_response.machine.machine_code import kernel\ndoubled = kernel(lambda x: x + x)\n"
+    (tmp_path / "shared_kernel.py").write_text(source)
+    path = os.pathsep.join([str(tmp_path), str(PACKAGE.parent)])
+    environment = {**os.environ, "PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    for hits in "0", "1":
+        running = [
+            subprocess.Popen([sys.executable, "-c", KEEP, kind], env=environment, stdout=subprocess.PIPE, text=True)
+            for kind in ("i8", "f8", "c16")
+        ]
+        said = [process.communicate()[0].split() for process in running]
+        assert said == [["6", hits], ["6.0", hits], ["(6+0j)", hits]]
 
 
 def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):

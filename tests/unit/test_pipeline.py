@@ -219,15 +219,6 @@ def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():
     ]
 
 
-def test_halves_of_the_pipeline_take_equally_long():
-    """What runs beside each other, by the stored times of the benchmarks: no core waits long for the other."""
-    runs = json.loads((ROOT / "benchmarks" / "pipeline.json").read_text())["runs"]
-    seconds = {run["group"]: run["simulate_seconds"] + run["draw_seconds"] for run in runs}
-    assert set(seconds) == set(NAMES) and {GROUPS[name]["half"] for name in NAMES} == {0, 1}
-    halves = [sum(seconds[name] for name in NAMES if GROUPS[name]["half"] == half) for half in (0, 1)]
-    assert abs(halves[0] - halves[1]) < 0.1 * sum(halves)
-
-
 @pytest.mark.parametrize("group", NAMES)
 def test_every_group_describes_its_section(group):
     given, described = simulation.parameters(group, ROOT / "params.yaml")

@@ -45,6 +45,22 @@ def test_the_solvers_stay_a_package_for_import_statements(first):
     )
 
 
+@pytest.mark.parametrize("before", ["", "import granular_response; granular_response.solve; "])
+@pytest.mark.parametrize(
+    "imported",
+    [
+        "import granular_response.solve.dynamics as found",
+        "from granular_response.solve import dynamics as found",
+        "import granular_response.solve.linear.band as found",
+        "from granular_response.solve.linear import band as found",
+        "import granular_response.api.result as found",
+    ],
+)
+def test_modules_are_found_by_every_form_of_import(before, imported):
+    address = imported.replace("import ", "").replace("from ", "").removesuffix(" as found").replace(" ", ".")
+    assert fresh(f"{before}{imported}; print(type(found).__name__, found.__name__)") == f"module {address}"
+
+
 def test_every_public_name_is_there_and_documented():
     for name in set(gr.__all__) - {"__version__"}:
         assert getattr(gr, name).__doc__ and name in dir(gr)

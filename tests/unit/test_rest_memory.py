@@ -47,7 +47,7 @@ def folder(tmp_path):
 
 
 def files(folder):
-    return sorted(folder.rglob("*.npz"))
+    return sorted(folder.rglob("*.kept"))
 
 
 def test_without_a_folder_nothing_is_kept(monkeypatch, tmp_path, computed):
@@ -121,14 +121,14 @@ def test_a_state_under_the_name_of_another_is_not_taken(folder, computed):
     settled.rest_state(Problem.from_scene(SCENE))
     (kept,) = files(folder)
     other = Problem.from_scene(SCENE.updated({"contact.friction": 0.5}))
-    kept.with_name(f"{settled.name(other)}.npz").write_bytes(kept.read_bytes())
+    kept.with_name(f"{settled.name(other)}.kept").write_bytes(kept.read_bytes())
     settled.rest_state(other)
     assert len(computed) == 2
 
 
 def test_states_of_other_sources_go_after_a_week(folder, computed):
     new, old, thesis, odd = (folder / name for name in ("0" * 32, "1" * 32, "thesis", "2" * 32))
-    for shelf, file in ((new, "a.npz"), (old, "b.npz"), (thesis, "chapter1.npz"), (odd, "chapter2.tex")):
+    for shelf, file in ((new, "a.kept"), (old, "b.kept"), (thesis, "chapter1.kept"), (odd, "chapter2.tex")):
         shelf.mkdir(parents=True)
         (shelf / file).write_text("kept")
     long_ago = time.time() - 8 * 24 * 3600

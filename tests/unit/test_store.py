@@ -1,11 +1,14 @@
 """Datasets on disk: whole or not there, equal after a round trip, equal bytes for equal data."""
 
+import contextlib
 import os
 import random
 import resource
 import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import netCDF4
@@ -14,7 +17,7 @@ import pytest
 import xarray as xr
 
 from granular_response import __version__
-from granular_response.store import atomic, hdf5_image
+from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response.store.files import StoreError
 
@@ -89,20 +92,6 @@ def test_bytes_depend_on_the_data_alone(path, tmp_path):
     assert other.read_bytes() == path.read_bytes()
     store.write(other, {"a": dataset(1), "b": dataset(3)})
     assert other.read_bytes() != path.read_bytes()
-
-
-def test_checksums_are_those_of_hdf5(path):
-    # published values of the hash, and the checksum that HDF5 itself put into a superblock
-    assert hdf5_image.lookup3(b"") == 0xDEADBEEF
-    assert hdf5_image.lookup3(b"Four score and seven years ago") == 0x17770551
-    store.write(path, dataset())
-    superblock = path.read_bytes()[:48]
-    assert hdf5_image.lookup3(superblock[:44]) == int.from_bytes(superblock[44:], "little")
-
-
-def test_an_image_of_another_layout_is_refused():
-    with pytest.raises(ValueError, match="superblock"):
-        hdf5_image.plain_bytes(b"CDF\x01" + bytes(100))
 
 
 def test_written_again_after_reading_gives_the_same_bytes(path, tmp_path):
@@ -208,46 +197,44 @@ def test_a_file_written_anew_by_another_program_is_not_ours(path, tmp_path):
         store.read(tmp_path / "copy.nc")
 
 
+@contextlib.contextmanager
+def space_for(size: int) -> Iterator[None]:
+    """No file may be longer than ``size`` bytes, as if its disk were full."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
 def test_no_space_left_keeps_the_old_file(path):
     store.write(path, dataset(0))
     before = path.read_bytes()
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))
-    try:
-        with pytest.raises(StoreError, match=r"result.nc: cannot be written: File too large"):
-            store.write(path, dataset(1, size=20_000))
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    with space_for(20_000), pytest.raises(OSError, match="File too large"):
+        atomic.write_bytes(path, bytes(50_000))
     assert path.read_bytes() == before
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 
-FULL_DISK = """
-import os, resource, sys
-import netCDF4, numpy as np
-
-path, limit = sys.argv[1], resource.getrlimit(resource.RLIMIT_FSIZE)
-resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))
-file = netCDF4.Dataset(path, "w")
-try:
-    file.createDimension("n", 100_000)
-    file.createVariable("a", "f8", ("n",))[...] = np.arange(100_000.0)
-    file.close()
-except RuntimeError as error:
-    print(error)
-del file
-os.unlink(path)
-links = (f"/proc/self/fd/{number}" for number in range(3, 20))
-print(sum(os.readlink(link).startswith(path) for link in links if os.path.lexists(link)))
-"""
-
-
-@pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="open files are listed on Linux only")
-def test_why_files_are_made_in_memory(tmp_path):
-    """HDF5 gives no reason when a disk is full, and keeps the file, removed or not."""
-    command = [sys.executable, "-c", FULL_DISK, str(tmp_path / "direct.nc")]
-    run = subprocess.run(command, capture_output=True, text=True)
-    assert run.stdout.split("\n")[:2] == ["NetCDF: HDF error", "1"], run.stdout + run.stderr
+def test_no_space_left_for_temporary_files_is_an_error_that_names_their_folder(path, monkeypatch):
+    temporary = path.parent / "temporary"
+    temporary.mkdir(parents=True)
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    store.write(path, dataset(0))
+    before = path.read_bytes()
+    said = rf"result.nc: cannot be written: NetCDF: HDF error; is there space in {temporary}\?"
+    with space_for(20_000), pytest.raises(StoreError, match=said):
+        store.write(path, dataset(1, size=20_000))
+    assert path.read_bytes() == before
+    assert list(temporary.iterdir()) == []
+    links = Path("/proc/self/fd")
+    if links.exists():  # HDF5 keeps its file open, removed or not: it must hold no space
+        open_files = [link for link in links.iterdir() if os.path.lexists(link)]
+        held = [link for link in open_files if os.readlink(link).startswith(str(temporary))]
+        assert sum(link.stat().st_size for link in held) == 0
+    store.write(path, dataset(1, size=20_000))
+    xr.testing.assert_equal(store.read(path)[""], dataset(1, size=20_000))
 
 
 def test_a_folder_that_cannot_be_made_or_written(tmp_path):

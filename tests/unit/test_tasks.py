@@ -1,5 +1,6 @@
 """One map: same results wherever it runs, nothing finished is lost, every failure names its task."""
 
+import errno
 import functools
 import json
 import os
@@ -18,7 +19,7 @@ import pytest
 from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.sweeps import cluster as dask_tasks
-from granular_response.sweeps import processes
+from granular_response.sweeps import executor, memory, processes
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
@@ -247,7 +248,7 @@ def test_an_interrupted_sweep_continues(tmp_path):
     task = functools.partial(note, folder=marks)
     with pytest.raises(KeyboardInterrupt):
         map_tasks(task, range(8), workers=2, checkpoint=kept, progress=interrupt)
-    finished = len(list(kept.rglob("*.npz")))
+    finished = len(list(kept.rglob("*.kept")))
     assert finished == 3
     seen.clear()
     result = map_tasks(task, range(8), workers=2, checkpoint=kept, progress=lambda done, total, what: seen.append(done))
@@ -271,7 +272,7 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
     script.write_text(KILLED)
     run = subprocess.Popen([sys.executable, script, Path(__file__).parent, marks, kept])
     deadline = time.monotonic() + 60
-    while not kept.exists() or len(list(kept.rglob("*.npz"))) < 5:
+    while not kept.exists() or len(list(kept.rglob("*.kept"))) < 5:
         assert time.monotonic() < deadline
         time.sleep(0.02)
     run.kill()
@@ -280,7 +281,7 @@ def test_a_killed_sweep_continues_and_leaves_no_workers(tmp_path):
     while any(alive(pid) for pid in workers):
         assert time.monotonic() < deadline
         time.sleep(0.05)
-    done = len(list(kept.rglob("*.npz")))
+    done = len(list(kept.rglob("*.kept")))
     before = sum(len(starts(marks, item)) for item in range(40))
     assert done < 40
     task = functools.partial(note, folder=marks)
@@ -299,17 +300,16 @@ def alive(pid: int) -> bool:
 
 def test_a_result_that_does_not_load_is_computed_again(tmp_path):
     expected = map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path)
-    for file in tmp_path.rglob("*.npz"):
+    for file in tmp_path.rglob("*.kept"):
         file.write_bytes(file.read_bytes()[:-3])
     assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path) == expected
 
 
 def test_a_planted_pickle_does_not_run(tmp_path):
     expected = map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept")
-    for file in (tmp_path / "kept").rglob("*.npz"):
+    for file in (tmp_path / "kept").rglob("*.kept"):
         code = pickle.dumps(Planted(tmp_path / "mark"))
-        file.write_bytes(code)
-        file.with_suffix(".pickle").write_bytes(code)
+        file.write_bytes(code + memory._seal(file.stem, code))
     assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept") == expected
     assert not (tmp_path / "mark").exists()
 
@@ -370,7 +370,7 @@ def test_what_cannot_be_told_apart_is_computed_with_one_warning(tmp_path):
 
 
 def test_a_result_of_another_kind_is_returned_and_not_kept(tmp_path):
-    with pytest.warns(MemoryWarning, match=r"a value of type .*iterator is not kept"):
+    with pytest.warns(MemoryWarning, match=r"a value is not kept: builtins.iter is no class"):
         (found,) = map_tasks(iter, [[1, 2]], workers=1, checkpoint=tmp_path / "kept")
     assert list(found) == [1, 2]
 
@@ -385,7 +385,7 @@ def test_the_resources_in_use_name_the_folder(tmp_path):
     with using(checkpoint=tmp_path / "kept"):
         map_tasks(slow_first, range(3), workers=1)
     map_tasks(slow_first, range(5), workers=1)
-    assert len(list((tmp_path / "kept").rglob("*.npz"))) == 3
+    assert len(list((tmp_path / "kept").rglob("*.kept"))) == 3
 
 
 def test_another_function_or_item_finds_nothing(tmp_path):
@@ -435,7 +435,7 @@ class TestDask:
         again = [item for item in range(16) if len(starts(marks, item)) > 1]
         assert 12 in again
         assert len(again) <= 3  # with what it had not yet handed over; not all that it ever finished
-        assert len(list((tmp_path / "kept").rglob("*.npz"))) == 16
+        assert len(list((tmp_path / "kept").rglob("*.kept"))) == 16
 
     def test_workers_that_round_otherwise_are_reported(self, cluster, monkeypatch):
         with warnings.catch_warnings():
@@ -498,7 +498,7 @@ def scheduler(tmp_path):
 
 
 def test_a_scheduler_without_workers_is_reported_and_then_waited_for(scheduler, monkeypatch):
-    monkeypatch.setattr(dask_tasks, "PATIENCE", 0.2)
+    monkeypatch.setattr(executor, "PATIENCE", 0.2)
     _, address = scheduler
     worker = []
 
@@ -536,12 +536,38 @@ def test_a_client_that_gets_no_turn_is_started_again(monkeypatch):
 def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd, monkeypatch):
     process, address = scheduler
 
-    def kill(finished, client, address):
-        process.kill()
-        return finished.get()
-
-    monkeypatch.setattr(dask_tasks, "_next", kill)
+    monkeypatch.setattr(executor, "PATIENCE", 0.2)
+    monkeypatch.setattr(warnings, "showwarning", lambda *_: process.kill())  # it is said that there is no worker
     with pytest.raises(SweepError) as caught:
         map_tasks(slow_first, range(3), scheduler=address)
     assert str(caught.value) == f"the Dask scheduler at {address} was lost, with 3 of 3 tasks to do"
     assert capfd.readouterr().err == ""
+
+
+FROM_STANDARD_INPUT = """
+from granular_response.sweeps.tasks import map_tasks
+def square(x):
+    return x * x
+if __name__ == "__main__":
+    print(map_tasks(square, range(4), workers=2), __file__)
+"""
+
+
+def test_a_script_from_standard_input_has_workers_too(tmp_path):
+    """They looked for a file of the name that Python gives it."""
+    command = [sys.executable, "-"]
+    done = subprocess.run(command, input=FROM_STANDARD_INPUT, capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (0, "[0, 1, 4, 9] <stdin>\n"), done.stderr
+
+
+def test_processes_that_cannot_begin_are_one_line(monkeypatch):
+    """Their locks are files of /dev/shm."""
+
+    def refuse(*_):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr("multiprocessing.context.BaseContext.Event", refuse)
+    with pytest.raises(SweepError) as caught:
+        map_tasks(abs, range(3), workers=2)
+    assert str(caught.value) == "worker processes cannot begin, /dev/shm: Read-only file system; or workers=1"
+    assert map_tasks(abs, range(3), workers=1) == [0, 1, 2]

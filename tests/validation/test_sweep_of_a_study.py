@@ -137,13 +137,13 @@ def test_a_killed_run_continues_from_its_checkpoint(folder, expected) -> None:
         [sys.executable, "-m", "granular_response", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
     deadline = time.monotonic() + 60
-    while len(list(kept.rglob("*.npz"))) < 6 and run.poll() is None:
+    while len(list(kept.rglob("*.kept"))) < 6 and run.poll() is None:
         assert time.monotonic() < deadline
         time.sleep(0.005)
     run.kill()
     said = run.communicate()[1].decode().splitlines()
     assert len(said) == 1 and ".rest_states: nothing more is kept there" in said[0]
-    finished = len(list(kept.rglob("*.npz")))
+    finished = len(list(kept.rglob("*.kept")))
     assert 6 <= finished < TASKS
     assert not (folder / "here.nc").exists()
 

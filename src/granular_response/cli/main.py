@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .. import __version__
+from ..errors import GranularError
 from ..machine import floating_point, without_dask
 
 # Before anything loads numpy: the stages of the pipeline give the same digits on every x86 machine.
@@ -98,7 +99,7 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
     from ..store import files as store
     from ..store.result import to_labelled
 
-    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
     typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
     for remark in solution.remarks:
         typer.echo(f"granular-response: {output}: {remark}", err=True)
@@ -146,7 +147,7 @@ def run(
     import time
 
     from ..api.terminal import TerminalProgress
-    from ..scene import Scene
+    from ..scene import Scene, SceneError
     from ..store import files as store
 
     started = time.perf_counter()
@@ -163,7 +164,7 @@ def run(
     try:
         with using(threads or cores()), TerminalProgress() as progress:
             solution = solve_scene(described, progress=progress)
-    except SOLVE_ERRORS as error:
+    except (SceneError, *SOLVE_ERRORS) as error:
         if not str(error).startswith(str(scene)):
             error.args = (f"{scene}: {error}", *error.args[1:])
         raise
@@ -249,15 +250,22 @@ def simulate(
 
     _loaded()
 
-    with TerminalProgress() as progress:
-        path = simulation.simulate(
-            group,
-            output,
-            parameter_file=params,
-            workers=workers,
-            scheduler=scheduler,
-            progress=progress,
-        )
+    if before := simulation.finished(group, output):
+        typer.echo(f"granular-response: {group} goes on from {before} finished tasks of an earlier run", err=True)
+    try:
+        with TerminalProgress() as progress:
+            path = simulation.simulate(
+                group,
+                output,
+                parameter_file=params,
+                workers=workers,
+                scheduler=scheduler,
+                progress=progress,
+            )
+    except KeyboardInterrupt:
+        if count := simulation.finished(group, output):
+            typer.echo(f"granular-response: interrupted; run again, it goes on from {count} finished tasks", err=True)
+        raise
     typer.echo(str(path))
 
 
@@ -277,10 +285,11 @@ def draw(
 
     _loaded()
 
+    numbers = measuring.measure(group, data) if measured else None  # first: they do not wait for pictures
     for path in drawing.draw(group, data, output):
         typer.echo(str(path))
-    if measured:
-        typer.echo(str(measuring.measure(group, data)))
+    if numbers is not None:
+        typer.echo(str(numbers))
 
 
 @_command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
@@ -313,9 +322,10 @@ def show(
     from rich.console import Console
     from rich.text import Text
 
+    from ..api.terminal import columns
     from ..store.summary import summarise
 
-    console = Console(highlight=False, markup=False, emoji=False)
+    console = Console(highlight=False, markup=False, emoji=False, width=columns())
     for part in summarise(file):
         console.print(part, soft_wrap=isinstance(part, Text))
 
@@ -510,29 +520,6 @@ def print_version() -> None:
     typer.echo(f"granular-response {__version__}")
 
 
-def _expected_errors() -> tuple[type[BaseException], ...]:
-    """Errors that a user can cause: one line is enough. Only modules that are loaded can have raised any."""
-    names = (
-        "paper.archive.ArchiveError",
-        "paper.claims.table.ClaimsError",
-        "paper.pipeline.GroupError",
-        "paper.report.ReportError",
-        "plot.pictures.PictureError",
-        "scene.SceneError",
-        "solve.SOLVE_ERRORS",
-        "store.export.ExportError",
-        "store.files.StoreError",
-        "store.generated.GeneratedError",
-        "store.result.ResultError",
-        "sweeps.errors.SweepError",
-    )
-    found: list[type[BaseException]] = []
-    for module, _, attribute in (name.rpartition(".") for name in names):
-        errors = getattr(sys.modules.get(f"granular_response.{module}"), attribute, ())
-        found += errors if isinstance(errors, tuple) else (errors,)
-    return tuple(found)
-
-
 #: Errors of a stream, which has no name.
 _NOT_WRITTEN = (errno.EIO, errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
@@ -561,9 +548,9 @@ def _said(error: Exception) -> str | None:
         return f"not enough memory: {error or 'the scene is too large'}"
     if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
         return f"{error.filename}: {error.strerror}"
-    expected, cause = _expected_errors(), error.__cause__
-    programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, expected)
-    return str(error) if isinstance(error, expected) and not programming else None
+    cause = error.__cause__
+    programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, GranularError)
+    return str(error) if isinstance(error, GranularError) and not programming else None
 
 
 def main() -> None:

@@ -6,6 +6,8 @@ is left to Coulomb's limit has fallen to zero; one that slides sticks as soon as
 
 from __future__ import annotations
 
+import math
+
 from ..contact.law import stiffness
 from ..machine.machine_code import kernel
 from ..state.status import OPEN, SLIDING
@@ -107,8 +109,9 @@ def next_changes(
 
     ``q``, ``v`` (dof,) : displacements and their rates; ``status`` (m + w,) : negative for contacts that slide under a
     negative force; ``normal``, ``tangential``, ``overlap`` (m + w,); ``tip``, ``negligible`` : a force and a rate of a
-    force that are none; ``count`` (2, n) : zeros, to count contacts in. A rattler that rests on one contact and is pushed along by another bears nothing there, however
-    it moves: nothing happens at such a contact but that it closes.
+    force that are none; ``count`` (2, n) : zeros, to count contacts in. A rattler that rests on one contact and is
+    pushed along by another bears nothing there, however it moves: such a contact opens when the other disk withdraws,
+    and nothing else happens to it.
     """
     m = pairs.first.size
     turn = q.size == 3 * n
@@ -117,8 +120,12 @@ def next_changes(
     for c in range(m):
         i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         if status[c] != OPEN and normal[c] <= tip:
-            if (closed[i] <= 2 and bearing[i] <= 1) or (closed[j] <= 2 and bearing[j] <= 1):
-                what[c], left[c], rate[c] = NOTHING, 0.0, 0.0
+            first = closed[i] <= 2 and bearing[i] <= 1
+            if first or (closed[j] <= 2 and bearing[j] <= 1):
+                # the velocity of the rattler towards the other disk: one that would be drawn along stays behind
+                drawn = (v[j] * dx + v[n + j] * dz) / d if not first else -(v[i] * dx + v[n + i] * dz) / d
+                drawn *= pairs.law.normal_stiffness
+                what[c], left[c], rate[c] = (OPENS, 0.0, drawn) if drawn > negligible else (NOTHING, 0.0, 0.0)
                 continue
         nx, nz = dx / d, dz / d
         wx, wz = v[i] - v[j], v[n + i] - v[n + j]
@@ -143,6 +150,16 @@ def next_changes(
             status[w], overlap[w], normal[w], tangential[w], v[i] * nx + v[n + i] * nz, along, k, walls.law, tip,
             negligible,
         )  # fmt: skip
+
+
+@kernel
+def first_change(left, rate):
+    """The contact that changes first, and after which growth of the load factor; 0 and infinity where none does."""
+    first, length = 0, math.inf
+    for c in range(rate.size):
+        if rate[c] > 0.0 and max(left[c], 0.0) < length * rate[c]:
+            first, length = c, max(left[c], 0.0) / rate[c]
+    return first, length
 
 
 @kernel

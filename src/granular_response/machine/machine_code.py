@@ -7,16 +7,16 @@ ever deleted here.
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, suppress
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 import numba as nb
-
-from .turns import Turns
 
 _PACKAGE = Path(__file__).parents[1]
 #: Folders of the package whose files make kernels or are inlined into them.
@@ -47,58 +47,28 @@ def kernel(function: Callable | None = None, **options: Any) -> Any:
     finally:
         nb.config.CACHE_DIR = before
     if folder is not None and hasattr(compiled, "_cache"):  # not with compilation off
-        _keep_own_types_alone(compiled)
-        _compile_in_turn(compiled, _turns(folder))
+        _keep_own_types_alone(compiled, folder / "lock")
     return compiled
 
 
-def _keep_own_types_alone(compiled: Any) -> None:
-    """Code for a law or an integrator from elsewhere is not kept: a process that lacks it could not read the index."""
+def _keep_own_types_alone(compiled: Any, lock: Path) -> None:
+    """Code for a law or an integrator from elsewhere is not kept: a process that lacks it could not read the index.
+
+    Numba reads the index of a kernel, picks the next free file and writes both. Two processes at once, with code for
+    different arguments, would pick the same file, and the index then names the code of one for the arguments of the
+    other. So one process writes at a time.
+    """
     save = compiled._cache.save_overload
 
     def save_own(arguments: Any, data: Any) -> None:
-        if all(map(_is_own, arguments)):
+        if not all(map(_is_own, arguments)):
+            return
+        with ExitStack() as held:
+            with suppress(OSError):  # a file system without locks
+                fcntl.lockf(held.enter_context(lock.open("w")), fcntl.LOCK_EX)
             save(arguments, data)
 
     compiled._cache.save_overload = save_own
-
-
-@cache
-def _turns(folder: Path) -> Turns:
-    return Turns(folder / "turns")
-
-
-def _compile_in_turn(compiled: Any, turns: Turns) -> None:
-    """What is kept nowhere yet is compiled by one process; others wait for its turn to end and look again.
-
-    Processes that keep code of one kernel for different arguments do so one after another: each writes the index whole.
-    """
-    kept, name = compiled._cache, f"{compiled.py_func.__module__}.{compiled.py_func.__qualname__}"
-    load, save, compile_one = kept.load_overload, kept.save_overload, compiled.compile
-    mine: set[str] = set()
-
-    def load_or_take(arguments: Any, context: Any) -> Any:
-        found = load(arguments, context)
-        turn = f"{name}{arguments}"
-        if found is None and all(map(_is_own, arguments)) and turns.take(turn):
-            mine.add(turn)
-            found = load(arguments, context)
-        return found
-
-    def save_alone(arguments: Any, data: Any) -> None:
-        with turns.taken(name):
-            save(arguments, data)
-
-    def compile_and_end(arguments: Any) -> Any:
-        try:
-            return compile_one(arguments)
-        finally:
-            turn = f"{name}{arguments}"
-            if turn in mine:
-                mine.remove(turn)
-                turns.give_back(turn)
-
-    kept.load_overload, kept.save_overload, compiled.compile = load_or_take, save_alone, compile_and_end
 
 
 def _is_own(kind: Any) -> bool:

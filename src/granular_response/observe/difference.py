@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from granular_response.state import OPEN, Contacts, FloatArray, State
+from ..state import OPEN, Contacts, FloatArray, State
 
 
 def require_same_candidates(rest: State, loaded: State) -> None:

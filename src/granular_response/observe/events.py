@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from granular_response.observe.positive import check_positive
+from ..errors import GranularError
+from .positive import check_positive
 
 
-class EventNotBracketed(ValueError):
+class EventNotBracketed(GranularError, ValueError):
     """The predicate says the same at both ends, so no event is known to lie between them."""
 
 

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from granular_response.observe.positive import check_positive
-from granular_response.state import FLOOR, Box, FloatArray, State
+from ..state import FLOOR, Box, FloatArray, State
+from .positive import check_positive
 
 
 def floor_disks(states: Sequence[State], bottom_row: ArrayLike = ()) -> NDArray[np.intp]:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from granular_response.observe.difference import require_same
-from granular_response.state import SLIDING, Contacts, FloatArray, State
+from ..state import SLIDING, Contacts, FloatArray, State
+from .difference import require_same
 
 #: Directions of the triangular lattice, as returned by :func:`lattice_direction`.
 HORIZONTAL, RISING, FALLING = 0, 1, 2

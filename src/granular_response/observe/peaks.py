@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from granular_response.observe.positive import check_positive
-from granular_response.state import FloatArray
+from ..state import FloatArray
+from .positive import check_positive
 
 #: A dip shallower than this fraction of the largest response does not separate two peaks. Responses of two
 #: correct codes differ by about 1e-4; a dip at the limit of sight in a printed figure is about 1e-2.

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from granular_response.observe.difference import pair_force_difference
-from granular_response.observe.network import contact_centre
-from granular_response.observe.positive import check_positive
-from granular_response.state import FloatArray, State
+from ..state import FloatArray, State
+from .difference import pair_force_difference
+from .network import contact_centre
+from .positive import check_positive
 
 #: Distance of neighbouring rows of the triangular lattice, in lattice constants.
 ROW_SPACING = np.sqrt(3.0) / 2.0

@@ -32,10 +32,10 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from scipy.special import erf
 
-from granular_response.observe.difference import pair_force_difference, wall_force_difference
-from granular_response.observe.floor import smoothed_response
-from granular_response.observe.positive import check_positive
-from granular_response.state import FloatArray, State
+from ..state import FloatArray, State
+from .difference import pair_force_difference, wall_force_difference
+from .floor import smoothed_response
+from .positive import check_positive
 
 #: Widths of the Gaussian beyond which images of a force on a line are left out.
 LINE_CUTOFF = 7.0

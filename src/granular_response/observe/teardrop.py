@@ -19,9 +19,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from granular_response.observe.difference import require_same_candidates
-from granular_response.observe.network import contact_centre, contact_changes
-from granular_response.state import FLOOR, Box, FloatArray, State
+from ..state import FLOOR, Box, FloatArray, State
+from .difference import require_same_candidates
+from .network import contact_centre, contact_changes
 
 BoolArray = NDArray[np.bool_]
 

@@ -17,8 +17,8 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
-from granular_response.plot import style
-from granular_response.state import FLOOR, OPEN, Box, FloatArray, foot_points
+from ..state import FLOOR, OPEN, Box, FloatArray, foot_points
+from . import style
 
 #: Points; a thinner line is lost in print.
 THINNEST = 0.4

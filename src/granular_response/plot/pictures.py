@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
+from ..errors import GranularError
 from ..observe.floor import origin_of
 from ..observe.stress import ContactForces, coarse_grained_stress, grid_points
 from ..state import OPEN, SLIDING, Box, FloatArray, wall_normals
@@ -30,7 +31,7 @@ from .field import draw_field, root_norm
 Scale = Literal["linear", "sqrt", "percentile"]
 
 
-class PictureError(ValueError):
+class PictureError(GranularError, ValueError):
     """A picture that cannot be drawn as asked. The message is one line."""
 
 
@@ -299,7 +300,7 @@ def stress(
         force=np.concatenate(shown.forces(added)),
         period=shown.box.period,
     )
-    step = max(0.5, shown.box.width / 240.0)
+    step = max(0.5, max(shown.box.width, shown.top) / 240.0)
     left = -0.5 * shown.box.width if shown.box.periodic else -shown.origin
     x = left + np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
     z = np.linspace(0.0, shown.top, round(shown.top / step) + 1)

@@ -22,7 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from granular_response.store import atomic
+from ..store import atomic
 
 #: Column widths of the journal in inches.
 SINGLE, DOUBLE = 3.4, 7.0
@@ -310,6 +310,13 @@ def paper_value(
             fontsize=7,
             color=PAPER,
         )
+
+
+def logarithmic(axes: Axes, names: str = "xy") -> None:
+    """A logarithmic scale along the axes in ``names`` on which something positive was drawn; others stay linear."""
+    for name in names:
+        if np.isfinite(getattr(axes.dataLim, f"minpos{name}")):
+            axes.set(**{f"{name}scale": "log"})
 
 
 def no_axes(axes: Axes) -> None:

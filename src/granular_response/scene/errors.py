@@ -10,6 +10,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from ..errors import GranularError
+
 _MISSING: Any = object()
 
 _short = reprlib.Repr()
@@ -18,14 +20,14 @@ _short.maxlong = 40
 _short.maxlevel = 3
 
 
-class SceneError(ValueError):
+class SceneError(GranularError, ValueError):
     """A scene that cannot be simulated as written. The message is one line: key, value, what is allowed."""
 
     def __init__(self, message: str) -> None:
         super().__init__(" ".join(message.splitlines()))
 
 
-class Problem(ValueError):
+class Problem(GranularError, ValueError):
     """What is wrong with a value, raised inside a validator; pydantic adds where it stands.
 
     ``key`` extends the path of the validated object and ``value`` replaces its input in the message.

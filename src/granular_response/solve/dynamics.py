@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ..errors import SolveError
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
 from ..kernels.model import Model, Pairs, Schedule, Walls
@@ -44,7 +45,7 @@ ENVELOPE_TIME = 20.0
 Ramp = tuple[float, float, float]
 
 
-class DynamicsError(RuntimeError):
+class DynamicsError(SolveError, RuntimeError):
     """A run that blew up."""
 
 
@@ -295,9 +296,11 @@ class Dynamics:
         held[part[problem.held.disk[problem.held.axis == 1]]] = True
         if held.all():
             return False
-        force = -self._now(self.gravity) * problem.weight
+        weight = self._now(self.gravity) * problem.weight
+        force = -weight
         np.add.at(force, problem.load_disk, self._now(self.load) * problem.load[:, 1])
-        return bool((np.abs(np.bincount(part, force, parts)[~held]) > BALANCED).any())
+        borne = np.bincount(part, weight, parts)
+        return bool((np.abs(np.bincount(part, force, parts)) > BALANCED * borne)[~held].any())
 
     def lifted_disk(self) -> int | None:
         """A disk that its load has torn off the packing and carries up for good; None without one."""

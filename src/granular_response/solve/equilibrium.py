@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..errors import SolveError
 from ..state import OPEN, Certificate, FloatArray, State
 from .problem import Problem
 from .stability import negative_modes
@@ -27,9 +28,11 @@ NEWTON_ITERATIONS = 30
 FLAT = 0.1
 #: A step moves no disk farther than this (mean radii).
 LONGEST_STEP = 0.05
+#: Nor does the static finish of a motion: what is that far away is another equilibrium than the one it was ending in.
+FARTHEST = 0.1
 
 
-class EquilibriumError(RuntimeError):
+class EquilibriumError(SolveError, RuntimeError):
     """No static equilibrium was found near the start."""
 
 
@@ -171,6 +174,13 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         ]
     )
     closed = np.concatenate([state.pairs.status, state.walls.status]) != OPEN
+    bears = problem.weight.copy()
+    for disks, forces in (
+        (state.pairs.first, state.pairs.normal_force),
+        (state.pairs.second, state.pairs.normal_force),
+        (state.walls.first, state.walls.normal_force),
+    ):
+        np.maximum.at(bears, disks, forces)
     energy = 0.5 * (problem.weight * (state.velocity**2).sum(axis=1)).sum()
     energy += 0.5 * (problem.packing.inertia * state.angular_velocity**2).sum()
     return Certificate(
@@ -181,6 +191,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         kinetic_energy=float(energy) / n,
         negative_modes=modes,
         loose_disks=int((state.contact_count() < 2).sum()),
+        unbalanced_part=float((np.abs(force).max(axis=1) / bears).max()),
     )
 
 
@@ -226,7 +237,8 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_I
     Raises
     ------
     EquilibriumError
-        When the state is too far from rest for Newton's method: relax it further first.
+        When the state is too far from rest for Newton's method, or what that finds is far away or no equilibrium of
+        each disk: relax it further first.
     """
     factor = state.load_factor
     system = StaticSystem(problem, state)
@@ -238,6 +250,17 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_I
             f"(largest unbalanced force {report.residual:.1e}); {_cure(problem)}"
         )
     solved = system.state(trial, factor)
+    moved = float(np.hypot(*(solved.position - state.position).T).max())
+    if moved > FARTHEST or system.meets_unlisted(trial.configuration.q):
+        raise EquilibriumError(
+            f"the equilibrium that Newton's method finds is {moved:.2g} mean radii away; {_cure(problem)}"
+        )
     certificate = certify(problem, solved, modes=negative_modes(system, trial))
-    reached = replace(state.reached, newton_iterations=report.iterations, certificate=certificate)
+    if not certificate.balanced:
+        raise EquilibriumError(
+            f"a disk is out of balance by {certificate.unbalanced_part:.1g} of what it bears; {_cure(problem)}"
+        )
+    reached = replace(
+        state.reached, newton_iterations=report.iterations, certificate=certificate, finish_displacement=moved
+    )
     return replace(solved, reached=reached)

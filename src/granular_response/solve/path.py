@@ -9,14 +9,14 @@ frictionless arrays):
    finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``;
 3. contacts that are at their change change, a mirror pair together, and so on from 1.
 
-An equilibrium is lost where no statuses solve the rate problem (a snap-through), or where the tangent has an unstable
-direction along which the contacts that slide go on sliding (divergence; at a bifurcation of a symmetric branch). In the
-first case the nearest equilibrium under a slightly larger load is looked for (:func:`.increment.solve_increment`); where
-that is none, or not near, and in the second case, the motion of the disks leads to the next one (:mod:`.settle`). All of
-these are events of the result.
+Where no statuses are found for the rates the equilibrium under a slightly larger load is looked for with the limits of
+friction held fixed (:func:`.increment.solve_increment`): mostly the path goes on. An equilibrium is lost where there is
+none nearby (a snap-through), or where the tangent has an unstable direction along which the contacts that slide go on
+sliding (divergence; at a bifurcation of a symmetric branch). The motion of the disks then leads to the next one
+(:mod:`.settle`). Both are events of the result.
 
 In packings too large for a banded factorisation events are taken together within an increment of the load; what that
-leaves out is measured by halving the last increment.
+leaves out is measured by a path in increments of twice the length.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..errors import SolveError
 from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
-from .equilibrium import ENOUGH, attainable, certify, external_force
+from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
 from .increment import Work, solve_increment
 from .problem import Problem
 from .rates import Changes, RateProblem, Rates, changed
@@ -47,17 +48,20 @@ class PathOptions:
     #: Rate of a contact force, per load, below which the contact has no part in the load: rattlers, whose contacts open
     #: and close at the rounding of a force, make no events.
     negligible: float = 1e-9
-    #: Newton steps with one factorisation; two or three are usual.
+    #: Newton steps with one factorisation, and part of the residual that a step may leave; two or three are usual.
     same_tangent: int = 6
+    slow: float = 0.3
     #: Unbalanced force that is left at an event: the next increment takes it up.
     passing: float = 1e-10
     #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
     newton: int = 40
     #: Times that an increment is shortened to an event that came before the one expected.
     landings: int = 12
-    #: Load by which the next equilibrium is looked for first where one is lost, doubled up to the last.
-    first_beyond: float = 0.01
-    last_beyond: float = 0.64
+    #: Loads by which the next equilibrium is looked for, with limits of friction held fixed, where none are found for
+    #: the rates: after the first one mostly the path goes on, only with other statuses.
+    beyond: tuple[float, ...] = (1e-4, 1e-2, 1e-1)
+    #: Times by which disks may be faster than before there, or the equilibrium before was lost.
+    faster: float = 10.0
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
     #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
@@ -66,19 +70,19 @@ class PathOptions:
     listed_again: float = 0.25
     #: Increment of a large packing that takes events together: this times the square root of the number of disks, since
     #: a deeper packing takes more load to change as many contacts; and at most ``longest``.
-    together: float = 0.0033
-    longest: float = 1.6
+    together: float = 0.0066
+    longest: float = 3.2
 
 
 #: As measured in docs/benchmarks.md.
 OPTIONS = PathOptions()
 
 
-class PathError(RuntimeError):
+class PathError(SolveError, RuntimeError):
     """The load path could not be continued."""
 
 
-class Collapsed(RuntimeError):
+class Collapsed(SolveError, RuntimeError):
     """The load has pushed its disk down farther than allowed, to ``height``."""
 
     def __init__(self, load: float, height: float) -> None:
@@ -162,23 +166,38 @@ class _Path:
 
     def to(self, start: State, target: float) -> State:
         """The state at load factor ``target`` on the way from ``start``."""
-        self.begun, self.begun_at = len(self.record.events), start.load_factor
-        self.increments, self.before = 0, None
+        self.begun = len(self.record.events)
         self.target, self.direction = target, 1.0 if target >= start.load_factor else -1.0
         self.jump = self.options.jump / self.unit
-        point = self._balanced(self._at(start))
-        state: State | None = None
-        while state is None or state.certificate.stable is False:
-            if point.factor != target:
+        self.together = self.asked or None
+        point = self._at(start)
+        if self.asked is None and self.system.dissected:
+            self.together = min(self.options.together * self.problem.n**0.5, self.options.longest)
+        if self.together is None or point.factor == target:
+            return self._followed(point)
+        # what increments leave out, from those of twice the length
+        once, self.together = self.together, 2.0 * self.together
+        coarse = self._followed(point).wall_force()
+        del self.record.events[self.begun :]
+        self.together = once
+        state = self._followed(self._at(start))
+        off = np.abs(state.wall_force() - coarse).max(initial=0.0) if len(coarse) == len(state.wall_force()) else np.inf
+        error = float(off) / (self.unit * abs(target - start.load_factor))
+        return replace(state, reached=replace(state.reached, events_within=once, events_error=error))
+
+    def _followed(self, point: Point) -> State:
+        """The certified state at the target, from a point on the way there."""
+        point = self._balanced(point)
+        while True:
+            while point.factor != self.target:
                 point = self._advance(point)
                 self._look_down(point)
                 if self.progress is not None:
                     self.progress(point.factor)
-            elif state is None:
-                state = self._kept(point)
-            else:
-                point, state = self._by_motion(point, "bifurcation", "unstable", None), None
-        return state
+            state = self._state(point)
+            if state.certificate.stable is not False:
+                return replace(state, reached=replace(state.reached, events=tuple(self.record.events[self.begun :])))
+            point = self._by_motion(point, "bifurcation", "unstable", None)
 
     def _external(self, factor: float) -> FloatArray:
         """(dof,) gravity and loads; nothing on what is held."""
@@ -193,10 +212,6 @@ class _Path:
         self.event = force
         self.velocity: FloatArray | None = None
         self.suspect = 0  #: negative pivots at the last stability check
-        together = self.asked
-        if together is None and self.system.dissected:
-            together = min(self.options.together * self.problem.n**0.5, self.options.longest)
-        self.together = together
         return Point(state.load_factor, trial, trial.sense, trial.sense)
 
     def _balanced(self, point: Point) -> Point:
@@ -243,54 +258,51 @@ class _Path:
         """Where the next contact changes, or the target if that comes first."""
         changes, left = rates.changes, abs(self.target - point.factor)
         contact, length = changes.first()
+        what = int(changes.what[contact])
         for _ in range(self.options.landings):
-            at = contact if length < left else None
-            found = self._smooth(point, rates, min(length, left), at)
+            event = (contact, what) if length < left else None
+            found = self._smooth(point, rates, min(length, left), event)
             if found is None:
                 return None
             factor, trial, then = found
-            if at is not None and not (then.rate[at] > 0.0 and then.left[at] <= self.event):  # it does not change
-                changes.rate[at] = 0.0
-                contact, length = changes.first()
-                continue
             passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.event))
             if not len(passed):
                 self.record.work.increments += 1
                 self.jump = self.options.jump / self.unit
                 due = then.due(self.event)
                 # rates are those of the start: what they say of contacts that bear nothing is the turn on the way
-                due = due[rates.changes.rate[due] > 0.0]
+                due = due[(changes.rate[due] > 0.0) | (due == contact)]
                 return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
+            # another contact came first
             back = -then.left[passed] / then.rate[passed]
             contact = int(passed[np.argmax(back)])
-            length = max(abs(factor - point.factor) - float(back.max()), 0.0)
+            what, length = int(then.what[contact]), max(abs(factor - point.factor) - float(back.max()), 0.0)
         return None
 
     def _smooth(
-        self, point: Point, rates: Rates, length: float, contact: int | None
+        self, point: Point, rates: Rates, length: float, event: tuple[int, int] | None
     ) -> tuple[float, Trial, Changes] | None:
         """Equilibrium with the statuses of ``rates`` a ``length`` of the load factor on, and what changes then.
 
-        With a ``contact`` the load factor is an unknown too: that at which the contact is at its change. Newton's method
-        by the tangent at ``point``, or by that of the last iterate where the residual does not fall as it should.
+        With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
+        it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
         """
         options, known = self.options, point.known
-        factor = self._towards(point.factor, length) if contact is None else point.factor + self.direction * length
+        factor = self._towards(point.factor, length) if event is None else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-        before, enough = np.inf, ENOUGH if contact is None else options.passing
-        what = 0 if contact is None else int(rates.changes.what[contact])
+        before, enough = np.inf, ENOUGH if event is None else options.passing
         for done in range(options.newton):
             trial = system.trial(known, q, fixed=rates.sense, tangent=False)
             force = trial.contact_force + self._external(factor)
             size = float(np.abs(force).max(initial=0.0))
-            left = 0.0 if contact is None else self.rates.left(trial, contact, what)
+            left = 0.0 if event is None else self.rates.left(trial, *event)
             if not np.isfinite(size):
                 return None
-            balanced = size <= enough or (size <= attainable(system, q) and size > 0.5 * before)
+            balanced = size <= enough or (size > 0.5 * before and size <= attainable(system, q))
             if balanced and abs(left) <= 0.5 * self.event:
                 return factor, trial, self.rates.changes(trial, velocity, rates.sense)
-            if size > before or done % options.same_tangent == options.same_tangent - 1:
+            if size > options.slow * before or done % options.same_tangent == options.same_tangent - 1:
                 try:
                     by = system.renewed_factor(trial.configuration, rates.sense)
                     velocity = self.rates.velocity(trial.configuration, rates.sense, by)
@@ -298,13 +310,17 @@ class _Path:
                     return None
             before = size
             step = system.deinterleave(by.solve(system.interleave(force)))
-            if contact is not None:
-                rate = self.rates.fall(q, contact, what, velocity)
-                if rate <= 0.0:  # it does not change
-                    return factor, trial, self.rates.changes(trial, velocity, rates.sense)
-                further = (left - self.rates.fall(q, contact, what, step)) / rate
-                factor += self.direction * further
-                step += further * velocity
+            longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))
+            if longest > LONGEST_STEP:  # a contact of the 3/2 law that has just closed has no stiffness yet
+                step *= LONGEST_STEP / longest
+            if event is not None:
+                rate = self.rates.fall(q, *event, velocity)
+                if rate <= 0.0:  # it does not come nearer: on with new rates from here
+                    event = None
+                else:
+                    further = (left - self.rates.fall(q, *event, step)) / rate
+                    factor += self.direction * further
+                    step += further * velocity
             q = system.displaced(q + step, factor)
         return None
 
@@ -334,22 +350,25 @@ class _Path:
 
     def _lost(self, point: Point, reason: str) -> Point:
         """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
-        work, step = self.record.work, self.options.first_beyond / self.unit
-        while step * self.unit <= self.options.last_beyond:
-            new = self._towards(point.factor, step)
-            guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
-            external, guess = self._external(new), self.system.displaced(guess, new)
-            found = solve_increment(self.system, point.known, external, guess, work, outer=False)
-            if found is not None:
-                moved = float(np.abs(found.configuration.q - guess)[: 2 * self.problem.n].max(initial=0.0))
-                if moved > self.options.nearby:
+        n, usual = 2 * self.problem.n, 0.0
+        if self.velocity is not None:
+            usual = self.options.faster * float(np.abs(self.velocity[:n]).max(initial=0.0))
+        for beyond in self.options.beyond:
+            new = self._towards(point.factor, beyond / self.unit)
+            guess = self.system.displaced(point.known.q, new)
+            found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+            if found is None:
+                if new == self.target:
                     break
-                self._record_lost("stepped over", point, new, found.configuration.q - guess, reason)
-                self._record(point, found.sense)
-                return Point(new, found, found.sense, found.sense)
-            if new == self.target:
+                continue
+            moved = found.configuration.q - point.known.q
+            far = float(np.abs(moved[:n]).max(initial=0.0))
+            if far > self.options.nearby:
                 break
-            step *= 2.0
+            if far > usual * abs(new - point.factor):
+                self._record_lost("stepped over", point, new, moved, reason)
+            self._record(point, found.sense)
+            return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)
 
     def _by_motion(self, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
@@ -384,49 +403,17 @@ class _Path:
 
     def _increment(self, point: Point, new: float) -> Point:
         """One increment with the return map, whatever changes within it."""
-        self.before = point
         found = self._increased(point, new)
         if found is None:
             return self._lost(point, "no equilibrium with the return map")
         self.velocity = (found.configuration.q - point.known.q) / abs(new - point.factor)
         self._record(replace(point, factor=new), found.sense)
-        self.increments += 1
         return Point(new, found, found.sense, found.sense)
 
     def _increased(self, point: Point, new: float) -> Trial | None:
         guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
         guess = self.system.displaced(guess, new)
-        return solve_increment(
-            self.system, point.known, self._external(new), guess, self.record.work
-        )
-
-    def _error_of_increments(self, point: Point) -> float:
-        """What increments since the last kept state leave out: of the last one, by halving it, times their number.
-
-        Largest difference of a force of the floor or a wall, per load.
-        """
-        if self.before is None:
-            return 0.0
-        start = self.before
-        half = self._increased(start, 0.5 * (start.factor + point.factor))
-        middle = None if half is None else replace(start, factor=0.5 * (start.factor + point.factor), trial=half)
-        end = None if middle is None else self._increased(middle, point.factor)
-        if end is None:
-            return float("inf")
-        off = np.abs(end.normal - point.trial.normal), np.abs(end.tangential - point.trial.tangential)
-        largest = max(float(self.system.split(one)[1].max(initial=0.0)) for one in off)
-        return self.increments * largest / (self.unit * abs(self.target - self.begun_at))
-
-    def _kept(self, point: Point) -> State:
-        """The state at the target, with its certificate."""
-        state = self._state(point)
-        reached = replace(
-            state.reached,
-            events=tuple(self.record.events[self.begun :]),
-            events_within=self.together,
-            events_error=None if self.together is None else self._error_of_increments(point),
-        )
-        return replace(state, reached=reached)
+        return solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
 
     def _state(self, point: Point) -> State:
         """The certified state of a point."""
@@ -453,21 +440,18 @@ class _Path:
         contacts = np.flatnonzero(point.sense != after)
         if not len(contacts):
             return
-        system, q, n = self.system, point.known.q, self.problem.n
-        position = system.reference + q[: 2 * n].reshape(2, n).T
-        radius, m = self.problem.packing.radius, len(system.first)
-        for c in contacts:
-            at_wall = bool(c >= m)
-            i = int(system.wall_disk[c - m] if at_wall else system.first[c])
-            j = int(system.wall[c - m] if at_wall else system.second[c])
-            towards = (
-                -system.wall_normals[c - m]
-                if at_wall
-                else self.problem.packing.box.separation(position[j : j + 1], position[i : i + 1])[0]
-            )
-            x, z = position[i] + radius[i] * towards / np.hypot(*towards)
-            kind = _kind(int(point.sense[c]), int(after[c]))
-            self.record.events.append(Event(point.factor, kind, i, j, at_wall, float(x), float(z), point.factor))
+        system, n, m = self.system, self.problem.n, len(self.system.first)
+        position = system.reference + point.known.q[: 2 * n].reshape(2, n).T
+        at_wall = contacts >= m
+        pair, wall = contacts[~at_wall], contacts[at_wall] - m
+        first = np.concatenate([system.first[pair], system.wall_disk[wall]])
+        second = np.concatenate([system.second[pair], system.wall[wall]])
+        apart = self.problem.packing.box.separation(position[system.second[pair]], position[system.first[pair]])
+        towards = np.concatenate([apart, -system.wall_normals[wall]])
+        place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
+        kinds = map(_kind, point.sense[contacts].tolist(), after[contacts].tolist())
+        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
+        self.record.events += [Event(point.factor, *row, point.factor) for row in rows]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
         """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from ..errors import SolveError
 from ..state import FloatArray, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
@@ -22,7 +23,7 @@ from .timestep import resolve_time_step
 NUDGE = 1e-6
 
 
-class NotSettled(RuntimeError):
+class NotSettled(SolveError, RuntimeError):
     """A packing did not come to rest."""
 
 
@@ -93,13 +94,18 @@ def settle(
         if watch is not None:
             watch(dynamics)
 
+    def left() -> Stop:
+        """The stop with what is left of the steps."""
+        return replace(stop, maximum_steps=max(stop.maximum_steps - spent - dynamics.steps, 0))
+
+    spent = 0  #: steps of motions that have been started again
     settled = relax(dynamics, stop, gravity=gravity, load=load, progress=look)
     energy = stop.kinetic_energy
     why = ""
     for attempt in range(1, how.tries + 1):
-        left = settled.reached.kinetic_energy or 0.0
+        kinetic = settled.reached.kinetic_energy or 0.0
         # steps that run out within a ramp leave another load than the one that is asked for
-        if not settled.reached.settled and (left > how.nearly * energy or settled.load_factor != load[1]):
+        if not settled.reached.settled and (kinetic > how.nearly * energy or settled.load_factor != load[1]):
             break
         try:
             found = _statics(problem, settled, how)
@@ -107,19 +113,20 @@ def settle(
                 return found
             why = ": the equilibrium found is unstable"
             if how.nudged and attempt > 2:
+                spent += dynamics.steps
                 dynamics = Dynamics(problem, _displaced(problem, found), integrator, time_step)
         except EquilibriumError as error:
             why = f": {error}"
-        if not settled.reached.settled or attempt == how.tries:
+        if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
             break
         if how.cooling < 1.0:
             energy *= how.cooling
-            settled = relax(dynamics, replace(stop, kinetic_energy=energy), load=held)
+            settled = relax(dynamics, replace(left(), kinetic_energy=energy), load=held)
         else:
             dynamics.set_ramps(load=held)
-            dynamics.advance(round(how.wait / time_step))
+            dynamics.advance(min(round(how.wait / time_step), left().maximum_steps))
             settled = replace(dynamics.state(), reached=replace(settled.reached, more_relaxations=attempt))
-    if settled.reached.settled and why:
+    if settled.reached.settled and why and left().maximum_steps > 0:
         raise NotSettled(f"the packing is nearly at rest under {what}, but finds no stable equilibrium{why}")
     raise NotSettled(not_settled(problem, settled, what) + why)
 

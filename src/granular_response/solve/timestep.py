@@ -28,6 +28,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..contact import Law
+from ..errors import SolveError
 from ..kernels.integrators import INTEGRATORS, amplification
 from ..scene.protocol import PAPERS_TIME_STEP
 from .problem import Problem, static_contacts
@@ -40,7 +41,7 @@ LONGEST_STEP = 1e6
 NEIGHBOURS, ON_FLOOR, IN_CORNER = 6, 4, 2
 
 
-class UnstableTimeStep(ValueError):
+class UnstableTimeStep(SolveError, ValueError):
     """The time step of a scene is beyond its stability limit."""
 
 

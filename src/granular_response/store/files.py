@@ -3,16 +3,19 @@
 ``write`` and ``read`` are the only way in and out. A file holds one dataset, or one group for each dataset
 of a study. Plain ``xarray.open_dataset(path, group=...)`` reads it without this package.
 
-The HDF5 library does not recover from running out of space: it keeps the file open and locked for the life
-of the process. So the file is made in memory and reaches the disk through ``atomic``, with plain writes and
-plain errors. Its bytes depend on the data alone.
+The HDF5 library does not recover from running out of space: it gives no reason, and keeps the file open and locked for
+the life of the process. So it makes the file in a folder for temporary files, and the bytes reach their place through
+``atomic``, with plain writes and plain errors. They depend on the data alone.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import re
+import secrets
+import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +24,9 @@ import netCDF4
 import numpy as np
 
 from .. import __version__
-from . import atomic, hdf5_image
+from ..errors import GranularError
+from ..inputs import check_regular
+from . import atomic
 from .labelled import Labelled, labelled
 
 if TYPE_CHECKING:  # whoever writes without reading does not wait for it
@@ -41,7 +46,7 @@ _SEAL = b"granular_response sha256 "
 _GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
 
 
-class StoreError(Exception):
+class StoreError(GranularError, OSError):
     """A file that cannot be written or read as a dataset. The message is one line, first the path."""
 
 
@@ -53,6 +58,8 @@ def write(
     path: str | os.PathLike[str],
     datasets: xr.Dataset | Labelled | Mapping[str, xr.Dataset],
     attributes: Mapping[str, Any] | None = None,
+    *,
+    keep: bool = False,
 ) -> None:
     """Write datasets to one netCDF-4 file, compressed and with checksums.
 
@@ -65,6 +72,9 @@ def write(
         is the root) to datasets. Every variable and coordinate has the attributes ``long_name`` and ``units``.
     attributes
         Attributes of the file as a whole. ``format`` and ``package_version`` are added.
+    keep
+        What cost a computation is not given up where ``path`` cannot be written: it is kept under a new name beside it,
+        or in the current folder or that of temporary files, and the error says where.
 
     Raises
     ------
@@ -82,13 +92,25 @@ def write(
     marks = {"format": FORMAT, "package_version": __version__}
     root = Labelled(root.variables, root.coordinates, {**root.attributes, **(attributes or {}), **marks})
     groups = {"": root, **groups}
-    data = _image(path, groups)
+    data = _made(path, groups)
     data += _SEAL + hashlib.sha256(data).digest()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        atomic.write_bytes(path, data, check=lambda written: _verify(path, written, groups))
+        atomic.write_bytes(path, data, check=lambda written: _verify(written, groups))
     except OSError as error:
-        raise _error(path, f"cannot be written: {error.strerror or error}") from error
+        kept = _keep(path, data) if keep else None
+        where = "" if kept is None else f"; what was computed is kept as {kept}"
+        raise _error(path, f"cannot be written: {error.strerror or error}{where}") from error
+
+
+def _keep(path: Path, data: bytes) -> Path | None:
+    """The new name under which ``data`` was written, as near to ``path`` as one can be; None if nowhere."""
+    for folder in (path.parent, Path(), Path(tempfile.gettempdir())):
+        place = folder / f"{path.stem}.kept-{secrets.token_hex(4)}{SUFFIX}"
+        with contextlib.suppress(OSError):
+            atomic.write_bytes(place, data)
+            return place
+    return None
 
 
 def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -149,18 +171,30 @@ def _check(path: Path, group: str, parts: Labelled) -> None:
                 raise _error(path, f"{where} needs the attribute {label} (units: '1' in reduced units)")
 
 
-def _image(path: Path, groups: Mapping[str, Labelled]) -> bytes:
+def _made(path: Path, groups: Mapping[str, Labelled]) -> bytes:
     """The file as bytes."""
-    file = netCDF4.Dataset(_NO_NAME, mode="w", format="NETCDF4", memory=1)
     try:
-        for name, parts in groups.items():
+        with tempfile.TemporaryDirectory(prefix="granular_response_") as folder:
+            made = Path(folder) / "made.nc"
             try:
-                _dump(parts, file.createGroup(name) if name else file)
-            except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
-                raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
-    finally:
-        image = file.close()
-    return hdf5_image.plain_bytes(image)
+                with netCDF4.Dataset(made, mode="w", format="NETCDF4") as file:
+                    _fill(file, path, groups)
+                return made.read_bytes()
+            except RuntimeError:
+                os.truncate(made, 0)  # HDF5 keeps it open, so its space would not be given back
+                raise
+    except StoreError:
+        raise
+    except (OSError, RuntimeError) as error:
+        raise _error(path, f"cannot be written: {error}; is there space in {tempfile.gettempdir()}?") from error
+
+
+def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, Labelled]) -> None:
+    for name, parts in groups.items():
+        try:
+            _dump(parts, file.createGroup(name) if name else file)
+        except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
+            raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
 
 
 def _dump(parts: Labelled, group: netCDF4.Dataset) -> None:
@@ -192,21 +226,22 @@ def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
         group.setncattr(name, value)
 
 
-def _verify(path: Path, data: bytes, groups: Mapping[str, Labelled]) -> None:
-    """Decode every variable of every group once before the file counts."""
+def _verify(data: bytes, groups: Mapping[str, Labelled]) -> None:
+    """Decode every variable of every group once before the file counts; raises OSError if one cannot be."""
     try:
         with netCDF4.Dataset(_NO_NAME, mode="r", memory=data) as file:
             for name, parts in groups.items():
                 group = file[name] if name else file
                 for key, variable in parts.variables.items():
                     if group[key][...].shape != variable.values.shape:
-                        raise _error(path, f"variable {name}/{key} reads back with another shape")
-    except (OSError, RuntimeError, IndexError, KeyError) as error:
-        raise _error(path, f"does not read back: {error}") from error
+                        raise OSError(f"variable {name}/{key} reads back with another shape")
+    except (RuntimeError, IndexError, KeyError) as error:
+        raise OSError(f"it does not read back: {error}") from error
 
 
 def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
     try:
+        check_regular(path)
         data = Path(path).read_bytes()
     except FileNotFoundError:
         raise _error(path, "no such file") from None
@@ -216,15 +251,17 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
         raise _error(path, "is empty")
     if not _SIGNATURE.startswith(data[: len(_SIGNATURE)]):
         raise _error(path, "is not a netCDF-4 file")
-    if not _check_seal(path, data) and sealed:
-        if any(layout.encode() in data for layout in _READ):
-            raise _error(path, "is truncated or damaged, or another program has written it anew")
-        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
+    has_seal = _check_seal(path, data)  # before the HDF5 library sees damaged bytes, which can end the process
     try:
         dataset = netCDF4.Dataset(_NO_NAME, mode="r", memory=data)
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
     except Exception as error:  # damage can surface as nearly any kind of error
         raise _error(path, "is truncated or damaged") from error
+    if sealed and not has_seal:
+        dataset.close()
+        if attributes.get("format") in _READ:
+            raise _error(path, "is truncated or damaged, or another program has written it anew")
+        raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
     by_xarray = not sealed and attributes.get("package") == "granular_response" and "format" not in attributes
     if attributes.get("format") not in _READ and not by_xarray:
         dataset.close()
@@ -238,11 +275,9 @@ def is_sealed(path: str | os.PathLike[str]) -> bool:
 
 
 def _check_seal(path: str | os.PathLike[str], data: bytes) -> bool:
-    """Whether there is a digest. Raises StoreError if it is wrong, or the file not as long as it says."""
+    """Whether there is a digest. Raises StoreError if it is wrong."""
     start = len(data) - len(_SEAL) - hashlib.sha256().digest_size
     if data[start : start + len(_SEAL)] != _SEAL or start < 0:
-        if not hdf5_image.is_complete(data):
-            raise _error(path, "is truncated or damaged")
         return False
     if hashlib.sha256(memoryview(data)[:start]).digest() != data[start + len(_SEAL) :]:
         raise _error(path, "is damaged: its digest differs from the one made when it was written")

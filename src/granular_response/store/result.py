@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import __version__
+from ..errors import GranularError
 from ..observe.difference import match_candidates, pair_force_difference, wall_force_difference
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
@@ -61,7 +62,7 @@ _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 NOT_DETERMINED = -1
 
 
-class ResultError(ValueError):
+class ResultError(GranularError, ValueError):
     """A dataset that is not a result, or not one that can be continued. The message is one line."""
 
 
@@ -130,6 +131,7 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
         "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
         "negative_modes": f"unstable directions of the tangent stiffness ({NOT_DETERMINED}: not determined)",
         "loose_disks": "disks with fewer than two contacts",
+        "unbalanced_part": "largest unbalanced force on a disk, as a part of what it bears",
     }
     certificates: list[Certificate] = [s.certificate for s in states]
 
@@ -190,7 +192,7 @@ def _events_of(dataset: xr.Dataset, index: int) -> tuple[Event, ...]:
 
 
 def _events_from(dataset: xr.Dataset, count: int) -> list[tuple[Event, ...]]:
-    """The events on the way to each of ``count`` states; of a file from before events, what it says of lost equilibria."""
+    """The events on the way to each of ``count`` states; of an older file, the lost equilibria that it knows of."""
     found: list[list[Event]] = [[] for _ in range(count)]
     if "event_load_factor" in dataset:
         columns = {name: dataset[f"event_{name}"].values.tolist() for name in (*_EVENTS, "state")}
@@ -199,8 +201,9 @@ def _events_from(dataset: xr.Dataset, count: int) -> list[tuple[Event, ...]]:
             k = one.pop("state")
             found[k].append(Event(**{**one, "kind": _EVENT_KINDS[one["kind"]], "at_wall": bool(one["at_wall"])}))
     elif "crossing_start" in dataset and count > 1:
-        columns = {name: dataset[f"crossing_{name}"].values.tolist() for name in ("start", "end", "displacement", "reason")}
-        for start, end, displacement, reason in zip(*columns.values(), strict=True):
+        names = ("start", "end", "displacement", "reason")
+        columns = [dataset[f"crossing_{name}"].values.tolist() for name in names]
+        for start, end, displacement, reason in zip(*columns, strict=True):
             found[1].append(Event(start, "jump", until=end, displacement=displacement, reason=str(reason)))
     return [tuple(events) for events in found]
 
@@ -221,6 +224,7 @@ _REACHED = {
     "loose_disks": "disks with fewer than two contacts, at that moment",
     "more_relaxations": "stretches of dynamics between tries of the static finish",
     "newton_iterations": "iterations of Newton's method",
+    "finish_displacement": f"largest displacement of a disk in the static finish {LENGTH}",
     "escapes": "saddles of the energy that were left",
     "increments": "increments of the path so far, in the command that made the state",
     "factorisations": "factorisations of the path so far, in the command that made the state",
@@ -483,8 +487,11 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     one = dataset.isel(state=index)
     stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
     certificate = None
-    if set(stored.values()) <= set(one.variables):
-        numbers: dict[str, Any] = {name: one[variable].values.item() for name, variable in stored.items()}
+    # files from before have no such part
+    if set(stored.values()) - {"certificate_unbalanced_part"} <= set(one.variables):
+        numbers: dict[str, Any] = {
+            name: one[variable].values.item() for name, variable in stored.items() if variable in one.variables
+        }
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
         certificate = Certificate(**numbers)
@@ -526,6 +533,8 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     if not same or packed.box != rest.box:
         raise ResultError("the table of disks has changed since the result was made")
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
+    if rest.reached.certificate is None:
+        raise ResultError("holds no certificates, from which a run goes on")
     return Solution(
         scene=scene,
         problem=problem,

@@ -37,7 +37,7 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
 
     Raises
     ------
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If the file cannot be read.
     granular_response.store.result.ResultError
         If it is a result that is not whole.

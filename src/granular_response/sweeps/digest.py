@@ -1,7 +1,11 @@
 """Names made from content: equal values have equal names in every process, others have others.
 
-Where a value cannot be told from another one by what it holds there is no name, so that nothing is kept under it and
-nothing of another value is found.
+A name is the digest of what pickle makes of a value, so of all that a worker process would get of it. Some values stand
+there by what they are: a scene by its keys and its table, a dataclass by its fields, a function or class of a module by
+its name and the file it stands in. Functions of the running script, of a notebook or of another function have all that
+they refer to in their pickle (cloudpickle).
+
+What cannot be pickled has no name, so that nothing is kept under it and nothing of another value is found.
 """
 
 from __future__ import annotations
@@ -9,44 +13,42 @@ from __future__ import annotations
 import dataclasses
 import functools
 import hashlib
-import inspect
-import os
+import io
+import operator
 import sys
 import types
-from collections.abc import Iterator, Mapping
-from enum import Enum
+from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+import cloudpickle
 
+from ..errors import GranularError
 from ..scene.base import Description
 from ..scene.table import FilePacking
 
 _PACKAGE = Path(__file__).parents[1]
 
 
-class Indistinct(ValueError):
+class Indistinct(GranularError, ValueError):
     """A value that cannot be told from others by its content. One line that names it."""
 
 
 def digest(*values: Any) -> str:
     """32 hexadecimal digits for values, the same in every process: equal values, equal names.
 
-    Knows numbers, text, arrays, containers, dataclasses, scenes (with the table that they name) and functions: those
-    that can be imported by their name and the file they stand in, others (lambdas, of a notebook or of the running
-    script) by their code and all that it refers to.
-
     Raises
     ------
     Indistinct
-        For values of any other kind, and for a table that cannot be read.
+        For values that cannot be pickled, classes that cannot be imported, and a table that cannot be read.
     """
-    state = hashlib.sha256()
-    for value in values:
-        state.update(_described(value, ()))
-    return state.hexdigest()[:32]
+    try:
+        return _pickled(values, {}).hex()[:32]
+    except Indistinct:
+        raise
+    except Exception as error:  # whatever the methods of a value raise
+        raise Indistinct(f"a value cannot be told from others by its content: {' '.join(str(error).split())}") from None
 
 
 @functools.cache
@@ -61,62 +63,53 @@ def sources(*parts: str) -> str:
     return digest({path.relative_to(_PACKAGE).as_posix(): path.read_bytes() for path in files}, versions)
 
 
-def _described(value: Any, within: tuple[int, ...]) -> bytes:
-    """Bytes that only an equal value has. ``within`` are the values around it."""
-    kind = type(value)
-    if id(value) in within:  # a function that calls itself, say: its place among those around says which one
-        return f"within:{within.index(id(value))}:".encode()
-    around = (*within, id(value))
-
-    def many(values: Any) -> bytes:
-        return b"".join(_packed(_described(part, around)) for part in values)
-
-    def mapping(entries: Mapping) -> bytes:
-        return b"".join(sorted(_packed(many(entry)) for entry in entries.items()))
-
-    if value is None or value is Ellipsis or kind in (bool, int, str, bytes, complex, range):
-        body = repr(value).encode("utf-8", "surrogatepass")
-    elif kind is float:
-        body = value.hex().encode()
-    elif (kind in (np.ndarray, np.memmap) or isinstance(value, np.generic)) and not value.dtype.hasobject:
-        body = f"{value.dtype!r}{value.shape}".encode() + value.tobytes()
-    elif isinstance(value, Enum):
-        body = _class(kind) + value.name.encode()
-    elif dataclasses.is_dataclass(kind):
-        fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-        body = _class(kind) + mapping(fields)
-    elif isinstance(value, Description):
-        body = _class(kind) + mapping({name: getattr(value, name) for name in kind.model_fields})
-        if isinstance(value, FilePacking):
-            body += _packed(_table(value))
-    elif isinstance(value, Mapping):
-        body = _class(kind) + mapping(value)
-    elif isinstance(value, (set, frozenset)):
-        body = b"".join(sorted(_packed(_described(part, around)) for part in value))
-    elif isinstance(value, (list, tuple)):
-        body = _class(kind) + many(value)
-    elif isinstance(value, functools.partial):
-        body = many((value.func, value.args, value.keywords))
-    elif isinstance(value, types.MethodType) or (inspect.isbuiltin(value) and not inspect.ismodule(value.__self__)):
-        body = many((getattr(value, "__func__", value.__name__), value.__self__))
-    elif isinstance(value, types.CodeType):
-        handlers = getattr(value, "co_exceptiontable", b"")
-        body = many((sys.version, value.co_code, handlers, value.co_consts, value.co_names, value.co_varnames))
-    elif isinstance(value, (types.ModuleType, np.ufunc)):
-        body = value.__name__.encode()
-    elif isinstance(value, type):
-        body = _class(value)
-    elif inspect.isroutine(value) or hasattr(value, "__wrapped__") or hasattr(value, "py_func"):
-        body = _function(value, around)
-    elif isinstance(value, os.PathLike):
-        body = os.fsencode(value)
-    else:
-        raise Indistinct(f"a value of type {kind.__qualname__} cannot be told from others by its content")
-    return f"{kind.__module__}.{kind.__qualname__}:".encode() + body
+def _pickled(value: Any, functions: dict[int, int]) -> bytes:
+    stream = io.BytesIO()
+    _Pickler(stream, functions).dump(value)
+    return hashlib.sha256(stream.getvalue()).digest()
 
 
-def _packed(body: bytes) -> bytes:
-    return hashlib.sha256(body).digest()
+class _Pickler(cloudpickle.Pickler):
+    """Makes the same bytes of equal values; ``functions`` are those that were met, by their order."""
+
+    def __init__(self, stream: io.BytesIO, functions: dict[int, int]) -> None:
+        super().__init__(stream, protocol=5)
+        self.fast = True  # two equal parts count as that, be they one object or not
+        self.functions = functions
+
+    def persistent_id(self, value: Any) -> Any:
+        """What stands for a value; None where it is pickled."""
+        kind = type(value)
+        if isinstance(value, Description):
+            fields = {name: getattr(value, name) for name in kind.model_fields}
+            return kind, fields, _table(value) if isinstance(value, FilePacking) else None
+        if dataclasses.is_dataclass(kind):
+            return kind, [getattr(value, field.name) for field in dataclasses.fields(kind)]
+        if isinstance(value, (Mapping, set, frozenset)):
+            parts = value.items() if isinstance(value, Mapping) else value
+            return kind, sorted(_pickled(part, self.functions) for part in parts)
+        if kind is types.CodeType:  # wherever it stands
+            arguments = value.co_argcount, value.co_posonlyargcount, value.co_kwonlyargcount, value.co_flags
+            names = value.co_names, value.co_varnames
+            return sys.version, value.co_code, value.co_exceptiontable, value.co_consts, names, arguments
+        return self._named(value) if callable(value) else None
+
+    def _named(self, value: Any) -> Any:
+        """A function or class by its name, and a function that was met before by its place among those."""
+        is_class = isinstance(value, type)
+        # what a function of the running script refers to may be another value in each run
+        by_name = is_class or getattr(value, "__module__", None) != "__main__"
+        if by_name and (named := _importable(value)) is not None:
+            return named
+        if is_class and value.__module__ != "builtins":
+            raise Indistinct(f"class {value.__qualname__} stands in no module that can be imported")
+        if hasattr(value, "py_func"):  # compiled
+            return "compiled", value.py_func
+        if isinstance(value, types.FunctionType):
+            if id(value) in self.functions:
+                return "met", self.functions[id(value)]
+            self.functions[id(value)] = len(self.functions)
+        return None
 
 
 def _table(packing: FilePacking) -> bytes:
@@ -126,71 +119,22 @@ def _table(packing: FilePacking) -> bytes:
         raise Indistinct(f"{packing.file} cannot be read: {error.strerror}") from None
 
 
-def _class(kind: type) -> bytes:
-    """A class by its name and the file it stands in."""
-    if (named := _importable(kind)) is None:
-        raise Indistinct(f"class {kind.__qualname__} stands in no module that can be imported")
-    return named
-
-
-def _function(function: Any, within: tuple[int, ...]) -> bytes:
-    """A function by its name and file if it can be imported, else by its code and what this refers to.
-
-    One of the running script counts by both: what it refers to may be another value in each run.
-    """
-    named = _importable(function)
-    if named is not None and not (function.__module__ == "__main__" and isinstance(function, types.FunctionType)):
-        return named
-    if not isinstance(function, types.FunctionType):
-        raise Indistinct(f"{function!r} cannot be told from other functions by its content")
-    cells = []
-    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
-        try:
-            cells.append((name, cell.cell_contents))
-        except ValueError:  # not filled yet
-            cells.append((name, None))
-    used = sorted({name for code in _codes(function.__code__) for name in code.co_names} & function.__globals__.keys())
-    parts = (
-        function.__code__,
-        function.__defaults__,
-        function.__kwdefaults__,
-        cells,
-        [(name, function.__globals__[name]) for name in used],
-    )
-    return (named or b"") + b"".join(_packed(_described(part, within)) for part in parts)
-
-
-def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
-    """A code object and those of the functions that stand in it."""
-    yield code
-    for constant in code.co_consts:
-        if isinstance(constant, types.CodeType):
-            yield from _codes(constant)
-
-
-def _importable(value: Any) -> bytes | None:
+def _importable(value: Any) -> tuple[Any, ...] | None:
     """Module, name and file of a function or class that its module has under its name; None of others.
 
     A file of this package or of Python's own is not read: see :func:`sources`.
     """
     module = sys.modules.get(getattr(value, "__module__", None) or "")
-    if isinstance(value, type) and value.__module__ == "builtins":
-        return value.__qualname__.encode()
-    found: Any = module
-    for part in value.__qualname__.split("."):
-        found = vars(found).get(part) if hasattr(found, "__dict__") else None
-    if isinstance(found, (staticmethod, classmethod)):
-        found = found.__func__
-    if module is None or found is not value:
+    try:
+        if operator.attrgetter(value.__qualname__)(module) is not value:
+            return None
+    except AttributeError:
         return None
-    name = f"{module.__name__}.{value.__qualname__}:".encode()
-    package = module.__name__.partition(".")[0]
+    assert module is not None
+    name, package = (module.__name__, value.__qualname__), module.__name__.partition(".")[0]
     if package == __name__.partition(".")[0] or package in sys.stdlib_module_names - {"__main__"}:
         return name
     file = getattr(module, "__file__", None)
-    if file is None:
-        return None if package == "__main__" else name  # a notebook's; of a compiled module
-    try:
-        return name + _packed(Path(file).read_bytes())
-    except OSError:
+    if file is None and package == "__main__":  # a notebook's
         return None
+    return (*name, Path(file).read_bytes() if file and file.endswith(".py") else None)

@@ -6,8 +6,10 @@ import reprlib
 from collections.abc import Sequence
 from typing import Any
 
+from ..errors import GranularError
 
-class SweepError(RuntimeError):
+
+class SweepError(GranularError, RuntimeError):
     """A sweep that cannot go on. One line; ``__cause__`` is the exception of the task, if any."""
 
     def __init__(self, message: str) -> None:

@@ -1,6 +1,6 @@
 """Values kept in a folder under names made from what they depend on: rest states, and results of a sweep's tasks.
 
-One file for each value, ``FOLDER/SOURCES/NAME.npz``: ``SOURCES`` names the code that made it and ``NAME`` the content
+One file for each value, ``FOLDER/SOURCES/NAME.kept``: ``SOURCES`` names the code that made it and ``NAME`` the content
 that it was made from (see :mod:`.digest`), so nothing is found that this code would not make of this content. Files
 hold no code (see :mod:`.encoding`) and are sealed: what is damaged or stands under another name counts as absent.
 
@@ -77,13 +77,13 @@ class Memory:
             warn(f"{self.folder}: nothing more is kept there: {error.strerror or error}")
 
     def _path(self, name: str) -> Path:
-        return self.shelf / f"{name}.npz"
+        return self.shelf / f"{name}.kept"
 
     def _clear(self) -> None:
         """Remove what other sources have left and nobody has added to for a week."""
         with contextlib.suppress(OSError):
             for shelf in self.folder.iterdir():
-                ours = _SHELF.fullmatch(shelf.name) and all(file.suffix == ".npz" for file in shelf.iterdir())
+                ours = _SHELF.fullmatch(shelf.name) and all(file.suffix == ".kept" for file in shelf.iterdir())
                 if ours and time.time() - shelf.stat().st_mtime > _OLD:
                     shutil.rmtree(shelf, ignore_errors=True)
 

@@ -6,15 +6,17 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
+from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.synchronize import Event
 from typing import Any
 
 from .errors import SweepError, failed
-from .worker import packed, run, unpacked
+from .executor import results
 
 #: How many workers may die at one task before the sweep gives up.
 ATTEMPTS = 3
@@ -28,38 +30,27 @@ def over_processes(
     A task that was running when a worker died runs again on its own, so the next death has one suspect. ``module`` is
     where the function stands: it is loaded once, not once a worker.
     """
-    sent = packed(todo[0], items, function)
-    waiting = list(reversed(todo))
-    suspects: list[int] = []
-    deaths = dict.fromkeys(todo, 0)
+    waiting, suspects = deque(todo), deque[int]()
+    deaths: Counter[int] = Counter()
     while waiting or suspects:
         alone = bool(suspects)
         queue, size = (suspects, 1) if alone else (waiting, count)
         running: dict[Future, int] = {}
         with _pool(size, module) as (pool, started):
             try:
-                while running or queue:
-                    while queue and len(running) < size:
-                        running[pool.submit(run, sent, packed(queue[-1], items, items[queue[-1]]))] = queue[-1]
-                        queue.pop()
-                    for future in wait(running, return_when=FIRST_COMPLETED).done:
-                        index = running[future]
-                        outcome = future.result()
-                        del running[future]
-                        yield index, unpacked(index, items, outcome)
+                yield from results(pool, function, items, queue, running, ahead=size)
             except BrokenProcessPool:
                 if not started.is_set():
                     raise SweepError(
                         "worker processes end before they begin: a script has its calls under "
                         "if __name__ == '__main__':, since they import it; or workers=1"
                     ) from None
+                deaths.update(running.values())
                 for index in running.values():
-                    deaths[index] += 1
                     if alone and deaths[index] >= ATTEMPTS:
                         times = f"{deaths[index]} times"
                         raise failed(index, items, f"killed its worker process {times}") from None
-                    suspects.append(index)
-                suspects.sort(reverse=True)
+                suspects.extend(sorted(running.values()))
 
 
 @contextlib.contextmanager
@@ -69,16 +60,35 @@ def _pool(count: int, module: str) -> Iterator[tuple[ProcessPoolExecutor, Event]
     context = multiprocessing.get_context(method)
     if method == "forkserver":
         context.set_forkserver_preload([module])
-    started = context.Event()
-    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker, initargs=(started,))
     try:
-        yield pool, started
+        started = context.Event()
+        pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker, initargs=(started,))
+    except OSError as error:  # their locks are shared memory
+        raise SweepError(f"worker processes cannot begin, /dev/shm: {error.strerror}; or workers=1") from None
+    try:
+        with _importable_script():
+            yield pool, started
     except BaseException:
         for process in list((getattr(pool, "_processes", None) or {}).values()):
             process.kill()
         pool.shutdown(wait=True, cancel_futures=True)
         raise
     pool.shutdown(wait=True)
+
+
+@contextlib.contextmanager
+def _importable_script() -> Iterator[None]:
+    """Workers import the script that started them; one from standard input is none that they could find."""
+    script = sys.modules["__main__"]
+    name = getattr(script, "__file__", None)
+    if name is None or os.path.exists(name):
+        yield
+        return
+    del script.__file__
+    try:
+        yield
+    finally:
+        script.__file__ = name
 
 
 def _start_worker(started: Event) -> None:

@@ -8,15 +8,15 @@ whether it finds a state or computes it.
 
 from __future__ import annotations
 
-from granular_response.scene import Scene
-from granular_response.solve import Problem
-from granular_response.solve import solution as solvers
-from granular_response.solve.choice import rest_method, stop_energy
-from granular_response.solve.timestep import UnstableTimeStep, resolve_time_step
-from granular_response.state import State
-from granular_response.sweeps.digest import digest, sources
-from granular_response.sweeps.memory import Memory
-from granular_response.sweeps.resources import current
+from ..scene import Scene
+from ..solve import Problem
+from ..solve import solution as solvers
+from ..solve.choice import rest_method, stop_energy
+from ..solve.timestep import UnstableTimeStep, resolve_time_step
+from ..state import State
+from .digest import digest, sources
+from .memory import Memory
+from .resources import current
 
 #: The code that settles a packing.
 _PARTS = ("contact", "kernels", "machine", "scene", "solve", "state")

@@ -10,9 +10,9 @@ from typing import Literal
 
 from scipy.optimize import brentq
 
-from granular_response.theory import lattice
-from granular_response.theory.lattice import Rotations, Springs
-from granular_response.theory.slab import Slab
+from . import lattice
+from .lattice import Rotations, Springs
+from .slab import Slab
 
 Body = Literal["half plane", "smooth floor", "rough floor"]
 

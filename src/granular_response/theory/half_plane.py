@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from granular_response.theory.moduli import Moduli
+from .moduli import Moduli
 
 
 def pressure(x: ArrayLike, depth: float, moduli: Moduli, force: float = 1.0) -> NDArray[np.float64]:

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from granular_response.theory.moduli import Moduli
+from .moduli import Moduli
 
 Rotations = Literal["suppressed", "free"]
 

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import schur
 
-from granular_response.theory.moduli import Moduli
+from .moduli import Moduli
 
 Floor = Literal["rough", "smooth"]
 FloatArray = NDArray[np.float64]

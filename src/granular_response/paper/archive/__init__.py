@@ -4,6 +4,8 @@
 ``restore`` takes the datasets out of one. Neither computes anything, and neither needs DVC.
 """
 
+from ...errors import GranularError
 
-class ArchiveError(Exception):
+
+class ArchiveError(GranularError):
     """Files that are not those of ``dvc.lock``, or an archive that is not to be trusted. The message is one line."""

@@ -15,6 +15,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from granular_response.errors import GranularError
+from granular_response.inputs import read_json
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
@@ -62,7 +64,7 @@ KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "ran
 KEYS = {"counts", "verdicts", "verdict_kinds", "words", "sensitivity", "table"}
 
 
-class ClaimsError(Exception):
+class ClaimsError(GranularError):
     """Nothing to judge, or no stored table. The message is one line."""
 
 
@@ -224,7 +226,7 @@ def write(
 def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
     """The stored table. Raises ClaimsError if it is missing or damaged."""
     try:
-        found = json.loads(Path(path).read_text(encoding="utf-8"))
+        found = read_json(Path(path))
     except (OSError, ValueError) as error:
         raise ClaimsError(
             f"{path}: {getattr(error, 'strerror', None) or error}; make it with granular-response claims"

@@ -17,6 +17,8 @@ import jinja2
 import xarray as xr
 
 from granular_response import __version__
+from granular_response.errors import GranularError
+from granular_response.inputs import read_json
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
@@ -33,7 +35,7 @@ SENSITIVITY = "sensitivity"
 __all__ = ["OUTPUT", "ReportError", "page", "renew_beyond", "renew_figures", "renew_notes", "write"]
 
 
-class ReportError(Exception):
+class ReportError(GranularError):
     """Something the page is made from is missing or damaged. The message is one line."""
 
 
@@ -48,7 +50,7 @@ def write(
     ------
     ReportError
         If ``figures/claims.json`` is missing or not JSON, or a ``captions.json`` is damaged.
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If a dataset cannot be read.
     OSError
         If the page cannot be written, or would replace one of the files it is made from or of those to ``keep``.
@@ -72,9 +74,9 @@ def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".
 
     Raises
     ------
-    granular_response.generated.GeneratedError
+    granular_response.store.generated.GeneratedError
         If the file cannot be read or has no place for the table.
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If the dataset is missing or cannot be read.
     """
     datasets = store.read(Path(root) / "data" / f"{SENSITIVITY}.nc")
@@ -88,9 +90,9 @@ def renew_figures(document: str | os.PathLike[str], root: str | os.PathLike[str]
     ------
     ReportError
         If a parameter is not the paper's and nothing says why.
-    granular_response.generated.GeneratedError
+    granular_response.store.generated.GeneratedError
         If the file cannot be read or has no place for the table.
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If a dataset is missing or cannot be read.
     """
     try:
@@ -105,9 +107,9 @@ def renew_beyond(document: str | os.PathLike[str], root: str | os.PathLike[str] 
 
     Raises
     ------
-    granular_response.generated.GeneratedError
+    granular_response.store.generated.GeneratedError
         If the file cannot be read or has no place for a table.
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If a dataset is missing or cannot be read.
     """
     for group, lines in beyond.BLOCKS.items():
@@ -196,7 +198,7 @@ _CLAIMS = {"counts", "verdict_kinds", "words", "sensitivity", "table"}
 
 def _claims(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = read_json(path)
         known = isinstance(found, dict) and set(found) >= _CLAIMS
         known = known and all("group" in row for row in found["table"])
         known = known and all("verdict" in kind for kind in found["verdict_kinds"])

@@ -176,7 +176,7 @@ def markdown(folder: Path) -> str:
 
     Raises
     ------
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If a dataset is missing or cannot be read.
     ValueError
         If a parameter is another one than the paper's, and no remark says why.

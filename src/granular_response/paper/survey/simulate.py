@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from granular_response.errors import GranularError
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.polydisperse_averages.ensemble.datasets import ensembles_dataset, packings_dataset
 from granular_response.paper.groups.polydisperse_averages.ensemble.realizations import (
@@ -64,7 +65,7 @@ PACKINGS = (
 RESPONSE_DIGITS, POSITION_DIGITS = 17, 12
 
 
-class SurveyError(Exception):
+class SurveyError(GranularError):
     """No such block, or no parameters. The message is one line."""
 
 

@@ -43,7 +43,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
     Raises
     ------
-    granular_response.store.StoreError
+    granular_response.store.files.StoreError
         If the survey cannot be read.
     ValueError
         If a parameter is out of range.
