@@ -57,6 +57,8 @@ class PathOptions:
     newton: int = 40
     #: Times that an increment is shortened to an event that came before the one expected.
     landings: int = 12
+    #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
+    still: int = 30
     #: Loads by which the next equilibrium is looked for, with limits of friction held fixed, where none are found for
     #: the rates: after the first one mostly the path goes on, only with other statuses.
     beyond: tuple[float, ...] = (1e-4, 1e-2, 1e-1)
@@ -189,8 +191,11 @@ class _Path:
         """The certified state at the target, from a point on the way there."""
         point = self._balanced(point)
         while True:
+            still = 0  #: points in turn at one load
             while point.factor != self.target:
-                point = self._advance(point)
+                before = point.factor
+                point = self._advance(point, still > self.options.still)
+                still = still + 1 if abs(point.factor - before) * self.unit < self.event else 0
                 self._look_down(point)
                 if self.progress is not None:
                     self.progress(point.factor)
@@ -227,11 +232,14 @@ class _Path:
             )
         return Point(point.factor, found, found.sense, found.sense)
 
-    def _advance(self, point: Point) -> Point:
-        """The next point: where a contact changes, the target, or beyond an equilibrium that is lost."""
+    def _advance(self, point: Point, stuck: bool) -> Point:
+        """The next point: where a contact changes, the target, or beyond an equilibrium that is lost.
+
+        ``stuck`` : whether contacts have changed again and again at one load.
+        """
         if self.together is not None:
             return self._relisted(self._increment(point, self._towards(point.factor, self.together / self.unit)))
-        rates = self.rates.solve(point.trial, point.due)
+        rates = None if stuck else self.rates.solve(point.trial, point.due)
         if rates is None:
             return self._relisted(self._lost(point, "no statuses of the contacts go on"))
         self._record(point, rates.sense)
