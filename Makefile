@@ -6,6 +6,8 @@ CORES := $(shell getconf _NPROCESSORS_ONLN)
 JOBS ?= $(shell expr $(CORES) + 2)
 REPRO ?=
 EXAMPLES ?= 1000
+BROKEN ?= 10000
+SCENES ?= 5000
 
 VENV := $(CURDIR)/.venv
 BIN := $(VENV)/bin
@@ -26,7 +28,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure survey test fuzz coverage lint docs notebooks archive restore package matrix
+.PHONY: help setup reproduce quote figure survey test fuzz broken scenes coverage lint docs notebooks archive restore package matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -76,6 +78,12 @@ test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two p
 
 fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) "$(BIN)/python" -m pytest -m hypothesis -n $(JOBS)
+
+broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (half an hour)
+	"$(BIN)/python" tests/unit/broken_files.py $(BROKEN)
+
+scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (hours)
+	"$(BIN)/python" -W ignore -m granular_response.paper.trials.random_scenes $(SCENES)
 
 coverage: setup ## Unit tests with compilation off, so that kernels count too
 	NUMBA_DISABLE_JIT=1 "$(BIN)/coverage" run -m pytest tests/unit

@@ -6,9 +6,19 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.paper.trials.random_scenes import anachronism, check, contradiction, rounding_of
+from granular_response.paper.trials.audit import ContactRule, audit
+from granular_response.paper.trials.random_scenes import (
+    MASS_RATIO,
+    RADIUS_RATIO,
+    anachronism,
+    check,
+    contradiction,
+    draw,
+    rounding_of,
+    write_table,
+)
 from granular_response.scene import Scene
-from granular_response.solve import PathError, Solution, solve_scene
+from granular_response.solve import PathError, Problem, Solution, solve_scene
 from granular_response.state import OPEN, SLIDING, Contacts, Reached
 
 
@@ -210,3 +220,38 @@ def test_steps_that_run_out_within_a_ramp_give_no_state_at_its_end():
     }
     with pytest.raises(PathError, match="did not come to rest under load factor"):
         solve_scene(Scene.from_dict(row))
+
+
+def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears(tmp_path):
+    """In mid-air, out of balance by its whole weight, which was less than any bound in units of the mean one."""
+    table = np.array([(2.0, 0.98, 1.0, 1.0), (6.0, 0.98, 1.0, 1.0), (4.0, 5.0, 1.0, 1e-12)])
+    write_table(tmp_path / "dust.csv", table)
+    packing = {"kind": "file", "path": "dust.csv", "width": 8.0}
+    smooth = {"contact": {"friction": 0.0, "normal_stiffness": 37.5}, "wall": {"friction": 0.0}, "loads": []}
+    problem = Problem.from_scene(Scene.from_dict({"packing": packing, **smooth}, folder=tmp_path))
+    rule = ContactRule(37.5, 0.0, 0.0), ContactRule(75.0, 0.0, 0.0)
+    position = problem.packing.position.copy()
+    position[:2, 1] = 1.0 - problem.weight[:2] / 75.0
+    state = problem.relisted(replace(problem.bare_state(), position=position))
+    found = audit(state, problem.packing.radius, problem.weight, 8.0, *rule, np.zeros((3, 3)))
+    assert found.force_residual < 1e-11 and found.in_flight == 1
+    assert found.relative_residual == pytest.approx(1.0)
+    whole = audit(state, problem.packing.radius, problem.weight, 8.0, *rule, np.zeros((3, 3)), rounding=1e-11)
+    assert whole.relative_residual == 0.0  # a weight that no digit of a position shows
+
+
+def test_heaps_of_unlike_disks_are_as_unlike_as_they_are_said_to_be():
+    ratios = []
+    for seed in range(60):
+        description, table = draw(np.random.default_rng(seed), 1000, unlike=True)
+        assert description["packing"]["kind"] == "file" and table is not None and table.shape[1] == 4
+        ratios.append(table[:, 2:].max(axis=0) / table[:, 2:].min(axis=0))
+    radius, mass = np.array(ratios).max(axis=0)
+    assert 30.0 < radius <= RADIUS_RATIO and 1e6 < mass <= MASS_RATIO
+
+
+def test_a_disk_out_of_balance_by_a_part_of_what_it_bears_is_found(solution):
+    (state,) = solution.loaded
+    found = replace(check(solution, state), relative_residual=1e-3)
+    said = contradiction(state, found, rounding_of(solution))
+    assert said == "certified as stable with a disk out of balance by 0.001 of what it bears"

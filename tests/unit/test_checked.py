@@ -154,6 +154,11 @@ DAMAGE = {
     "no width": (lambda d: d.assign_attrs(width="wide"), "attribute width"),
     "other sides": (lambda d: d.assign_attrs(sides="open"), "attribute sides: must be walls or periodic"),
     "no JSON": (lambda d: d.assign_attrs(method="{"), "attribute method: must be a mapping as JSON"),
+    "deep JSON": (lambda d: d.assign_attrs(method="[" * 100_000 + "]" * 100_000), "attribute method: must be"),
+    "no applied force": (lambda d: d.drop_vars("total_force"), "variable total_force is missing"),
+    "half a certificate": (lambda d: d.drop_vars("certificate_loose_disks"), "variable certificate_loose_disks is"),
+    "far away": (lambda d: spoil(d, "position", 1e300), "variable position: must be at most 1e+09 mean radii away"),
+    "too wide": (lambda d: d.assign_attrs(width=1e300), "attribute width: must be a number greater than 0, at most"),
 }
 
 
@@ -166,6 +171,15 @@ def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
     assert said in str(caught.value)
     with pytest.raises(ResultError):
         gr.open_result(tmp_path / "bad.nc")
+
+
+def test_a_result_without_certificates_is_not_continued(solution, tmp_path):
+    data = to_dataset(solution)
+    store.write(tmp_path / "a.nc", data.drop_vars([name for name in data if str(name).startswith("certificate_")]))
+    assert gr.open_result(tmp_path / "a.nc").certificates == (None,) * 4
+    finished = call("continue", "a.nc", "--to", 3, "-o", "b.nc", folder=tmp_path)
+    assert finished.returncode == 2
+    assert finished.stderr == "granular-response: a.nc: holds no certificates, from which a run goes on\n"
 
 
 def test_commands_say_so_in_one_line(solution, tmp_path):

@@ -377,6 +377,41 @@ def test_a_run_that_is_killed_leaves_no_lock(group):
     assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
 
 
+def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, capsys):
+    def interrupt(done, total, what=""):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    whole = simulation.simulate
+    monkeypatch.setattr(simulation, "simulate", lambda *args, **kind: whole(*args, **{**kind, "progress": interrupt}))
+    with pytest.raises(KeyboardInterrupt):
+        cli.simulate(group, workers=1, params=simulation.PARAMETERS)
+    said = "granular-response: interrupted; run again, it goes on from 2 finished tasks\n"
+    assert capsys.readouterr().err == said
+    monkeypatch.setattr(simulation, "simulate", whole)
+    cli.simulate(group, workers=1, params=simulation.PARAMETERS)
+    again = capsys.readouterr()
+    assert again.err == f"granular-response: {group} goes on from 2 finished tasks of an earlier run\n"
+    cli.simulate(group, workers=1, params=simulation.PARAMETERS)
+    assert capsys.readouterr().err == ""
+
+
+def test_a_terminal_of_no_columns_has_the_usual_width(tmp_path):
+    """Some say 0 where they do not know; nothing was printed."""
+    store.write(tmp_path / "a.nc", xr.Dataset())
+    usual = process("show", "a.nc", folder=tmp_path, env={**os.environ, "COLUMNS": "80"})
+    for width in ("0", "00"):
+        shown = process("show", "a.nc", folder=tmp_path, env={**os.environ, "COLUMNS": width})
+        assert (shown.returncode, shown.stdout) == (0, usual.stdout) and "a.nc" in usual.stdout
+
+
+def test_an_error_of_a_load_names_the_file(tmp_path):
+    (tmp_path / "y.yaml").write_text("loads: [{disk: top-centre, force: [0, -1e300]}]\n")
+    finished = call("run", "y.yaml", "-o", "a.nc", folder=tmp_path)
+    assert finished.returncode == 2
+    assert finished.stderr.startswith("granular-response: y.yaml: loads[0].force: 1e+300 disk weights")
+
+
 def test_an_error_at_once_leaves_no_folder(group):
     with pytest.raises(SweepError, match="workers = 0"):
         simulation.simulate(group, workers=0)

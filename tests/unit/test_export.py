@@ -18,6 +18,8 @@ from granular_response.store import files as store
 from granular_response.store.export import ExportError, contact_force_sums, export
 from granular_response.store.result import ResultError, to_dataset
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*no springs of friction")
+
 FORCE = (0.5, -1.0)
 SCENE = {
     "packing": {"kind": "slab", "layers": 3, "disks_per_row": 7},

@@ -1,11 +1,13 @@
 """Packings from other programs, and back."""
 
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 from commands import call
 
+import granular_response as gr
 from granular_response.machine import memory
 from granular_response.scene import FilePacking, Scene, SceneError, formats
 from granular_response.scene.errors import show
@@ -53,6 +55,7 @@ def test_every_format_is_tried():
     assert set(ENDINGS) == set(formats.SUFFIXES)
 
 
+@pytest.mark.filterwarnings("ignore:.*read again")
 @pytest.mark.parametrize("name", ENDINGS)
 def test_disks_that_need_more_memory_than_there_is_are_refused_once_they_are_counted(
     result, tmp_path, name, monkeypatch
@@ -71,17 +74,17 @@ def test_disks_that_need_more_memory_than_there_is_are_refused_once_they_are_cou
 
 
 def exported(result, folder, name):
-    """A result, the file of its disks, how precise that is, and what a scene has to add to it."""
+    """A result, the file of its disks, and how precise that is."""
     suffix, precision = ENDINGS[name]
-    stored = store.read(result)[""]
-    width = {"width": stored.attrs["width"]} if name in ("csv", "yade") else {}
-    return stored, export(result, folder / f"disks{suffix}"), precision, width
+    return store.read(result)[""], export(result, folder / f"disks{suffix}"), precision
 
 
+@pytest.mark.filterwarnings("ignore:.*read again")
 @pytest.mark.parametrize("name", ENDINGS)
 def test_what_is_exported_is_imported(result, tmp_path, name):
-    stored, path, precision, width = exported(result, tmp_path, name)
-    for packing in (build(path, **width), build(path, format=name, **width)):
+    """Nothing has to be added: the box and its sides come back in every format."""
+    stored, path, precision = exported(result, tmp_path, name)
+    for packing in (build(path), build(path, format=name)):
         scale = stored["radius"].values.mean()
         np.testing.assert_allclose(packing.radius * scale, stored["radius"], rtol=precision + 1e-15)
         np.testing.assert_allclose(packing.position * scale, stored["position"][-1], atol=10 * precision + 1e-14)
@@ -90,17 +93,15 @@ def test_what_is_exported_is_imported(result, tmp_path, name):
             np.testing.assert_allclose(packing.mass, stored["mass"], rtol=10 * precision + 1e-14)
 
 
+@pytest.mark.filterwarnings("ignore:.*read again")
 @pytest.mark.parametrize("name", ENDINGS)
 def test_a_periodic_result_comes_back_periodic(periodic, tmp_path, name):
-    stored, path, precision, width = exported(periodic, tmp_path, name)
-    packing = build(path, sides="periodic", **width)
+    stored, path, precision = exported(periodic, tmp_path, name)
+    packing = build(path, sides="periodic")
     assert packing.periodic and packing.width == pytest.approx(stored.attrs["width"], rel=1e-14)
     apart = packing.position - stored["position"].values[-1]
     apart[:, 0] -= packing.width * np.round(apart[:, 0] / packing.width)
     np.testing.assert_allclose(apart, 0.0, atol=10 * precision + 1e-14)
-    if name in ("csv", "yade"):  # which do not say
-        assert formats.read(path, name).periodic is None
-        return
     with pytest.raises(SceneError) as caught:
         build(path)
     assert (
@@ -180,8 +181,24 @@ ITEM: ATOMS id xs yu z diameter mass
 """
 
 
+#: The walls of DATA, which the format does not say.
+WALLS = {"width": 10.0, "origin": (10.0, -5.0)}
+
+
+#: A frame whose bounds come last, cut before they do.
+LATE_BOX = """\
+ITEM: TIMESTEP
+0
+ITEM: NUMBER OF ATOMS
+1
+ITEM: ATOMS id x y z radius
+1 5 1 0 1
+ITEM: BOX BOUNDS ff ff pp
+"""
+
+
 def test_lammps_data(tmp_path):
-    packing = build(tmp_path / "a.data", DATA)
+    packing = build(tmp_path / "a.data", DATA, **WALLS)
     scale = 2.5 / 3
     np.testing.assert_allclose(packing.position * scale, [[1, 1], [3, 1], [5, 0.5]])
     np.testing.assert_allclose(packing.radius * scale, [1, 1, 0.5])
@@ -208,8 +225,13 @@ def test_lammps_dump_says_what_the_sides_are(tmp_path):
         build(tmp_path / "a.dump", text)
     with pytest.raises(SceneError, match=r"'periodic': must be walls, the box of '.*' is not periodic in x$"):
         build(tmp_path / "a.dump", DUMP, sides="periodic")
-    for sides in ("walls", "periodic"):  # a file without flags
-        assert build(tmp_path / "a.dump", DUMP.replace(" ff pp ff", ""), sides=sides).periodic == (sides == "periodic")
+    text, box = DUMP.replace(" ff pp ff", ""), {"width": 10.0, "origin": (-5.0, 2.0)}  # a file without flags
+    for sides in ("walls", "periodic"):
+        packing = build(tmp_path / "a.dump", text, sides=sides, **box)
+        assert packing.periodic == (sides == "periodic")
+        np.testing.assert_allclose(packing.position * 1.25, [[1, 1], [4, 1.5]])
+    with pytest.raises(SceneError, match=r"^packing\.width = null: must be given, and origin .* a dump without flags"):
+        build(tmp_path / "a.dump", text)
 
 
 @pytest.mark.parametrize(("name", "text", "last"), [("a.data", DATA, 3), ("a.dump", DUMP, 2)])
@@ -219,13 +241,14 @@ def test_lammps_disks_are_in_the_order_of_their_ids(tmp_path, name, text, last):
     first = max(k for k, line in enumerate(lines) if "Atoms" in line or "ITEM: ATOMS" in line) + 1
     first += not lines[first].strip()
     rows = lines[first : first + last]
-    ordered = build(tmp_path / name, text)
-    shuffled = build(tmp_path / name, "".join([*lines[:first], *rows[::-1], *lines[first + last :]]))
+    walls = WALLS if name == "a.data" else {}
+    ordered = build(tmp_path / name, text, **walls)
+    shuffled = build(tmp_path / name, "".join([*lines[:first], *rows[::-1], *lines[first + last :]]), **walls)
     np.testing.assert_array_equal(shuffled.position, ordered.position)
     np.testing.assert_array_equal(shuffled.radius, ordered.radius)
     np.testing.assert_array_equal(shuffled.mass, ordered.mass)
     bad = "".join([*lines[:first], *rows[::-1], *lines[first + last :]]).replace(rows[0], "1" + rows[0])
-    far = build(tmp_path / name, bad)  # 11 comes after 2
+    far = build(tmp_path / name, bad, **walls)  # 11 comes after 2
     np.testing.assert_array_equal(far.position, np.roll(ordered.position, -1, axis=0))
 
 
@@ -244,9 +267,15 @@ def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
     frame.particles.diameter = [2, 2]
     with hoomd.open(str(tmp_path / "a.gsd"), "w") as file:
         file.append(frame)
-    packing = build(tmp_path / "a.gsd")
+    packing = build(tmp_path / "a.gsd", width=10.0, origin=(-5.0, -4.0))
     np.testing.assert_allclose(packing.position, [[1, 1], [4, 1.5]])
-    assert packing.width == 10 and packing.given_mass is None
+    assert packing.width == 10 and packing.given_mass.tolist() == [1.0, 1.0]
+    with pytest.raises(SceneError, match=r"width = null: must be given, and origin .* a GSD file does not"):
+        build(tmp_path / "a.gsd")
+    periodic = build(tmp_path / "a.gsd", sides="periodic", origin=(-5.0, -4.0))  # the box of the format is a period
+    np.testing.assert_allclose(periodic.position, [[1, 1], [4, 1.5]])
+    with pytest.raises(SceneError, match=r"^packing\.origin = null: must be given as \[left wall, floor\]"):
+        build(tmp_path / "a.gsd", sides="periodic")
 
 
 @pytest.mark.parametrize(
@@ -265,6 +294,9 @@ def test_gsd_of_others_has_its_origin_in_the_middle(tmp_path):
         ("a.data", "", "is not a whole LAMMPS data file"),
         ("a.dump", DUMP.replace("diameter", "size"), "line 19: column radius or diameter is missing"),
         ("a.dump", DUMP[:-20], "holds 1 of 2 atoms in its last frame"),
+        ("a.dump", LATE_BOX, "line 7: must be followed by three lines of bounds, and have flags of three axes or none"),
+        ("a.dump", LATE_BOX + "0 10\n0\n-1 1\n", "line 9: has 1 values, must have lo hi"),
+        ("a.dump", LATE_BOX + "10 0\n0 9\n-1 1\n", "line 8: bounds of the box in x: the upper one must be greater"),
         ("a.dump", "x,z,radius\n", "is not a LAMMPS dump file of text"),
         ("a.dump", DUMP.replace("yu", "vy"), "line 19: column y is missing"),
         ("a.txt", "1 0 1\n", "line 1: has 3 values, must have x y z r"),
@@ -298,8 +330,292 @@ def test_a_file_without_a_box_needs_a_width(tmp_path):
 def test_on_the_command_line(result, tmp_path):
     """What a program of others hands over is solved, and handed back."""
     (tmp_path / "a.data").write_text(DATA)
-    (tmp_path / "scene.yaml").write_text("packing: {kind: file, path: a.data}\ncontact: {friction: 0.2}\nloads: []\n")
+    packing = "{kind: file, path: a.data, width: 10, origin: [10, -5]}"
+    (tmp_path / "scene.yaml").write_text(f"packing: {packing}\ncontact: {{friction: 0.2}}\nloads: []\n")
     for arguments in (["run", "scene.yaml", "-o", "a.nc"], ["export", "a.nc", "-o", "b.lmp"]):
         finished = call(*arguments, folder=tmp_path)
         assert finished.returncode == 0, finished.stderr
     assert "3 atoms" in (tmp_path / "b.lmp").read_text()
+
+
+#: Packings of other programs, with what is right in README.md beside them.
+PACKINGS = Path(__file__).parents[1] / "data" / "packings"
+
+
+def floor_of(packing: dict, **changes) -> np.ndarray:
+    """Floor response under a force on the first disk of the upper row."""
+    load = {"disk": 3, "force": [0, -1]}
+    return gr.solve({"packing": packing, "contact": {"friction": 0}, "loads": [load], **changes}).floor_response.values
+
+
+def test_a_box_that_follows_the_disks_is_not_their_walls():
+    """Bounds s of LAMMPS were taken for walls, and the response was [1.0003, -0.0003]."""
+    packing = {"kind": "file", "path": str(PACKINGS / "shrink_wrapped.dump")}
+    with pytest.raises(SceneError) as caught:
+        gr.solve({"packing": packing, "loads": []})
+    assert str(caught.value) == (
+        "packing.width = null: must be given, and origin as [left wall, floor] in coordinates of the file, the bounds "
+        "are ss in x and ss in y, those of walls and a floor ff (pp) and f"
+    )
+    with pytest.raises(SceneError, match=r"^packing\.origin = null: must be given as"):
+        gr.solve({"packing": {**packing, "width": 6}, "loads": []})
+    expected = [0.5084, 0.4834, 0.0082]  # LAMMPS
+    np.testing.assert_allclose(floor_of({**packing, "width": 6, "origin": [0, 0]}), expected, atol=3e-3)
+    table = {"kind": "file", "path": str(PACKINGS / "shrink_wrapped.csv"), "width": 6}
+    np.testing.assert_allclose(floor_of(table), expected, atol=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("flags", "key"),
+    [
+        ("ss ff pp", "width"), ("fm ff pp", "width"), ("mm ff pp", "width"), ("ff pp pp", "origin"),
+        ("ff sf pp", "origin"), ("ff ms pp", "origin"), ("ff fs pp", None), ("pp ff pp", "sides"),
+    ],
+)  # fmt: skip
+def test_only_fixed_bounds_are_walls(tmp_path, flags, key):
+    text = DUMP[: DUMP.index("ITEM: TIMESTEP\n7")].replace("ff ff pp", flags)
+    if key is None:  # what is above the disks does not matter
+        assert build(tmp_path / "a.dump", text).n == 1
+        return
+    with pytest.raises(SceneError, match=rf"^packing\.{key} = "):
+        build(tmp_path / "a.dump", text)
+
+
+TILTED = "ITEM: BOX BOUNDS xy xz yz pp ff pp\n0 6 0\n0 10 0\n-1 1 0\n"
+
+
+def test_boxes_of_newer_lammps_are_read_where_they_are_upright(tmp_path):
+    text = (PACKINGS / "general_box.dump").read_text()
+    plain = build(tmp_path / "a.dump", text, sides="periodic")
+    assert plain.periodic and plain.width == 6
+    np.testing.assert_allclose(plain.position, [[1, 1], [3, 1], [5, 1], [2, 2.75], [4, 2.75]])
+    box = text[text.index("ITEM: BOX") : text.index("ITEM: ATOMS")]
+    tilted = build(tmp_path / "a.dump", text.replace(box, TILTED), sides="periodic")
+    np.testing.assert_array_equal(tilted.position, plain.position)
+    for turned in (text.replace("6 0 0 0", "6 1 0 0"), text.replace(box, TILTED.replace("0 6 0", "0 6 1.5"))):
+        with pytest.raises(SceneError, match=r"line 6: the box must not be tilted or turned"):
+            build(tmp_path / "a.dump", turned, sides="periodic")
+    upright = DATA.replace(
+        "10.0 20.0 xlo xhi\n-5.0 5.0 ylo yhi\n-1.0 1.0 zlo zhi", "10 0 0 avec\n0 10 0 bvec\n0 0 2 cvec"
+    )
+    upright = upright.replace("cvec\n", "cvec\n10.0 -5.0 -1.0 abc origin\n")
+    given = {"sides": "periodic", "origin": (10.0, -5.0)}
+    np.testing.assert_array_equal(
+        build(tmp_path / "a.data", upright, **given).position, build(tmp_path / "b.data", DATA, **given).position
+    )
+    with pytest.raises(SceneError, match=r"line 7: the box must not be tilted or turned"):
+        build(tmp_path / "a.data", upright.replace("0 10 0 bvec", "1 10 0 bvec"), **given)
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_masses_come_back_or_it_is_said(tmp_path, name):
+    """Masses of 1 are left out of a .gsd file, and were taken for the square of the radius."""
+    packing = {"kind": "file", "path": str(PACKINGS / "equal_masses.csv"), "width": 8}
+    smooth = {"contact": {"friction": 0}, "loads": []}
+    gr.solve({"packing": packing, **smooth}).save(tmp_path / "a.nc")
+    path = tmp_path / f"a{ENDINGS[name][0]}"
+    if name == "yade":
+        with pytest.warns(UserWarning, match=r"a\.txt: the format has no masses: read again, disks are of one"):
+            export(tmp_path / "a.nc", path)
+        np.testing.assert_allclose(build(path).mass, [1.8, 0.2, 0.2, 1.8])
+        return
+    export(tmp_path / "a.nc", path)
+    np.testing.assert_allclose(build(path).mass, 1.0, atol=1e-7)
+    again = gr.solve({"packing": {"kind": "file", "path": str(path)}, **smooth}).rest.walls
+    np.testing.assert_allclose(again.normal_force[again.second == 0], 1.0, atol=1e-4)
+
+
+def test_springs_that_an_export_leaves_are_named(result, periodic, tmp_path):
+    said = r"a\.csv: the format has no springs of friction: read again, contacts begin anew"
+    with pytest.warns(UserWarning, match=said):
+        export(result, tmp_path / "a.csv")
+    finished = call("export", result, "-o", "a.csv", folder=tmp_path)
+    assert (finished.returncode, finished.stderr.count("\n")) == (0, 1) and "no springs of friction" in finished.stderr
+
+
+@pytest.mark.parametrize("header", ["X,Z,Radius,Mass", "x (mm), z [mm], radius(mm), MASS [g]", " x,z,radius,mass"])
+def test_names_of_columns_in_any_case_and_with_units(tmp_path, header):
+    units = header if "mm" not in header else header.replace("x (mm)", "x [mm]")
+    packing = build(tmp_path / "a.csv", f"{units}\n1,1,1,1\n4,1,2,3\n", width=9.0)
+    np.testing.assert_allclose(packing.mass, [0.5, 1.5])
+
+
+@pytest.mark.parametrize(
+    ("header", "said"),
+    [
+        ("x,z,radius,weight", "column weight: unknown, did you mean mass? (mass or density, or neither)"),
+        ("x,z,radius,masses", "column masses: unknown, did you mean mass? (mass or density, or neither)"),
+        ("x,z,radius,Rho", "column rho: unknown, did you mean density? (mass or density, or neither)"),
+        ("x [mm],z [mm],radius [cm],mass", "columns x, z and radius: must have the same unit of length"),
+        ("X,x,z,radius", "column x is given 2 times, header must name x, z and radius"),
+    ],
+)
+def test_columns_that_look_like_masses_are_not_passed_over(tmp_path, header, said):
+    with pytest.raises(SceneError) as caught:
+        build(tmp_path / "a.csv", f"{header}\n1,1,1,1\n4,1,2,3\n", width=9.0)
+    assert str(caught.value).endswith(said)
+
+
+@pytest.mark.parametrize(
+    ("column", "mass"),
+    [("mass", (1, 5)), ("rmass", (1, 5)), ("Mass", (1, 5)), ("c_mass", (1, 5)), ("v_mass", (1, 5)),
+     ("f_mass[1]", (1, 5)), ("d_mass", (1, 5)), ("density", (8, 135)), ("c_density", (8, 135))],
+)  # fmt: skip
+def test_masses_of_a_dump_by_any_of_their_names(tmp_path, column, mass):
+    packing = build(tmp_path / "a.dump", DUMP.replace("diameter mass", f"diameter {column}"))
+    np.testing.assert_allclose(packing.mass, np.array(mass) / np.mean(mass))
+
+
+def test_a_dump_without_masses_says_what_is_taken(tmp_path):
+    text = DUMP.replace("diameter mass", "diameter vx")
+    with pytest.warns(UserWarning, match=r"a\.dump: has no masses; taken as those of one material"):
+        packing = build(tmp_path / "a.dump", text)
+    np.testing.assert_allclose(packing.mass, np.array([4, 9]) / 6.5)
+    with pytest.raises(SceneError, match=r"line 19: columns 'c_mass', 'v_mass': must have one of them"):
+        build(tmp_path / "a.dump", DUMP.replace("z diameter mass", "z diameter c_mass v_mass")
+              .replace("3.0 2.0 1.0", "3.0 2.0 1.0 1.0").replace("3.5 3.0 5.0", "3.5 3.0 5.0 5.0"))  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+@pytest.mark.filterwarnings("ignore:.*read again")
+def test_a_file_that_was_cut_is_refused(result, tmp_path, name):
+    """Wherever it was cut: what is left must not be a smaller packing, or one with another last number."""
+    whole = export(result, tmp_path / f"whole{ENDINGS[name][0]}").read_bytes()
+    path = tmp_path / f"cut{ENDINGS[name][0]}"
+    expected = build(tmp_path / f"whole{ENDINGS[name][0]}")
+    refused = 0
+    for length in np.unique(np.linspace(0, len(whole) - 1, 150).astype(int)).tolist():
+        path.write_bytes(whole[:length])
+        try:
+            packing = build(path, width=6.3)
+        except SceneError as error:
+            assert "\n" not in str(error)
+            refused += 1
+        else:  # what was cut off says nothing of the disks
+            np.testing.assert_array_equal(packing.position, expected.position)
+            np.testing.assert_array_equal(packing.mass, expected.mass)
+    assert refused > 100
+
+
+def test_a_bond_to_nowhere_and_half_a_log_are_one_line(tmp_path):
+    hoomd = pytest.importorskip("gsd.hoomd")
+
+    def written(**log):
+        frame = hoomd.Frame()
+        frame.configuration.box = [20, 8, 0, 0, 0, 0]
+        frame.particles.N = 2
+        frame.particles.position = [[1, 1, 0], [4, 1.5, 0]]
+        frame.particles.diameter = [2, 3]
+        frame.bonds.N, frame.bonds.group = 1, [[0, 99]]
+        frame.log = {name: np.asarray(value) for name, value in log.items()}
+        with hoomd.open(str(tmp_path / "a.gsd"), "w") as file:
+            file.append(frame)
+        return tmp_path / "a.gsd"
+
+    whole = {"origin": [0.0, 0.0, 0.0], "box_width": [10.0], "periodic": [0]}
+    assert build(written(**whole)).width * 1.25 == 10
+    for part, said in (
+        ({"box_width": []}, "chunk log/box_width: has 0 values, must have 1"),
+        ({"box_width": [np.nan]}, "log entries origin, box_width, periodic: must be places, a width and 0 or 1"),
+        ({"periodic": [7]}, "log entries origin, box_width, periodic: must be places, a width and 0 or 1"),
+        ({"origin": [0.0]}, "chunk log/origin: has 1 values, must have 3"),
+    ):
+        with pytest.raises(SceneError) as caught:
+            build(written(**{**whole, **part}))
+        assert str(caught.value).endswith(said)
+    del whole["box_width"]
+    with pytest.raises(SceneError, match="must be given, and origin"):
+        build(written(**whole))
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("1e300,1,1,1", "x = 1e+300: must be between the side walls 0 and 9"),
+        ("4,1e300,1,1", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
+        ("4,1,1,1e300", "line 2: mass = 1.0: must be at least 1e+288, 1e-12 of the largest"),
+        ("4,1,1e300,1", "line 3: radius = 1e+300: must be at most 4.5, half the width of the box"),
+        ("4,1,-1e300,1", "line 3: radius = -1e+300: must be greater than 0"),
+        ("4,1,1,1e-300", "line 3: mass = 1e-300: must be at least 1e-12, 1e-12 of the largest"),
+        ("4,1,1,1e-13", "line 3: mass = 1e-13: must be at least 1e-12, 1e-12 of the largest"),
+        ("4,1,1e-7,1", "line 3: radius = 1e-07: must be at least 1e-06, a millionth of the largest"),
+    ],
+)
+def test_values_that_others_swallow_are_refused(tmp_path, row, said):
+    with pytest.raises(SceneError) as caught:
+        build(tmp_path / "a.csv", f"x,z,radius,mass\n1,1,1,1\n{row}\n", width=9.0)
+    assert str(caught.value).endswith(said)
+
+
+def test_a_start_deep_inside_others_is_asked_about(tmp_path):
+    """Diameters in the place of radii, and walls that are none."""
+    (tmp_path / "a.csv").write_text("x,z,radius\n1,1,2\n3,1,2\n5,1,2\n")
+    packing = {"kind": "file", "path": "a.csv", "width": 6}
+    with pytest.raises(SceneError) as caught:
+        solve_scene(Scene.from_dict({"packing": packing, "loads": []}, folder=tmp_path))
+    assert str(caught.value) == (
+        "packing: disks 0 and 1 (counted from 0) overlap by 1 mean radii at the start, must be at most 0.5, half the "
+        "smaller radius; are radii diameters, and walls and floor where they should be?"
+    )
+    (tmp_path / "a.csv").write_text("x,z,radius\n0.4,1,1\n3,1,1\n5,1,1\n")
+    with pytest.raises(SceneError, match=r"^packing: disk 0 and the left wall \(counted from 0\) overlap by 0\.6 mean"):
+        solve_scene(Scene.from_dict({"packing": packing, "loads": []}, folder=tmp_path))
+    (tmp_path / "a.csv").write_text("x,z,radius\n0.51,1,1\n3,1,1\n5,1,1\n")
+    assert solve_scene(Scene.from_dict({"packing": packing, "loads": []}, folder=tmp_path)).rest.certificate.stable
+    lattice = {"kind": "slab", "layers": 3, "disks_per_row": 5, "polydispersity": 0.9}
+    with pytest.raises(SceneError, match=r"take lattice_constant touching-largest or less polydispersity$"):
+        solve_scene(Scene.from_dict({"packing": lattice, "loads": []}))
+
+
+@pytest.mark.parametrize("name", [f"a{suffix}" for suffix, _ in ENDINGS.values()])
+def test_devices_and_pipes_are_not_read(tmp_path, name):
+    """A device has no end, and a pipe nobody writes to waits for ever."""
+    (tmp_path / f"zero_{name}").symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / f"pipe_{name}")
+    for kind in ("zero", "pipe"):
+        with pytest.raises(SceneError, match=r": is not a regular file$"):
+            build(tmp_path / f"{kind}_{name}", width=3.0)
+        for arguments in (["run"], ["show"]):
+            output = ["-o", "a.nc"] if arguments == ["run"] else []
+            finished = call(*arguments, f"{kind}_{name}", *output, folder=tmp_path)
+            assert finished.returncode == 2 and finished.stderr.count("\n") == 1
+            assert finished.stderr.endswith(": cannot be read: is not a regular file\n")
+
+
+def test_gsd_takes_from_the_first_frame_what_the_last_one_leaves_out(tmp_path):
+    """As the library of the format does."""
+    hoomd = pytest.importorskip("gsd.hoomd")
+    with hoomd.open(str(tmp_path / "a.gsd"), "w") as file:
+        for lift in (0.0, 0.25):
+            frame = hoomd.Frame()
+            frame.configuration.box = [10, 8, 0, 0, 0, 0]
+            frame.particles.N = 2
+            frame.particles.position = [[-4, -3 + lift, 0], [-1, -2.5 + lift, 0]]
+            frame.particles.diameter = [2, 3]
+            frame.particles.mass = [4, 1]
+            file.append(frame)
+    with hoomd.open(str(tmp_path / "a.gsd"), "r") as file:
+        expected = file[1].particles
+        assert not file.file.chunk_exists(frame=1, name="particles/mass")
+    table = formats.read(tmp_path / "a.gsd", "gsd")
+    np.testing.assert_array_equal(table.radius, 0.5 * expected.diameter)
+    np.testing.assert_array_equal(table.mass, expected.mass)
+    np.testing.assert_array_equal(np.column_stack([table.x, table.z]), expected.position[:, :2])
+
+
+@pytest.mark.filterwarnings("ignore:.*no springs of friction")
+def test_every_damaged_byte_of_a_gsd_file_is_met(periodic, tmp_path):
+    """The library of the format ends the process at some of them."""
+    whole = export(periodic, tmp_path / "a.gsd").read_bytes()
+    refused = 0
+    for at in [*range(56), *range(56, len(whole), 97)]:
+        for bit in (0, 3, 7):
+            damaged = bytearray(whole)
+            damaged[at] ^= 1 << bit
+            (tmp_path / "b.gsd").write_bytes(bytes(damaged))
+            try:
+                build(tmp_path / "b.gsd", sides="periodic")
+            except SceneError as error:
+                assert "\n" not in str(error)
+                refused += 1
+    assert refused > 60

@@ -1,5 +1,7 @@
 """What commands write: never over their inputs, never in place of what is no regular file."""
 
+import errno
+import fcntl
 import os
 import resource
 import shutil
@@ -183,3 +185,65 @@ def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
     assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
     assert "1995000 disks need at least 9.29 GiB of memory, there are " in finished.stderr
     assert not (tmp_path / "a.nc").exists()
+
+
+def test_another_writer_may_come_between_any_two_steps(tmp_path, monkeypatch):
+    """A new temporary file that was not locked yet was taken for a leftover, and its writer lost what it had."""
+    target = tmp_path / "a.bin"
+    lock, met = fcntl.flock, []
+
+    def late(descriptor, how):
+        if how == fcntl.LOCK_EX and not met:
+            met.extend(atomic.remove_leftovers(target))
+        return lock(descriptor, how)
+
+    monkeypatch.setattr(atomic.fcntl, "flock", late)
+    atomic.write_bytes(target, b"whole")
+    assert len(met) == 1 and target.read_bytes() == b"whole"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]
+
+
+WRITER = """
+import sys
+from granular_response.store import atomic
+for _ in range(100):
+    atomic.write_bytes(sys.argv[1], sys.argv[2].encode() * 1000)
+"""
+
+
+def test_writers_of_one_file_all_succeed(tmp_path):
+    command = [sys.executable, "-c", WRITER, str(tmp_path / "a.bin")]
+    writers = [subprocess.Popen([*command, letter], stderr=subprocess.PIPE, text=True) for letter in "abcd"]
+    assert [(writer.communicate()[1], writer.returncode) for writer in writers] == [("", 0)] * 4
+    content = (tmp_path / "a.bin").read_bytes()
+    assert len(content) == 1000 and len(set(content)) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]
+
+
+@pytest.mark.parametrize("ending", ["folder", "read-only"])
+def test_what_was_computed_is_kept_where_its_file_cannot_be_written(tmp_path, monkeypatch, ending):
+    """After a long run the name may be a folder, or the disk full."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "out").mkdir()
+    path = tmp_path / "out" / "a.nc"
+    if ending == "folder":
+        path.mkdir()
+    else:
+        write = atomic.write_bytes
+
+        def full(target, *given, **kind):
+            if Path(target).parent == path.parent:
+                raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+            write(target, *given, **kind)
+
+        monkeypatch.setattr(atomic, "write_bytes", full)
+    data = xr.Dataset({"a": ("x", [1.0, 2.0], {"long_name": "a", "units": "1"})})
+    with pytest.raises(StoreError) as caught:
+        store.write(path, data, keep=True)
+    said, _, place = str(caught.value).partition("; what was computed is kept as ")
+    assert said.startswith(f"{path}: cannot be written: ") and Path(place).name.startswith("a.kept-")
+    assert Path(place).parent == (path.parent if ending == "folder" else Path())
+    xr.testing.assert_equal(store.read(place)[""], data)
+    with pytest.raises(StoreError) as caught:
+        store.write(path, data)
+    assert "what was computed" not in str(caught.value)

@@ -8,7 +8,7 @@ from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import Linear
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import Problem
+from granular_response.solve import Problem, solve_scene
 from granular_response.solve.problem import carry_springs, static_contacts
 from granular_response.solve.system import StaticSystem
 from granular_response.state import FLOOR
@@ -136,3 +136,15 @@ def test_a_period_in_which_disks_may_meet_on_both_sides_is_refused(tmp_path):
         with pytest.raises(SceneError, match=said):
             problem(width)
     assert problem(5.3).n == 2
+
+
+@pytest.mark.parametrize("width", [2.0, 2.2, 2.5, 2.59, 2.7, 5.0])
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_one_disk_between_periodic_sides_does_not_meet_itself(tmp_path, width, friction):
+    """Its own copy was listed as its neighbour at no distance, and the motion blew up."""
+    (tmp_path / "one.csv").write_text("x,z,radius\n1,1,1\n")
+    packing = {"kind": "file", "path": "one.csv", "width": width, "sides": "periodic"}
+    smooth = {"contact": {"friction": friction}, "wall": {"friction": friction}}
+    solution = solve_scene(Scene.from_dict({"packing": packing, "loads": [], **smooth}, folder=tmp_path))
+    assert len(solution.rest.pairs.first) == 0
+    np.testing.assert_allclose(solution.rest.wall_force(), [[0.0, 1.0]], atol=1e-9)

@@ -96,7 +96,7 @@ def test_a_packing_of_another_program_is_solved(tmp_path):
     atoms = "\n".join(f"{k + 1} 1 2.0 1.0 {1.0 + 2.0 * k} 1.0 0.0" for k in range(4))
     head = "a row of disks\n\n4 atoms\n1 atom types\n\n0.0 8.0 xlo xhi\n0.0 4.0 ylo yhi\n-1.0 1.0 zlo zhi\n"
     (tmp_path / "row.data").write_text(f"{head}\nAtoms # sphere\n\n{atoms}\n")
-    packing = {"kind": "file", "path": str(tmp_path / "row.data"), "width": 8.0}
+    packing = {"kind": "file", "path": str(tmp_path / "row.data"), "width": 8.0, "origin": [0.0, 0.0]}
     result = gr.solve({"packing": packing, "contact": {"friction": 0.0}, "loads": [{"disk": 1, "force": [0.0, -1.0]}]})
     assert result.floor_response.values.tolist() == pytest.approx([0.0, 1.0, 0.0, 0.0], abs=1e-9)
 

@@ -120,7 +120,8 @@ def test_a_box_that_has_changed_since_is_noticed(tmp_path):
     disks = [(x, 1.0) for x in (1.0, 3.0, 5.0, 7.0)] + [(x, 1.0 + 3**0.5) for x in (2.0, 4.0, 6.0)]
 
     def write(width):
-        lines = ["disks", "", f"{len(disks)} atoms", "1 atom types", "", f"0.0 {width} xlo xhi", "0.0 10 ylo yhi"]
+        title = f"granular-response: {len(disks)} disks, width {width}, sides walls"  # by which the box is known
+        lines = [title, "", f"{len(disks)} atoms", "1 atom types", "", f"0.0 {width} xlo xhi", "0.0 10 ylo yhi"]
         lines += ["-1 1 zlo zhi", "", "Atoms # sphere", ""]
         lines += [f"{k} 1 2.0 1.0 {x} {z} 0.0" for k, (x, z) in enumerate(disks, 1)]
         (tmp_path / "disks.data").write_text("\n".join(lines) + "\n")

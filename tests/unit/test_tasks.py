@@ -1,5 +1,6 @@
 """One map: same results wherever it runs, nothing finished is lost, every failure names its task."""
 
+import errno
 import functools
 import json
 import os
@@ -541,3 +542,32 @@ def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd, mo
         map_tasks(slow_first, range(3), scheduler=address)
     assert str(caught.value) == f"the Dask scheduler at {address} was lost, with 3 of 3 tasks to do"
     assert capfd.readouterr().err == ""
+
+
+FROM_STANDARD_INPUT = """
+from granular_response.sweeps.tasks import map_tasks
+def square(x):
+    return x * x
+if __name__ == "__main__":
+    print(map_tasks(square, range(4), workers=2), __file__)
+"""
+
+
+def test_a_script_from_standard_input_has_workers_too(tmp_path):
+    """They looked for a file of the name that Python gives it."""
+    command = [sys.executable, "-"]
+    done = subprocess.run(command, input=FROM_STANDARD_INPUT, capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (0, "[0, 1, 4, 9] <stdin>\n"), done.stderr
+
+
+def test_processes_that_cannot_begin_are_one_line(monkeypatch):
+    """Their locks are files of /dev/shm."""
+
+    def refuse(*_):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr("multiprocessing.context.BaseContext.Event", refuse)
+    with pytest.raises(SweepError) as caught:
+        map_tasks(abs, range(3), workers=2)
+    assert str(caught.value) == "worker processes cannot begin, /dev/shm: Read-only file system; or workers=1"
+    assert map_tasks(abs, range(3), workers=1) == [0, 1, 2]

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import time
 from types import TracebackType
 from typing import Self
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+
+def columns() -> int | None:
+    """Width of a terminal for ``rich``; None: as it finds out. Where ``COLUMNS`` is 0 it would show nothing."""
+    return None if os.environ.get("COLUMNS", "1").strip("0 ") else shutil.get_terminal_size().columns
 
 
 class TerminalProgress:
@@ -18,7 +25,7 @@ class TerminalProgress:
     """
 
     def __init__(self, console: Console | None = None, patience: float = 2.0) -> None:
-        self._console = console or Console(stderr=True)
+        self._console = console or Console(stderr=True, width=columns())
         self._patience = patience
         self._started = time.monotonic()
         self._bars: Progress | None = None

@@ -99,7 +99,7 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
     from ..store import files as store
     from ..store.result import to_labelled
 
-    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started})
+    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
     typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
     for remark in solution.remarks:
         typer.echo(f"granular-response: {output}: {remark}", err=True)
@@ -147,7 +147,7 @@ def run(
     import time
 
     from ..api.terminal import TerminalProgress
-    from ..scene import Scene
+    from ..scene import Scene, SceneError
     from ..store import files as store
 
     started = time.perf_counter()
@@ -164,7 +164,7 @@ def run(
     try:
         with using(threads or cores()), TerminalProgress() as progress:
             solution = solve_scene(described, progress=progress)
-    except SOLVE_ERRORS as error:
+    except (SceneError, *SOLVE_ERRORS) as error:
         if not str(error).startswith(str(scene)):
             error.args = (f"{scene}: {error}", *error.args[1:])
         raise
@@ -250,15 +250,22 @@ def simulate(
 
     _loaded()
 
-    with TerminalProgress() as progress:
-        path = simulation.simulate(
-            group,
-            output,
-            parameter_file=params,
-            workers=workers,
-            scheduler=scheduler,
-            progress=progress,
-        )
+    if before := simulation.finished(group, output):
+        typer.echo(f"granular-response: {group} goes on from {before} finished tasks of an earlier run", err=True)
+    try:
+        with TerminalProgress() as progress:
+            path = simulation.simulate(
+                group,
+                output,
+                parameter_file=params,
+                workers=workers,
+                scheduler=scheduler,
+                progress=progress,
+            )
+    except KeyboardInterrupt:
+        if count := simulation.finished(group, output):
+            typer.echo(f"granular-response: interrupted; run again, it goes on from {count} finished tasks", err=True)
+        raise
     typer.echo(str(path))
 
 
@@ -278,10 +285,11 @@ def draw(
 
     _loaded()
 
+    numbers = measuring.measure(group, data) if measured else None  # first: they do not wait for pictures
     for path in drawing.draw(group, data, output):
         typer.echo(str(path))
-    if measured:
-        typer.echo(str(measuring.measure(group, data)))
+    if numbers is not None:
+        typer.echo(str(numbers))
 
 
 @_command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
@@ -314,9 +322,10 @@ def show(
     from rich.console import Console
     from rich.text import Text
 
+    from ..api.terminal import columns
     from ..store.summary import summarise
 
-    console = Console(highlight=False, markup=False, emoji=False)
+    console = Console(highlight=False, markup=False, emoji=False, width=columns())
     for part in summarise(file):
         console.print(part, soft_wrap=isinstance(part, Text))
 

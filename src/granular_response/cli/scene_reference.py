@@ -22,6 +22,7 @@ UNITS = {
     "polydispersity": "",
     "lattice_constant": "mean radius",
     "width": "that of the file",
+    "origin": "that of the file",
     "normal_stiffness": "disk weight / mean radius",
     "stiffness_ratio": "",
     "friction": "",

@@ -88,6 +88,7 @@ def _periodic_pairs(position, radius, skin, period):
     kept = first < n  # two copies are near each other where the disks are
     disk = np.r_[np.arange(n), copied]
     pairs = np.sort(np.stack([first[kept], disk[second[kept]]], axis=1), axis=1)
+    pairs = pairs[pairs[:, 0] < pairs[:, 1]]  # a disk is no wider than the period: it never touches its own copy
     pairs = np.unique(pairs, axis=0).astype(np.int32)
     return np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
 

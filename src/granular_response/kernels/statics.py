@@ -162,7 +162,9 @@ def _press(c, xi, nx, nz, inverse, shape, law, out, tangent):
 
 
 @kernel(forceinline=True)
-def _rub(c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overlap0, spring0, limits, fixed, out, tangent):
+def _rub(
+    c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overlap0, spring0, limits, fixed, out, tangent
+):
     """Closed contact with friction; returns normal and tangential force.
 
     ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal.
@@ -183,7 +185,8 @@ def _rub(c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overl
             _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, 0.0, 0.0, 0.0, slides)
         else:
             stiff = law.tangential_stiffness * share
-            _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, stiff * mean / distance, stiff * slip_n, stiff, 0.0)
+            by_t = stiff * mean / distance
+            _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, by_t, stiff * slip_n, stiff, 0.0)
     out.normal[c] = fn
     out.tangential[c] = ft
     out.spring[c] = s
@@ -270,7 +273,9 @@ def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, fixe
         else:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-            fn, ft = _rub(c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, shape, law, overlap0, spring0, limits, fixed, out, tangent)
+            fn, ft = _rub(
+                c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, shape, law, overlap0, spring0, limits, fixed, out, tangent
+            )
             force[2 * n + i] -= radius[i] * ft
         force[i] += fn * nx - ft * nz
         force[n + i] += fn * nz + ft * nx

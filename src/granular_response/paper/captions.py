@@ -115,10 +115,12 @@ def rows(counts: Sequence[int], *, kind: str = "slab") -> str:
 
 
 def values(given: Value) -> str:
-    """One value or several in words: ``4, 10 and 20``; of many the number and the ends."""
+    """One value or several in words: ``4, 10 and 20``; of many the number and the ends, ``none`` of none."""
     if isinstance(given, str):
         return given
     many = [given] if isinstance(given, float | int) else list(given)
+    if not many:
+        return "none"
     texts = [_number(value) for value in many]
     if len(texts) > 8:
         return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"

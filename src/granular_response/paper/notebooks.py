@@ -9,6 +9,7 @@ from pathlib import Path
 from pprint import pformat
 from typing import Any
 
+from granular_response.inputs import read_text
 from granular_response.paper.groups import NAMES
 from granular_response.paper.pipeline import group_member, simulation
 from granular_response.scene import text
@@ -72,7 +73,7 @@ def _notebook(group: str, own: Path, reduced: Path) -> dict[str, Any]:
         _cell("code", f"reduced = {_literal(small)}"),
     ]
     if "survey" in full:
-        sections = text.read(reduced.read_text(encoding="utf-8"))
+        sections = text.read(read_text(reduced))
         cells += [
             _cell("markdown", "It reads the survey of disordered slabs (`make survey`), here a small one."),
             _cell("code", _surveyed(sections["survey"], Path(small["survey"]).parent)),

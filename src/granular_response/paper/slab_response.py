@@ -74,6 +74,11 @@ PICTURE = (
 )
 
 
+def wall_margin(width: float) -> float:
+    """Distance from the side walls within which no peak is looked for: ten radii, less in a narrow slab."""
+    return min(10.0, 0.2 * width)
+
+
 @dataclass
 class LoadPath:
     """States of one scene under a growing load, each found from the one below it.
@@ -135,12 +140,11 @@ class Measures:
         self.disks = floor_disks([path.rest], np.flatnonzero(packing.row == 0))
         middle = float(path.rest.position[self.loaded_disk, 0])
         self.x: FloatArray = path.rest.position[self.disks, 0] - middle
-        margin = min(10.0, 0.2 * packing.width)
-        self.interior = interior_mask(self.x, packing.width, margin, left_wall=-middle)
+        self.interior = interior_mask(self.x, packing.width, wall_margin(packing.width), left_wall=-middle)
         # Near the load means the central third, as in Figs. 4, 8 and 9. Towards the upper corners some contacts
         # carry almost nothing under gravity, so that they open under the least force.
         self.near = network.interior_contacts(path.rest, packing.width, packing.width / 3.0)
-        self._lattice = packing.position
+        self._lattice, self._radius = packing.position, packing.radius
 
     @cached_property
     def mirror(self) -> NDArray[np.intp]:
@@ -161,7 +165,8 @@ class Measures:
 
     def opened(self, state: State) -> int:
         """Number of contacts of disks that the load opened in the central third."""
-        return int(np.count_nonzero(network.contact_changes(self.rest.pairs, state.pairs).opened & self.near))
+        rest, state, near = self._matched(state)
+        return int(np.count_nonzero(network.contact_changes(rest.pairs, state.pairs).opened & near))
 
     def double_peaked(self, state: State) -> bool:
         """Whether the response has two peaks in the sense of the paper's crossover."""
@@ -177,7 +182,15 @@ class Measures:
 
     def region(self, state: State) -> OpenRegion:
         """The opened contacts below the load."""
-        return teardrop(self.rest, state, self.loaded_disk, start=self.near, lattice_constant=self.lattice_constant)
+        rest, state, near = self._matched(state)
+        return teardrop(rest, state, self.loaded_disk, start=near, lattice_constant=self.lattice_constant)
+
+    def _matched(self, state: State) -> tuple[State, State, NDArray[np.bool_]]:
+        """The rest state and this one on one list of candidates, which dynamics may have made anew, and those near."""
+        if self.rest.pairs.same_candidates(state.pairs):
+            return self.rest, state, self.near
+        rest, state = common_candidates([self.rest, state], self._radius)
+        return rest, state, network.interior_contacts(rest, self.width, self.width / 3.0)
 
     def mobilised(self, state: State) -> list[int]:
         """Number of contacts of disks within each of ``MARGINS`` of the Coulomb limit."""

@@ -300,7 +300,7 @@ def stress(
         force=np.concatenate(shown.forces(added)),
         period=shown.box.period,
     )
-    step = max(0.5, shown.box.width / 240.0)
+    step = max(0.5, max(shown.box.width, shown.top) / 240.0)
     left = -0.5 * shown.box.width if shown.box.periodic else -shown.origin
     x = left + np.linspace(0.0, shown.box.width, round(shown.box.width / step) + 1)
     z = np.linspace(0.0, shown.top, round(shown.top / step) + 1)

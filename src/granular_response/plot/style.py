@@ -312,6 +312,13 @@ def paper_value(
         )
 
 
+def logarithmic(axes: Axes, names: str = "xy") -> None:
+    """A logarithmic scale along the axes in ``names`` on which something positive was drawn; others stay linear."""
+    for name in names:
+        if np.isfinite(getattr(axes.dataLim, f"minpos{name}")):
+            axes.set(**{f"{name}scale": "log"})
+
+
 def no_axes(axes: Axes) -> None:
     """Leave only the drawing, with equal scales: for pictures of packings."""
     axes.set_aspect("equal")

@@ -72,6 +72,7 @@ def allowed(phrase: str) -> WrapValidator:
 
 
 Finite = Annotated[float, Field(strict=True), allowed("must be a finite number")]
+Vector = Annotated[tuple[Finite, Finite], allowed("must be two finite numbers [x, z]")]
 Positive = Annotated[float, Field(strict=True, gt=0), allowed("must be a number greater than 0")]
 NonNegative = Annotated[float, Field(strict=True, ge=0), allowed("must be a number, 0 or greater")]
 #: A dimensionless parameter. The limit keeps products of parameters finite.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from .base import Description, Finite, allowed
+from .base import Description, Finite, Vector, allowed
 from .errors import Problem, SceneError, show, show_key
 from .packing import Packing
 
@@ -38,7 +38,6 @@ Selector = Annotated[
     Literal["top-centre"] | Annotated[int, Field(strict=True, ge=0)] | RowSelector,
     allowed("must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"),
 ]
-Vector = Annotated[tuple[Finite, Finite], allowed("must be two finite numbers [x, z]")]
 Displacement = Annotated[
     tuple[Finite | None, Finite | None],
     allowed("must be two finite numbers [x, z], null for a direction that is left free"),

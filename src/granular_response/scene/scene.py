@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from ..inputs import read_text
 from . import text as yaml_text
 from .base import MOST_STIFFNESS, PACKING_KINDS, Description
 from .errors import Problem, SceneError, from_validation, show, show_key, suggestion
@@ -164,7 +165,7 @@ class Scene(Description):
         """A scene from a YAML file; the messages of errors begin with its name."""
         path = Path(path)
         try:
-            return cls.from_text(path.read_text(encoding="utf-8-sig"), folder=path.parent.absolute())
+            return cls.from_text(read_text(path), folder=path.parent.absolute())
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from None
         except FileNotFoundError:

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
+from ..state import FloatArray
+from ..state.box import FARTHEST
 from . import formats
-from .base import Description, Positive, Sides, allowed
+from .base import Description, Positive, Sides, Vector, allowed
 from .errors import Problem, SceneError, describe, show
 from .packing import Packing, exact_mean
 
 _FORMATS = " or ".join(formats.SUFFIXES)
 #: By which lengths of a file may be off, relatively: some formats have single precision.
 _ROUNDING = 1e-6
+#: Least mass and radius of a disk as parts of the largest: what a smaller one does is lost in the rounding of others.
+LEAST_MASS, LEAST_RADIUS = 1e-12, 1e-6
 
 
 def _printable(text: str) -> str:
@@ -38,9 +45,10 @@ Format = Annotated[str, Field(strict=True), AfterValidator(_known), allowed(f"mu
 class FilePacking(Description):
     """Disks from a file: CSV with the columns x, z and radius, or what another program wrote (``scene.formats``).
 
-    Lengths are in any one unit. Every centre lies above the floor ``z = 0`` and between the side walls ``x = 0`` and
-    ``x = width``; periodic sides take any x. Lengths, the width too, are rescaled to a mean radius of 1, masses to a
-    mean of 1.
+    Lengths are in any one unit. Every centre lies above the floor and between the side walls; periodic sides take any
+    x. These stand where the file says: tables without a box have the floor ``z = 0`` and the left wall ``x = 0``. A box
+    that follows its disks, or does not say what it is, is not taken for them: then ``width`` and ``origin`` are given.
+    Lengths, the width too, are rescaled to a mean radius of 1, masses to a mean of 1.
     """
 
     kind: Literal["file"] = Field(default="file", description="Disks from a file.")
@@ -54,6 +62,11 @@ class FilePacking(Description):
         default=None,
         description="Distance of the side walls, or the period with periodic sides, in the unit of length of the file; "
         "null is the width of its box.",
+    )
+    origin: Vector | None = Field(
+        default=None,
+        description="[x, z] of left wall and floor (with periodic sides x is anywhere) in coordinates of the file; "
+        "null is the lower left corner of its box.",
     )
     sides: Sides = "walls"
 
@@ -99,44 +112,49 @@ class FilePacking(Description):
         ------
         SceneError
             For a file that is missing, cannot be read or is not of its format, and, with its place in the file, for a
-            value that is no finite number, a radius or mass that is not positive, a centre outside the box, or two
-            disks in one place; for a width that neither the scene nor the file gives, a disk wider than that, and sides
-            or a period other than those that the file says.
+            value that is no finite number, a radius or mass that is not positive, or so small that it is lost beside
+            the largest, a centre outside the box or too far away, or two disks in one place; for a width or an origin
+            that neither the scene nor the file gives, a disk wider than that, and sides or a period other than those
+            that the file says.
+
+        Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
         """
         table = self._read()
-        x, z, radius, places = table.x, table.z, table.radius, table.places
-        width = table.width if self.width is None else self.width
-        if width is None:
-            raise SceneError(describe(("packing", "width"), None, "must be given, the file has no box"))
-        if table.periodic not in (None, self.periodic):
-            there, box = ("periodic", "is periodic") if table.periodic else ("walls", "is not periodic")
-            rule = f"must be {there}, the box of {show(self.path)} {box} in x"
-            raise SceneError(describe(("packing", "sides"), self.sides, rule))
-        if table.periodic and table.width is not None and not math.isclose(width, table.width, rel_tol=_ROUNDING):
-            rule = f"must be {table.width!r} or left out, the period of the box of {show(self.path)}"
-            raise SceneError(describe(("packing", "width"), width, rule))
+        radius, places = table.radius, table.places
+        left, floor, width = self._sides(table.box)
+        x, z = table.x - left, table.z - floor
+        for name, values in (("x", x), ("z", z), ("radius", radius)):
+            self._check(name, values, np.isfinite(values), "must be a finite number", places)
+        self._check("radius", radius, radius > 0.0, "must be greater than 0", places)
+        mass = (radius / radius.max()) ** 2 if table.mass is None else table.mass
+        self._check("mass", mass, np.isfinite(mass), "must be a finite number", places)
+        mean = exact_mean(radius)
+        far = FARTHEST * mean
+        if width > far:
+            raise SceneError(describe(("packing", "width"), width, f"must be at most {far:g}, 1e9 mean radii"))
         if self.periodic:
             x = np.mod(x, width)
         half = 0.5 * width
-        fits = radius <= half * (1.0 + _ROUNDING)
-        mass = np.ones(len(x)) if table.mass is None else table.mass
+        wide = half * (1.0 + _ROUNDING)
+        large, heavy = LEAST_RADIUS * radius.max(), LEAST_MASS * mass.max()
         for name, values, good, rule in (
-            ("radius", radius, radius > 0.0, "must be greater than 0"),
-            ("radius", radius, fits, f"must be at most {half:g}, half the width of the box"),
+            ("radius", radius, radius <= wide, f"must be at most {half:g}, half the width of the box"),
+            ("radius", radius, radius >= large, f"must be at least {large:g}, a millionth of the largest"),
             ("x", x, self.periodic | ((x > 0.0) & (x < width)), f"must be between the side walls 0 and {width:g}"),
             ("z", z, z > 0.0, "must be above the floor 0"),
+            ("z", z, z <= far, f"must be at most {far:g}, 1e9 mean radii"),
             ("mass", mass, mass > 0.0, "must be greater than 0"),
+            ("mass", mass, mass >= heavy, f"must be at least {heavy:g}, 1e-12 of the largest"),
         ):
-            if not good.all():
-                bad = int(np.argmin(good))
-                raise self._error(f"{name} = {float(values[bad])!r}: {rule}", places[bad])
+            self._check(name, values, good, rule, places)
+        if table.remark and np.ptp(radius) > _ROUNDING * mean:
+            warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
         order = np.lexsort((z, x))
         same = np.flatnonzero((np.diff(x[order]) == 0.0) & (np.diff(z[order]) == 0.0))
         if len(same):
             one, two = sorted(order[same[0] : same[0] + 2])
             raise self._error(f"disk is in the same place as that of {places[one]}", places[two])
 
-        mean = exact_mean(radius)
         return Packing(
             position=np.ascontiguousarray(np.stack([x, z], axis=1) / mean),
             radius=radius / mean,
@@ -146,9 +164,36 @@ class FilePacking(Description):
             given_mass=None if table.mass is None else mass / exact_mean(mass),
         )
 
+    def _sides(self, box: formats.FileBox) -> tuple[float, float, float]:
+        """Left wall, floor and width in coordinates of the file; SceneError where they are not known or disagree."""
+        if box.periodic not in (None, self.periodic):
+            there, said = ("periodic", "is periodic") if box.periodic else ("walls", "is not periodic")
+            rule = f"must be {there}, the box of {show(self.path)} {said} in x"
+            raise SceneError(describe(("packing", "sides"), self.sides, rule))
+        known = box.periodic is not None or self.periodic or box is formats.NO_BOX
+        width = self.width if self.width is not None else box.width if known else None
+        left, floor = self.origin or (box.left if known else None, box.floor)
+        if width is None or left is None or floor is None:
+            key = "width" if width is None else "origin"
+            both = ", and origin as [left wall, floor]" if left is None or floor is None else ""
+            given = f"must be given{both}" if key == "width" else "must be given as [left wall, floor]"
+            where = " in coordinates of the file" if both else ""
+            raise SceneError(describe(("packing", key), None, f"{given}{where}, {box.reason}"))
+        if box.periodic and box.width is not None and not math.isclose(width, box.width, rel_tol=_ROUNDING):
+            rule = f"must be {box.width!r} or left out, the period of the box of {show(self.path)}"
+            raise SceneError(describe(("packing", "width"), width, rule))
+        return left, floor, width
+
+    def _check(self, name: str, values: FloatArray, good: NDArray[np.bool_], rule: str, places: Sequence[str]) -> None:
+        """SceneError for the first of the ``values`` that is not ``good``."""
+        if not np.all(good):
+            bad = int(np.argmin(good))
+            raise self._error(f"{name} = {float(values[bad])!r}: {rule}", places[bad])
+
     def _read(self) -> formats.Table:
         try:
-            return formats.read(self.file, self.format or formats.by_suffix(self.path))
+            with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused where it stands
+                return formats.read(self.file, self.format or formats.by_suffix(self.path))
         except formats.FormatError as error:
             raise self._error(str(error), error.place) from None
         except FileNotFoundError:

@@ -33,7 +33,7 @@ ROUGH = 1e-7
 #: Residual below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
 STILL, STALLED = 1e-5, 3
 #: Factorisations after which an increment, or one minimisation, is given up.
-MOST = 150
+MOST = 60
 
 
 @dataclass
@@ -51,20 +51,17 @@ def solve_increment(
     external: FloatArray,
     guess: FloatArray,
     work: Work,
-    *,
-    outer: bool = True,
 ) -> Trial | None:
     """Equilibrium under ``external``, one increment after ``known``; None where none is found.
 
-    ``guess`` (dof,) is a prediction of the displacements. ``outer`` : whether limits are held fixed where Newton's
-    method alone finds nothing.
+    ``guess`` (dof,) is a prediction of the displacements.
     """
     trial, report = newton(system, known, external, guess, maximum_iterations=DIRECT_ITERATIONS)
     work.factorisations += report.iterations
     if report.converged:
         work.increments += 1
         return trial
-    if not (outer and system.problem.rotations):
+    if not system.problem.rotations:
         return None
     pair_mu, wall_mu = system.problem.pair_law.friction, system.problem.wall_law.friction
     friction = np.repeat([pair_mu, wall_mu], [len(system.first), len(system.wall_disk)])

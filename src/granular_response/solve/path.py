@@ -9,11 +9,11 @@ frictionless arrays):
    finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``;
 3. contacts that are at their change change, a mirror pair together, and so on from 1.
 
-An equilibrium is lost where no statuses solve the rate problem (a snap-through), or where the tangent has an unstable
-direction along which the contacts that slide go on sliding (divergence; at a bifurcation of a symmetric branch). In the
-first case the nearest equilibrium under a slightly larger load is looked for (:func:`.increment.solve_increment`); where
-that is none, or not near, and in the second case, the motion of the disks leads to the next one (:mod:`.settle`). All of
-these are events of the result.
+Where no statuses are found for the rates the equilibrium under a slightly larger load is looked for with the limits of
+friction held fixed (:func:`.increment.solve_increment`): mostly the path goes on. An equilibrium is lost where there is
+none nearby (a snap-through), or where the tangent has an unstable direction along which the contacts that slide go on
+sliding (divergence; at a bifurcation of a symmetric branch). The motion of the disks then leads to the next one
+(:mod:`.settle`). Both are events of the result.
 
 In packings too large for a banded factorisation events are taken together within an increment of the load; what that
 leaves out is measured by a path in increments of twice the length.
@@ -57,9 +57,13 @@ class PathOptions:
     newton: int = 40
     #: Times that an increment is shortened to an event that came before the one expected.
     landings: int = 12
-    #: Load by which the next equilibrium is looked for first where one is lost, doubled up to the last.
-    first_beyond: float = 0.01
-    last_beyond: float = 0.64
+    #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
+    still: int = 30
+    #: Loads by which the next equilibrium is looked for, with limits of friction held fixed, where none are found for
+    #: the rates: after the first one mostly the path goes on, only with other statuses.
+    beyond: tuple[float, ...] = (1e-4, 1e-2, 1e-1)
+    #: Times by which disks may be faster than before there, or the equilibrium before was lost.
+    faster: float = 10.0
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
     #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
@@ -187,8 +191,11 @@ class _Path:
         """The certified state at the target, from a point on the way there."""
         point = self._balanced(point)
         while True:
+            still = 0  #: points in turn at one load
             while point.factor != self.target:
-                point = self._advance(point)
+                before = point.factor
+                point = self._advance(point, still > self.options.still)
+                still = still + 1 if abs(point.factor - before) * self.unit < self.event else 0
                 self._look_down(point)
                 if self.progress is not None:
                     self.progress(point.factor)
@@ -225,11 +232,14 @@ class _Path:
             )
         return Point(point.factor, found, found.sense, found.sense)
 
-    def _advance(self, point: Point) -> Point:
-        """The next point: where a contact changes, the target, or beyond an equilibrium that is lost."""
+    def _advance(self, point: Point, stuck: bool) -> Point:
+        """The next point: where a contact changes, the target, or beyond an equilibrium that is lost.
+
+        ``stuck`` : whether contacts have changed again and again at one load.
+        """
         if self.together is not None:
             return self._relisted(self._increment(point, self._towards(point.factor, self.together / self.unit)))
-        rates = self.rates.solve(point.trial, point.due)
+        rates = None if stuck else self.rates.solve(point.trial, point.due)
         if rates is None:
             return self._relisted(self._lost(point, "no statuses of the contacts go on"))
         self._record(point, rates.sense)
@@ -283,7 +293,7 @@ class _Path:
         """Equilibrium with the statuses of ``rates`` a ``length`` of the load factor on, and what changes then.
 
         With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
-        it. Newton's method by the tangent at ``point``, or by that of an iterate where that does not lead there soon.
+        it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
         """
         options, known = self.options, point.known
         factor = self._towards(point.factor, length) if event is None else point.factor + self.direction * length
@@ -297,7 +307,7 @@ class _Path:
             left = 0.0 if event is None else self.rates.left(trial, *event)
             if not np.isfinite(size):
                 return None
-            balanced = size <= enough or (size <= attainable(system, q) and size > 0.5 * before)
+            balanced = size <= enough or (size > 0.5 * before and size <= attainable(system, q))
             if balanced and abs(left) <= 0.5 * self.event:
                 return factor, trial, self.rates.changes(trial, velocity, rates.sense)
             if size > options.slow * before or done % options.same_tangent == options.same_tangent - 1:
@@ -348,22 +358,25 @@ class _Path:
 
     def _lost(self, point: Point, reason: str) -> Point:
         """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
-        work, step = self.record.work, self.options.first_beyond / self.unit
-        while step * self.unit <= self.options.last_beyond:
-            new = self._towards(point.factor, step)
-            guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
-            external, guess = self._external(new), self.system.displaced(guess, new)
-            found = solve_increment(self.system, point.known, external, guess, work, outer=False)
-            if found is not None:
-                moved = float(np.abs(found.configuration.q - guess)[: 2 * self.problem.n].max(initial=0.0))
-                if moved > self.options.nearby:
+        n, usual = 2 * self.problem.n, 0.0
+        if self.velocity is not None:
+            usual = self.options.faster * float(np.abs(self.velocity[:n]).max(initial=0.0))
+        for beyond in self.options.beyond:
+            new = self._towards(point.factor, beyond / self.unit)
+            guess = self.system.displaced(point.known.q, new)
+            found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+            if found is None:
+                if new == self.target:
                     break
-                self._record_lost("stepped over", point, new, found.configuration.q - guess, reason)
-                self._record(point, found.sense)
-                return Point(new, found, found.sense, found.sense)
-            if new == self.target:
+                continue
+            moved = found.configuration.q - point.known.q
+            far = float(np.abs(moved[:n]).max(initial=0.0))
+            if far > self.options.nearby:
                 break
-            step *= 2.0
+            if far > usual * abs(new - point.factor):
+                self._record_lost("stepped over", point, new, moved, reason)
+            self._record(point, found.sense)
+            return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)
 
     def _by_motion(self, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
@@ -435,21 +448,18 @@ class _Path:
         contacts = np.flatnonzero(point.sense != after)
         if not len(contacts):
             return
-        system, q, n = self.system, point.known.q, self.problem.n
-        position = system.reference + q[: 2 * n].reshape(2, n).T
-        radius, m = self.problem.packing.radius, len(system.first)
-        for c in contacts:
-            at_wall = bool(c >= m)
-            i = int(system.wall_disk[c - m] if at_wall else system.first[c])
-            j = int(system.wall[c - m] if at_wall else system.second[c])
-            towards = (
-                -system.wall_normals[c - m]
-                if at_wall
-                else self.problem.packing.box.separation(position[j : j + 1], position[i : i + 1])[0]
-            )
-            x, z = position[i] + radius[i] * towards / np.hypot(*towards)
-            kind = _kind(int(point.sense[c]), int(after[c]))
-            self.record.events.append(Event(point.factor, kind, i, j, at_wall, float(x), float(z), point.factor))
+        system, n, m = self.system, self.problem.n, len(self.system.first)
+        position = system.reference + point.known.q[: 2 * n].reshape(2, n).T
+        at_wall = contacts >= m
+        pair, wall = contacts[~at_wall], contacts[at_wall] - m
+        first = np.concatenate([system.first[pair], system.wall_disk[wall]])
+        second = np.concatenate([system.second[pair], system.wall[wall]])
+        apart = self.problem.packing.box.separation(position[system.second[pair]], position[system.first[pair]])
+        towards = np.concatenate([apart, -system.wall_normals[wall]])
+        place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
+        kinds = map(_kind, point.sense[contacts].tolist(), after[contacts].tolist())
+        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
+        self.record.events += [Event(point.factor, *row, point.factor) for row in rows]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
         """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""

@@ -17,11 +17,14 @@ from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
 from ..state import Contacts, FloatArray, State
+from ..state.box import WALL_MEANINGS
 from .held import NOTHING, Held
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
 SKIN = 0.6
+#: Largest overlap of a start, as a part of the smaller radius.
+MOST_OVERLAP = 0.5
 #: With less room than this left on the lattice, neighbours are searched instead.
 LEAST_LATTICE_LIMIT = 0.25
 
@@ -70,6 +73,32 @@ def _check_period(packing: Packing) -> None:
         )
 
 
+def _check_overlaps(packing: Packing) -> None:
+    """Refuse disks that begin deep inside others or walls: what is read as radii or walls is then something else."""
+    position, radius, box = packing.position, packing.radius, packing.box
+    first, second = neighbours.close_pairs(position, radius, 0.0, box.period)
+    apart = np.linalg.norm(box.separation(position[first], position[second]), axis=1)
+    disk, wall = box.near_walls(position, radius, 0.0)
+    overlap = np.r_[radius[first] + radius[second] - apart, -box.wall_gap(position[disk], radius[disk], wall)]
+    smaller = np.r_[np.minimum(radius[first], radius[second]), radius[disk]]
+    deep = overlap > MOST_OVERLAP * smaller
+    if not deep.any():
+        return
+    k = int(np.argmax(np.where(deep, overlap / smaller, 0.0)))
+    m = k - len(first)
+    if m < 0:
+        two = f"disks {first[k]} and {second[k]}"
+    else:
+        two = f"disk {disk[m]} and the {WALL_MEANINGS[wall[m]].replace('_', ' ')}"
+    cure = "are radii diameters, and walls and floor where they should be?"
+    if packing.left is not None:
+        cure = "take lattice_constant touching-largest or less polydispersity"
+    raise SceneError(
+        f"packing: {two} (counted from 0) overlap by {overlap[k]:.3g} mean radii at the start, must be at most "
+        f"{MOST_OVERLAP * smaller[k]:.3g}, half the smaller radius; {cure}"
+    )
+
+
 def _laws(scene: Scene) -> tuple[Law, Law]:
     """The laws of a scene between disks and at walls."""
     least = -np.inf if scene.protocol.tensile_dashpot else 0.0
@@ -103,13 +132,18 @@ class Problem:
 
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
-        """Build the packing (unless given) and the laws of a scene; raises ``SceneError`` for a bad packing."""
-        packing = scene.packing.build() if packing is None else packing
-        _check_period(packing)
+        """Build the packing (unless given) and the laws of a scene; raises ``SceneError`` for a bad packing.
+
+        Among them are, of those that are built here, packings in which disks begin deep inside others or walls.
+        """
+        start = scene.packing.build() if packing is None else packing
+        _check_period(start)
+        if packing is None:  # a given one is the caller's own
+            _check_overlaps(start)
         pair_law, wall_law = _laws(scene)
         return cls(
             scene=scene,
-            packing=packing,
+            packing=start,
             pair_law=pair_law,
             wall_law=wall_law,
             rule=RULES[scene.protocol.friction_law],

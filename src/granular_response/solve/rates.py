@@ -2,8 +2,8 @@
 
 Where contacts keep their status the rates of the displacements ``v`` follow from the tangent, ``K v = f``, with ``f``
 the rate of the load. Which statuses these are is part of the problem where contacts are about to change: a contact at
-Coulomb's limit slides (its slip has the direction of its force) or sticks (its force does not pass the limit), a contact
-that bears nothing closes or opens. This is the linear complementarity problem of contact with friction in rates
+Coulomb's limit slides (its slip has the direction of its force) or sticks (its force does not pass the limit), one that
+bears nothing closes or opens. This is the linear complementarity problem of contact with friction in rates
 (McNamara and Herrmann, Phys. Rev. E 74, 061303, 2006), solved here by changing the statuses that contradict themselves
 until none does: all at once, and where that comes back to statuses that it has tried, the worst ones alone.
 """
@@ -35,12 +35,8 @@ class Changes:
     rate: FloatArray  #: of its fall
 
     def first(self) -> tuple[int, float]:
-        """The contact that changes first and after which rise of the load factor; infinity where none does."""
-        away = np.full(len(self.rate), np.inf)
-        changes = self.rate > 0.0
-        away[changes] = np.maximum(self.left[changes], 0.0) / self.rate[changes]
-        first = int(np.argmin(away)) if len(away) else 0
-        return first, float(away[first]) if len(away) else np.inf
+        """The contact that changes first and after which growth of the load factor; infinity where none does."""
+        return events.first_change(self.left, self.rate)
 
     def due(self, force: float) -> np.ndarray:
         """Contacts that are within a ``force`` of their change."""
@@ -130,7 +126,8 @@ class RateProblem:
     def fall(self, q: FloatArray, c: int, what: int, displacement: FloatArray) -> float:
         """By how much a displacement (dof,) lowers that force."""
         system = self.system
-        return events.fall(c, what, q, displacement, system.problem.n, system.problem.packing.radius, system.pairs, system.walls)
+        n, radius = system.problem.n, system.problem.packing.radius
+        return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls)
 
     def solve(self, trial: Trial, sense: np.ndarray) -> Rates | None:
         """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.

@@ -1,8 +1,8 @@
 """Stability of equilibria: whether a small displacement grows by itself (divergence).
 
-A disk displaced by ``x`` from equilibrium feels ``-K x``, so the linearised motion is ``M x'' + K x = 0`` with the masses
-and moments of inertia ``M``. A real negative eigenvalue of ``M^-1 K`` is a direction that grows. Without sliding K is
-symmetric (up to the turn of the contacts) and the negative eigenvalues are counted exactly, by Sylvester's law of
+A packing displaced by ``x`` from equilibrium feels ``-K x``, so its linearised motion is ``M x'' + K x = 0`` with the
+masses and moments of inertia ``M``. A real negative eigenvalue of ``M^-1 K`` is a direction that grows. Without sliding
+K is symmetric (up to the turn of the contacts) and the negative eigenvalues are counted exactly, by Sylvester's law of
 inertia. With sliding contacts K is unsymmetric and belongs to these contacts sliding on, which along a direction they
 may not do: see :func:`divergence`. Complex pairs of eigenvalues, which exist wherever contacts slide, are not counted:
 they oscillate, and decay or grow (flutter) by the dashpots.
@@ -44,6 +44,8 @@ SIGN = 0.1
 LEFT_OF_ALL = (1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
 #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
 DENSE = 12
+#: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
+LEAST_SIDEWAYS = 1e-6
 #: Times that a direction may change the contacts that slide along it before it counts as one that grows.
 ROUNDS = 12
 
@@ -53,8 +55,8 @@ def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
 
     With sliding contacts no eigenvalue has a smaller real part than the lowest of the symmetric part (Bendixson). Is
     that negative, the eigenvalue nearest to a point still further to the left is computed, as accurately as its sign
-    asks: from there a real negative one is nearer than all that are not. Is it negative, the ``SOUGHT`` nearest are, and
-    those with a negative real part counted.
+    asks: from there a real negative one is nearer than all that are not. Is it negative, the ``SOUGHT`` nearest are,
+    and those with a negative real part counted.
     """
     matrix, _ = _scaled(system, trial)
     modes = system.storage.negative_eigenvalues(system.pattern.symmetric_part(matrix))
@@ -107,8 +109,10 @@ def unstable_direction(system: StaticSystem, trial: Trial, *, rough: bool = Fals
         vector = vectors[:, 0]
     direction = system.deinterleave(scale * vector)
     direction /= np.abs(direction).max()
-    sideways = direction[: system.problem.n].sum()
-    return -direction if sideways < -1e-6 or (abs(sideways) <= 1e-6 and direction[np.argmax(np.abs(direction))] < 0) else direction
+    sideways = float(direction[: system.problem.n].sum())
+    if abs(sideways) <= LEAST_SIDEWAYS:
+        sideways = float(direction[np.argmax(np.abs(direction))])
+    return -direction if sideways < 0.0 else direction
 
 
 def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:

@@ -179,7 +179,8 @@ class StaticSystem:
             add(
                 q, known.q, problem.n, problem.packing.radius, contacts, contacts.shape, known.overlap[part],
                 known.spring[part] if friction else None, limits[part] if friction and limits is not None else None,
-                fixed if fixed is None else fixed[part], statics.Response(*(array[part] for array in out)), local if local is None else local[part], force,
+                None if fixed is None else fixed[part], statics.Response(*(array[part] for array in out)),
+                None if local is None else local[part], force,
             )  # fmt: skip
         force[self.held] = 0.0
         return Trial(Configuration(q, spring, overlap), force, normal, tangential, out.status, local)
@@ -332,7 +333,8 @@ class StaticSystem:
         c = trial.configuration
         values = (c.overlap, trial.normal, trial.tangential, c.spring, trial.status)
         parts = zip(*map(self.split, values), strict=True)
-        places = (self.first.astype(np.int32), self.second.astype(np.int32)), (self.wall_disk.astype(np.int32), self.wall)
+        first, second, disk = (index.astype(np.int32) for index in (self.first, self.second, self.wall_disk))
+        places = (first, second), (disk, self.wall)
         pairs, walls = (Contacts(*place, *part) for place, part in zip(places, parts, strict=True))
         return State(
             position=self.reference + q[: 2 * n].reshape(2, n).T,

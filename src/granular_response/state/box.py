@@ -17,6 +17,8 @@ FloatArray = NDArray[np.float64]
 FLOOR, LEFT_WALL, RIGHT_WALL = 0, 1, 2
 #: Their names, in order.
 WALL_MEANINGS = ("floor", "left_wall", "right_wall")
+#: Widest box and farthest place of a disk (mean radii): beyond it an overlap is lost in the rounding of a position.
+FARTHEST = 1e9
 #: (3, 2) inward unit normals of the floor, the left and the right wall.
 WALL_NORMAL = np.array([[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields, replace
 
 from .events import Event
 
-
 #: Part of what a disk bears that may be out of balance.
 BALANCED = 1e-6
 

@@ -108,10 +108,15 @@ def remove_leftovers(path: str | os.PathLike[str]) -> list[Path]:
 @contextlib.contextmanager
 def _temporary(target: Path) -> Iterator[tuple[int, Path]]:
     """A new, locked file beside ``target``, gone at the end unless it was moved away."""
-    temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.partial")
-    descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
-    try:
+    while True:
+        temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.partial")
+        descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
         fcntl.flock(descriptor, fcntl.LOCK_EX)
+        with contextlib.suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(descriptor), os.stat(temporary)):
+                break
+        os.close(descriptor)  # another writer took it for a leftover before it was locked
+    try:
         yield descriptor, temporary
     finally:
         with contextlib.suppress(FileNotFoundError):

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import fields
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..state import Event, status
-from ..state.box import WALL_MEANINGS
+from ..state import Certificate, Event, status
+from ..state.box import FARTHEST, WALL_MEANINGS
 from . import files
 from .result import (
+    ADDED_LATER,
     EVENT_KINDS,
     ResultError,
     described_events,
@@ -62,6 +64,7 @@ _CODES = {
     "wall_status": len(status.MEANINGS),
 }
 _POSITIVE = ("radius", "mass")
+_CERTIFICATE = {f"certificate_{field.name}" for field in fields(Certificate)}
 #: Variables of the events of a path; those with places are not known for events of versions before.
 _EVENTS = {
     "event_load_factor": _REAL,
@@ -120,11 +123,18 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
     for name in _POSITIVE:
         if not (dataset[name].values > 0).all():
             _fail(f"variable {name}: must be greater than 0")
+    if np.abs(dataset["position"].values).max() > FARTHEST:
+        _fail(f"variable position: must be at most {FARTHEST:g} mean radii away")
     if np.any(dataset["contact_disk"].values == dataset["contact_partner"].values):
         _fail("variables contact_disk, contact_partner: a disk touches itself")
+    if any(name in dataset for name in _CERTIFICATE):
+        for name in sorted(_CERTIFICATE - (ADDED_LATER - set(dataset.variables))):
+            _check_variable(dataset, name, ("state",), _REAL, finite=False)
     several = ("load",) if states > 2 else ()
     for name in ("floor_force", "floor_response"):  # nan under a load of nothing
         _check_variable(dataset, name, (*several, "floor_disk"), _REAL, finite=False)
+    if states > 1:
+        _check_variable(dataset, "total_force", several, _REAL)
     if "reaction" in dataset:
         _check_variable(dataset, "reaction", (*several, "load_point", "axis"), _REAL)
     if several and dataset.sizes["load"] != states - 1:
@@ -206,14 +216,14 @@ def _check_attributes(attributes: dict[Any, Any]) -> None:
     if not isinstance(attributes.get("scene"), str):
         _fail("attribute scene is missing, must be the scene as YAML")
     width = attributes.get("width")
-    if not isinstance(width, (int, float, np.number)) or not 0 < width < np.inf:
-        _fail("attribute width: must be a number greater than 0")
+    if not isinstance(width, (int, float, np.number)) or not 0 < width <= FARTHEST:
+        _fail(f"attribute width: must be a number greater than 0, at most {FARTHEST:g}")
     if attributes.get("sides", "walls") not in ("walls", "periodic"):
         _fail("attribute sides: must be walls or periodic")
     for name in ("method", "method_reason"):
         try:
             known = isinstance(json.loads(attributes.get(name, "{}")), dict)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, RecursionError):
             known = False
         if not known:
             _fail(f"attribute {name}: must be a mapping as JSON")

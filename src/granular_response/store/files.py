@@ -10,9 +10,11 @@ the life of the process. So it makes the file in a folder for temporary files, a
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import re
+import secrets
 import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -23,6 +25,7 @@ import numpy as np
 
 from .. import __version__
 from ..errors import GranularError
+from ..inputs import check_regular
 from . import atomic
 from .labelled import Labelled, labelled
 
@@ -55,6 +58,8 @@ def write(
     path: str | os.PathLike[str],
     datasets: xr.Dataset | Labelled | Mapping[str, xr.Dataset],
     attributes: Mapping[str, Any] | None = None,
+    *,
+    keep: bool = False,
 ) -> None:
     """Write datasets to one netCDF-4 file, compressed and with checksums.
 
@@ -67,6 +72,9 @@ def write(
         is the root) to datasets. Every variable and coordinate has the attributes ``long_name`` and ``units``.
     attributes
         Attributes of the file as a whole. ``format`` and ``package_version`` are added.
+    keep
+        What cost a computation is not given up where ``path`` cannot be written: it is kept under a new name beside it,
+        or in the current folder or that of temporary files, and the error says where.
 
     Raises
     ------
@@ -90,7 +98,19 @@ def write(
         path.parent.mkdir(parents=True, exist_ok=True)
         atomic.write_bytes(path, data, check=lambda written: _verify(written, groups))
     except OSError as error:
-        raise _error(path, f"cannot be written: {error.strerror or error}") from error
+        kept = _keep(path, data) if keep else None
+        where = "" if kept is None else f"; what was computed is kept as {kept}"
+        raise _error(path, f"cannot be written: {error.strerror or error}{where}") from error
+
+
+def _keep(path: Path, data: bytes) -> Path | None:
+    """The new name under which ``data`` was written, as near to ``path`` as one can be; None if nowhere."""
+    for folder in (path.parent, Path(), Path(tempfile.gettempdir())):
+        place = folder / f"{path.stem}.kept-{secrets.token_hex(4)}{SUFFIX}"
+        with contextlib.suppress(OSError):
+            atomic.write_bytes(place, data)
+            return place
+    return None
 
 
 def check_writable(path: str | os.PathLike[str], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -221,6 +241,7 @@ def _verify(data: bytes, groups: Mapping[str, Labelled]) -> None:
 
 def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
     try:
+        check_regular(path)
         data = Path(path).read_bytes()
     except FileNotFoundError:
         raise _error(path, "no such file") from None

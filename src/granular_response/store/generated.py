@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 from ..errors import GranularError
+from ..inputs import read_text
 from . import atomic
 
 
@@ -37,7 +38,7 @@ def renew(file: str | os.PathLike[str], name: str, lines: str) -> None:
     """Renew the generated lines of a file. Raises GeneratedError if it cannot be read or has no place for them."""
     path = Path(file)
     try:
-        before = path.read_text(encoding="utf-8")
+        before = read_text(path)
         after = replace(before, name, lines)
     except (OSError, ValueError, GeneratedError) as error:
         raise GeneratedError(f"{path}: {getattr(error, 'strerror', None) or error}") from None

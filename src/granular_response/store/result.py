@@ -62,6 +62,8 @@ _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 
 #: Number of unstable directions in files where it was not determined.
 NOT_DETERMINED = -1
+#: Parts of a certificate that older files do not have.
+ADDED_LATER = frozenset({"certificate_unbalanced_part"})
 
 
 class ResultError(GranularError, ValueError):
@@ -133,7 +135,7 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
         "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
         "negative_modes": f"unstable directions of the tangent stiffness ({NOT_DETERMINED}: not determined)",
         "loose_disks": "disks with fewer than two contacts",
-        "unbalanced_part": "largest unbalanced force on a disk as a part of what it bears",
+        "unbalanced_part": "largest unbalanced force on a disk, as a part of what it bears",
     }
     certificates: list[Certificate] = [s.certificate for s in states]
 
@@ -222,10 +224,10 @@ _REACHED = {
     "loose_disks": "disks with fewer than two contacts, at that moment",
     "more_relaxations": "stretches of dynamics between tries of the static finish",
     "newton_iterations": "iterations of Newton's method",
+    "finish_displacement": f"largest displacement of a disk in the static finish {LENGTH}",
     "escapes": "saddles of the energy that were left",
     "increments": "increments of the path so far, in the command that made the state",
     "factorisations": "factorisations of the path so far, in the command that made the state",
-    "finish_displacement": f"largest displacement of a disk in the static finish {LENGTH}",
     "events_within": f"load within which the path took events together {FORCE}",
     "events_error": "what that leaves out of a force of the floor or a wall, per load, as measured",
 }
@@ -487,9 +489,10 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     one = dataset.isel(state=index)
     stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
     certificate = None
-    # files from before have no certificate_unbalanced_part
-    if set(stored.values()) - {"certificate_unbalanced_part"} <= set(one.variables):
-        numbers: dict[str, Any] = {name: one[key].values.item() for name, key in stored.items() if key in one}
+    if set(stored.values()) - ADDED_LATER <= set(one.variables):
+        numbers: dict[str, Any] = {
+            name: one[variable].values.item() for name, variable in stored.items() if variable in one.variables
+        }
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
         certificate = Certificate(**numbers)
@@ -535,6 +538,8 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     if not same or packed.box != rest.box:
         raise ResultError("the table of disks has changed since the result was made")
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
+    if rest.reached.certificate is None:
+        raise ResultError("holds no certificates, from which a run goes on")
     return Solution(
         scene=scene,
         problem=problem,

@@ -6,6 +6,7 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -59,16 +60,35 @@ def _pool(count: int, module: str) -> Iterator[tuple[ProcessPoolExecutor, Event]
     context = multiprocessing.get_context(method)
     if method == "forkserver":
         context.set_forkserver_preload([module])
-    started = context.Event()
-    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker, initargs=(started,))
     try:
-        yield pool, started
+        started = context.Event()
+        pool = ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker, initargs=(started,))
+    except OSError as error:  # their locks are shared memory
+        raise SweepError(f"worker processes cannot begin, /dev/shm: {error.strerror}; or workers=1") from None
+    try:
+        with _importable_script():
+            yield pool, started
     except BaseException:
         for process in list((getattr(pool, "_processes", None) or {}).values()):
             process.kill()
         pool.shutdown(wait=True, cancel_futures=True)
         raise
     pool.shutdown(wait=True)
+
+
+@contextlib.contextmanager
+def _importable_script() -> Iterator[None]:
+    """Workers import the script that started them; one from standard input is none that they could find."""
+    script = sys.modules["__main__"]
+    name = getattr(script, "__file__", None)
+    if name is None or os.path.exists(name):
+        yield
+        return
+    del script.__file__
+    try:
+        yield
+    finally:
+        script.__file__ = name
 
 
 def _start_worker(started: Event) -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from granular_response.inputs import read_text
 from granular_response.paper.archive import ArchiveError
 from granular_response.paper.groups import NAMES
 from granular_response.scene import SceneError, text
@@ -73,7 +74,7 @@ def stages(root: Path) -> list[Stage]:
 
 def _section(path: Path) -> dict[str, Any]:
     try:
-        found = text.read(path.read_text(encoding="utf-8"))["stages"]
+        found = text.read(read_text(path))["stages"]
     except OSError as error:
         raise ArchiveError(f"{path}: cannot be read: {error.strerror}") from None
     except (SceneError, UnicodeDecodeError, KeyError, TypeError):
@@ -116,7 +117,7 @@ def _walk(place: Path, ignored: tuple[str, ...]) -> Iterator[tuple[str, list[str
 def _ignored(root: Path) -> tuple[str, ...]:
     """The patterns of ``.dvcignore``, each of which is one of names there."""
     try:
-        lines = (root / IGNORED).read_text(encoding="utf-8").splitlines()
+        lines = read_text(root / IGNORED).splitlines()
     except OSError:
         return ()
     return tuple(line.strip() for line in lines if line.strip() and not line.startswith("#"))
@@ -159,7 +160,7 @@ def check(root: Path, stages: list[Stage]) -> None:
 
 def _parameters(path: Path) -> dict[str, Any]:
     try:
-        found = text.read(path.read_text(encoding="utf-8"))
+        found = text.read(read_text(path))
     except OSError as error:
         raise ArchiveError(f"{path}: cannot be read: {error.strerror}") from None
     except (SceneError, UnicodeDecodeError) as error:

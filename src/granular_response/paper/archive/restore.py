@@ -9,6 +9,7 @@ import zipfile
 import zlib
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
+from granular_response.inputs import check_regular
 from granular_response.paper.archive import ArchiveError, lock
 from granular_response.paper.archive.lock import Item
 from granular_response.store import atomic
@@ -29,6 +30,7 @@ def restore(archive: Path, root: Path = Path(".")) -> list[str]:
         If the archive cannot be read or a dataset not be written.
     """
     items = [item for stage in lock.stages(root) for item in stage.written if item.path.endswith(store.SUFFIX)]
+    check_regular(archive)
     try:
         with zipfile.ZipFile(archive) as file:
             _check_names(archive, file)

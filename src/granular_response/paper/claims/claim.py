@@ -60,7 +60,9 @@ class Quantity:
         return cls(found[0] if value is None else value, min(found), max(found), "range")
 
     def per(self, other: Quantity) -> Quantity:
-        """The ratio, with the interval that both intervals leave; both positive."""
+        """The ratio, with the interval that both intervals leave; both positive. NotMeasured if that is 0."""
+        if other.high == 0.0:
+            raise NotMeasured("nothing to compare with")
         kind: Kind = other.kind if self.kind == "none" else self.kind
         low, high = self.low / other.high, self.high / other.low if other.low > 0.0 else float("inf")
         return Quantity(self.value / other.value if other.value else float("nan"), low, high, kind)
@@ -294,6 +296,8 @@ def about(what: str, found: Quantity, paper: float, words: Bounds, unit: str = "
 def rises(what: str, values: Sequence[Quantity]) -> Condition:
     """Each of positive ``values`` is larger than the one before: their smallest ratio is above 1."""
     steps = [after.per(before) for before, after in pairwise(values)]
+    if not steps:
+        raise NotMeasured(f"{what}: fewer than two values to compare")
     smallest = Quantity(
         min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), steps[0].kind
     )

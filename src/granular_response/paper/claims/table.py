@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from granular_response.errors import GranularError
+from granular_response.inputs import read_json
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
@@ -225,7 +226,7 @@ def write(
 def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
     """The stored table. Raises ClaimsError if it is missing or damaged."""
     try:
-        found = json.loads(Path(path).read_text(encoding="utf-8"))
+        found = read_json(Path(path))
     except (OSError, ValueError) as error:
         raise ClaimsError(
             f"{path}: {getattr(error, 'strerror', None) or error}; make it with granular-response claims"

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from granular_response.paper import captions
-from granular_response.paper.pipeline import GroupError, figures_folder, group_member, stored
+from granular_response.paper.pipeline import TOO_LITTLE, GroupError, figures_folder, group_member, stored
 from granular_response.scene import SceneError, text
 from granular_response.store import atomic
 from granular_response.store import files as store
@@ -19,7 +19,8 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     Raises
     ------
     granular_response.paper.pipeline.GroupError
-        If there is no such group, or the datasets are those of another one or of other parameters than it has now.
+        If there is no such group, the datasets are those of another one or of other parameters than it has now, or
+        hold too little to be drawn.
     granular_response.store.files.StoreError
         If its datasets cannot be read.
     """
@@ -29,12 +30,16 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     from granular_response.plot import style
 
     target = folder or figures_folder(group)
-    figures = function(datasets)
-    panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
-    said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
     paths: list[Path] = []
-    for stem, figure in figures.items():
-        paths += style.save(figure, stem, target, inputs=[path])
+    try:
+        figures = function(datasets)
+        panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
+        said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
+        for stem, figure in figures.items():
+            paths += style.save(figure, stem, target, inputs=[path])
+    except TOO_LITTLE as error:
+        problem = " ".join(f"{type(error).__name__}: {error}".split())
+        raise GroupError(f"{path}: {group} cannot be drawn with these parameters ({problem})") from error
     beside = target / captions.FILE
     atomic.check_writable(beside, [path])
     atomic.write_bytes(beside, (json.dumps(said, ensure_ascii=False, indent=1) + "\n").encode())

@@ -15,7 +15,7 @@ import xarray as xr
 
 from granular_response.paper.claims.claim import Claim, Data, NotMeasured, rounded
 from granular_response.paper.claims.words import bounds
-from granular_response.paper.pipeline import GroupError, group_member, stored
+from granular_response.paper.pipeline import TOO_LITTLE, GroupError, group_member, stored
 from granular_response.store import atomic
 
 #: Datasets of a group to numbers by name.
@@ -29,7 +29,8 @@ def measure(group: str, data: Path | None = None, output: Path | None = None) ->
     """Write the numbers of a group as JSON; returns the path of the file.
 
     ``claims`` maps each claim of the group to its number in the first reading with the ends of its interval, and to
-    what becomes of it there: holds, fails, open or not measured. ``numbers`` are those of the group's ``numbers.py``.
+    what becomes of it there: holds, fails, open or not measured, also where the datasets hold too little for it.
+    ``numbers`` are those of the group's ``numbers.py``.
 
     Raises
     ------
@@ -48,7 +49,11 @@ def measure(group: str, data: Path | None = None, output: Path | None = None) ->
     if claims is not None:
         found["claims"] = {claim.id: _claim(claim, group, datasets) for claim in claims}
     if numbers is not None:
-        found["numbers"] = {name: rounded(value) for name, value in numbers(datasets).items()}
+        try:
+            found["numbers"] = {name: rounded(value) for name, value in numbers(datasets).items()}
+        except TOO_LITTLE as error:
+            problem = " ".join(f"{type(error).__name__}: {error}".split())
+            raise GroupError(f"{path}: the numbers of {group} cannot be measured ({problem})") from error
     target = output or FOLDER / f"{group}.json"
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.check_output(target, [path])
@@ -77,5 +82,5 @@ def _claim(claim: Claim, group: str, datasets: Mapping[str, xr.Dataset]) -> dict
         found = reading.conditions[0].found
         values = {"value": found.value, "low": found.low, "high": found.high}
         return {"outcome": reading.outcome, **{name: rounded(value) for name, value in values.items()}}
-    except NotMeasured:
+    except (NotMeasured, *TOO_LITTLE):  # the table of claims, which has all datasets, is not as lenient
         return {"outcome": "not measured"}

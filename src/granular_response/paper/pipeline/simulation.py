@@ -12,11 +12,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from granular_response.inputs import read_text
 from granular_response.paper.parameters import Common
-from granular_response.paper.pipeline import GroupError, data_path, group_member
+from granular_response.paper.pipeline import TOO_LITTLE, GroupError, data_path, group_member
 from granular_response.scene import SceneError, text
 from granular_response.scene.base import Description
 from granular_response.store import files as store
+from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Progress, using
 
 PARAMETERS = Path("params.yaml")
@@ -39,7 +41,7 @@ def parameters(group: str, path: Path = PARAMETERS) -> tuple[dict[str, Any], Des
     """
     kind: type[Description] = group_member(group, "parameters", "Parameters")
     try:
-        sections = deepcopy(_read(path.read_text(encoding="utf-8")))
+        sections = deepcopy(_read(read_text(path)))
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from None
     except UnicodeDecodeError:
@@ -88,13 +90,14 @@ def simulate(
     Finished tasks of its sweeps are kept beside the output until it is whole, so a run that was interrupted
     continues; rest states are kept there for other groups.
 
-    Raises what ``parameters`` raises, and GroupError while another run makes the same file.
+    Raises what ``parameters`` raises, and GroupError while another run makes the same file, or where its parameters
+    leave nothing to be measured.
     """
     function = group_member(group, "simulate", "simulate")
     given, described = parameters(group, parameter_file)
     output = output or data_path(group)
     store.check_writable(output, [parameter_file])
-    kept = output.parent / f".{output.stem}.checkpoint"
+    kept = _checkpoint(output)
     rest_states = output.parent.absolute() / REST_STATES
     resources = using(workers=workers, scheduler=scheduler, progress=progress, checkpoint=kept, rest_states=rest_states)
     with _alone(kept, output), resources:
@@ -102,9 +105,23 @@ def simulate(
             datasets = function(described)
         except SceneError as error:
             raise SceneError(f"{parameter_file}: section {group}: {error}") from error
-        store.write(output, datasets, {"group": group, "parameters": text.write(given)})
+        except (*TOO_LITTLE, SweepError) as error:
+            if isinstance(error, SweepError) and not isinstance(error.__cause__, TOO_LITTLE):
+                raise
+            problem = " ".join(str(error).split())
+            raise GroupError(f"{parameter_file}: section {group} cannot be measured: {problem}") from error
+        store.write(output, datasets, {"group": group, "parameters": text.write(given)}, keep=True)
         shutil.rmtree(kept, ignore_errors=True)
     return output
+
+
+def finished(group: str, output: Path | None = None) -> int:
+    """How many tasks a run that ended early has left finished, which the next one takes over if nothing has changed."""
+    return sum(path.is_file() for path in _checkpoint(output or data_path(group)).rglob("*.kept"))
+
+
+def _checkpoint(output: Path) -> Path:
+    return output.parent / f".{output.stem}.checkpoint"
 
 
 @contextmanager

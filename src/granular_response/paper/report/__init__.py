@@ -18,6 +18,7 @@ import xarray as xr
 
 from granular_response import __version__
 from granular_response.errors import GranularError
+from granular_response.inputs import read_json
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
@@ -197,7 +198,7 @@ _CLAIMS = {"counts", "verdict_kinds", "words", "sensitivity", "table"}
 
 def _claims(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = read_json(path)
         known = isinstance(found, dict) and set(found) >= _CLAIMS
         known = known and all("group" in row for row in found["table"])
         known = known and all("verdict" in kind for kind in found["verdict_kinds"])

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from granular_response.inputs import read_json
 
 from . import pictures
 
@@ -74,7 +75,7 @@ def tables(path: Path) -> list[dict[str, Any]]:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        metrics = json.loads(path.read_text(encoding="utf-8"))
+        metrics = read_json(path)
     except (OSError, ValueError):
         return {}
     return metrics if isinstance(metrics, dict) else {}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import base64
 import io
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PIL import Image
 
+from granular_response.inputs import read_json
 from granular_response.machine import threads
 from granular_response.paper import captions
 
@@ -123,7 +123,7 @@ def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
     found = {}
     for path in folder.glob(f"*/{captions.FILE}"):
         try:
-            for stem, entry in json.loads(path.read_text(encoding="utf-8")).items():
+            for stem, entry in read_json(path).items():
                 found[path.parent.name, stem] = str(entry["caption"]), str(entry["alternative"])
         except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
             raise ValueError(f"{path}: holds no captions: {type(error).__name__} {error}") from None

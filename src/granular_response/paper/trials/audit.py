@@ -15,7 +15,7 @@ from granular_response.state import OPEN, FloatArray, State
 
 #: Inward normals of floor, left and right wall.
 _NORMALS = np.array([[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]])
-#: Force (mean disk weights) that moves a disk which nothing holds.
+#: Force, as a part of what a disk bears, that moves one which nothing holds.
 FALLS = 1e-6
 
 
@@ -49,7 +49,9 @@ class Audit:
     """What a state is, by its positions and springs; forces in mean disk weights.
 
     ``force_residual``, ``torque_residual``: largest on any disk. ``coulomb_excess``: largest ``|f_t| - mu f_n`` of a
-    closed contact. ``force_mismatch``: largest difference between a recorded contact force and the one found here.
+    closed contact. ``relative_residual``: largest unbalanced force beyond ``rounding``, as a part of what the disk
+    bears: its weight, its load and the contact forces on it. ``force_mismatch``: largest difference between a recorded
+    contact force and the one found here.
     ``unlisted``: closed contacts that the state does not list. ``stale_springs``: open contacts that kept a spring.
     ``escaped``: disks with their centre outside of the box. ``in_flight``: disks out of balance that no chain of
     contacts joins to a wall.
@@ -58,6 +60,7 @@ class Audit:
     force_residual: float
     torque_residual: float
     coulomb_excess: float
+    relative_residual: float
     force_mismatch: float
     unlisted: int
     stale_springs: int
@@ -75,6 +78,7 @@ def audit(
     load: FloatArray,
     *,
     periodic: bool = False,
+    rounding: float = 0.0,
 ) -> Audit:
     """Check a static state.
 
@@ -86,11 +90,13 @@ def audit(
     pair, wall : laws of the contacts between disks and with walls.
     load : (n, 3) external force and torque on each disk, gravity left out.
     periodic : x and x + width are the same place, and there are no side walls.
+    rounding : force that a last digit of a position is worth (mean disk weights).
     """
     n = len(radius)
     x = state.position
     total = np.array(load, float)
     total[:, 1] -= mass
+    borne = np.abs(mass) + np.hypot(load[:, 0], load[:, 1])
     excess = [0.0]
     mismatch = [0.0]
     unlisted = 0
@@ -110,6 +116,8 @@ def audit(
     ft = -pair.tangential_stiffness * spring[i, j] if pair.friction > 0 else np.zeros(len(i))
     _add(total, i, normal, fn, ft, radius, 1.0)
     _add(total, j, normal, fn, ft, radius, -1.0)
+    for disk in (i, j):
+        np.add.at(borne, disk, np.hypot(fn, ft))
     excess.append(float((np.abs(ft) - pair.friction * fn).max(initial=0.0)))
     known = listed[i, j]
     unlisted += int((~known).sum())
@@ -131,6 +139,7 @@ def audit(
         fn = wall.normal_force(radius[k] - gap[k], radius[k])
         ft = -wall.tangential_stiffness * wall_spring[k, side] if wall.friction > 0 else np.zeros(len(k))
         _add(total, k, np.broadcast_to(_NORMALS[side], (len(k), 2)), fn, ft, radius, 1.0)
+        borne[k] += np.hypot(fn, ft)
         excess.append(float((np.abs(ft) - wall.friction * fn).max(initial=0.0)))
         known = wall_listed[k, side]
         unlisted += int((~known).sum())
@@ -147,15 +156,17 @@ def audit(
         both = held[i] | held[j]
         held[i[both]] = held[j[both]] = True
     turning = pair.friction > 0 or wall.friction > 0
+    unbalanced = np.abs(total[:, :2]).max(axis=1)
     return Audit(
-        force_residual=float(np.abs(total[:, :2]).max()),
+        force_residual=float(unbalanced.max()),
         torque_residual=float(np.abs(total[:, 2]).max()) if turning else 0.0,
         coulomb_excess=max(excess),
+        relative_residual=float((np.maximum(unbalanced - rounding, 0.0) / borne).max()),
         force_mismatch=max(mismatch),
         unlisted=unlisted,
         stale_springs=stale,
         escaped=int(outside.sum()),
-        in_flight=int((~held & (np.abs(total[:, :2]).max(axis=1) > FALLS)).sum()),
+        in_flight=int((~held & (unbalanced > FALLS * borne)).sum()),
     )
 
 

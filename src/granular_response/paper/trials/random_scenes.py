@@ -3,13 +3,20 @@
 A scene is drawn from the whole of what a scene file may say: packing, contact law, walls, loads, method and
 integrator. It has one of the outcomes of :data:`OUTCOMES`; ``wrong`` is a result that the audit contradicts or an
 error that a user would not understand, and must never happen. A sample is compared with its twins.
+
+``python -m granular_response.paper.trials.random_scenes 5000`` tries that many on all cores, every second one of disks
+whose masses differ by up to 1e9 and whose radii by up to 100, and counts the outcomes.
 """
 
 from __future__ import annotations
 
 import csv
+import sys
 import tempfile
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +27,17 @@ from granular_response.scene import Load, Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Solution, solve_scene
 from granular_response.solve.choice import finishes_statically
 from granular_response.state import FLOOR, State
+from granular_response.sweeps.tasks import map_tasks
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
 #: is left. The others are errors of one line: which, is stored beside.
 OUTCOMES = ("certified", "uncertified", "not settled", "no equilibrium", "time step refused", "scene refused", "wrong")
 #: Largest unbalanced force of a certified state, and largest excess over Coulomb's limit (mean disk weights).
 BALANCE, COULOMB = 1e-8, 1e-8
+#: Largest unbalanced force of a disk in a certified state, as a part of what this disk bears.
+RELATIVE = 1e-6
+#: Ratios of masses and of radii in heaps of disks that are anything but alike.
+MASS_RATIO, RADIUS_RATIO = 1e9, 100.0
 #: One scene in so many is compared with its twin, where both rest states agree within ``SAME_REST`` (mean disk weights)
 #: on the floor: responses are then the same within ``TWINS`` of the load, and what a path with a tolerance leaves to
 #: either of them.
@@ -67,14 +79,20 @@ class Trial:
     twin_difference: float = float("nan")  #: largest difference of floor responses, over the load
 
 
-def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, Any], np.ndarray | None]:
-    """A scene as nested dicts, and the table (n, 3) of its disks if these come from a file."""
+def draw(
+    generator: np.random.Generator, maximum_steps: int, *, unlike: bool = False
+) -> tuple[dict[str, Any], np.ndarray | None]:
+    """A scene as nested dicts, and the table (n, 3) or, with masses, (n, 4) of its disks if these come from a file.
+
+    ``unlike`` : a heap of disks whose radii and masses differ by up to ``RADIUS_RATIO`` and ``MASS_RATIO``.
+    """
     g = generator
     packing: dict[str, Any]
     table = None
     kind = str(g.choice(["slab", "slab", "pile", "file"]))
-    if kind == "file":
-        table, width = _heap(g)
+    if kind == "file" or unlike:
+        kind = "file"
+        table, width = _unlike_heap(g) if unlike else _heap(g)
         packing = {"kind": "file", "path": "packing.csv", "width": width}
     else:
         packing = {"kind": kind, "layers": int(g.integers(1, 6 if kind == "slab" else 5))}
@@ -131,6 +149,10 @@ def draw(generator: np.random.Generator, maximum_steps: int) -> tuple[dict[str, 
         protocol["friction_law"] = "unloading"
     if g.random() < 0.3:
         protocol["stage_damping"] = float(g.choice([0.1, 0.25, 0.5]))
+    if unlike and g.random() < 0.8:  # else light disks take steps so short that nothing settles
+        protocol |= {"inertia": "rings", "time_step": "auto"}
+        contact["normal_stiffness"] = _log_uniform(g, 10.0, 1e4)
+        wall.pop("normal_stiffness", None)
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
 
@@ -169,21 +191,36 @@ def _heap(g: np.random.Generator) -> tuple[np.ndarray, float]:
     n = int(g.integers(5, 35))
     spread = float(g.choice([0.0, 0.2, 0.5]))
     width = float(g.uniform(6.0, 20.0))
+    return _thrown(g, n, width, lambda: float(g.uniform(1.0 - spread, 1.0)) if spread else 1.0), width
+
+
+def _unlike_heap(g: np.random.Generator) -> tuple[np.ndarray, float]:
+    """The same of few disks, x, z, radius, mass: radii and masses over many decades, together or each by itself."""
+    n, width = int(g.integers(3, 15)), float(g.uniform(4.0, 10.0))
+    small = _log_uniform(g, 1.0 / RADIUS_RATIO, 1.0) if g.random() < 0.6 else 1.0
+    placed = _thrown(g, n, width, lambda: _log_uniform(g, small, 1.0))
+    light = _log_uniform(g, 1.0 / MASS_RATIO, 1.0)
+    mass = [_log_uniform(g, light, 1.0) for _ in range(n)] if g.random() < 0.7 else placed[:, 2] ** 2
+    return np.column_stack([placed, mass]), width
+
+
+def _thrown(g: np.random.Generator, n: int, width: float, radius: Callable[[], float]) -> np.ndarray:
+    """(n, 3) disks, each as high as it must be to overlap none before it."""
     placed: list[tuple[float, float, float]] = []
     while len(placed) < n:
-        r = float(g.uniform(1.0 - spread, 1.0)) if spread else 1.0
+        r = radius()
         x = float(g.uniform(r, width - r))
         z = r
         while any((x - a) ** 2 + (z - b) ** 2 < (r + c) ** 2 for a, b, c in placed):
             z += 0.25
         placed.append((x, z, r))
-    return np.array(placed), width
+    return np.array(placed)
 
 
-def run(maximum_steps: int, entropy: int, index: int) -> Trial:
-    """Draw, solve and check scene ``index`` of the sequence that ``entropy`` seeds."""
+def run(maximum_steps: int, entropy: int, index: int, *, unlike: bool = False) -> Trial:
+    """Draw, solve and check scene ``index`` of the sequence that ``entropy`` seeds; ``unlike`` as in :func:`draw`."""
     generator = np.random.default_rng(np.random.SeedSequence(entropy, spawn_key=(index,)))
-    description, table = draw(generator, maximum_steps)
+    description, table = draw(generator, maximum_steps, unlike=unlike)
     with tempfile.TemporaryDirectory() as folder:
         if table is not None:
             write_table(Path(folder, "packing.csv"), table)
@@ -191,9 +228,9 @@ def run(maximum_steps: int, entropy: int, index: int) -> Trial:
 
 
 def write_table(path: Path, table: np.ndarray) -> None:
-    """Disks (n, 3) as a table that a scene reads: x, z, radius."""
+    """Disks (n, 3) or (n, 4) as a table that a scene reads: x, z, radius, mass."""
     with path.open("w", newline="") as stream:
-        csv.writer(stream).writerows([("x", "z", "radius"), *table.tolist()])
+        csv.writer(stream).writerows([("x", "z", "radius", "mass")[: table.shape[1]], *table.tolist()])
 
 
 def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> Trial:
@@ -261,7 +298,8 @@ def check(solution: Solution, state: State) -> Audit:
     # reduced radii of two mean disks, and of one at a wall
     pair, wall_rule = rule(scene.contact, 0.5), rule(wall, 1.0)
     return audit(
-        state, packing.radius, packing.mass, packing.width, pair, wall_rule, load, periodic=packing.periodic
+        state, packing.radius, packing.mass, packing.width, pair, wall_rule, load,
+        periodic=packing.periodic, rounding=rounding_of(solution),
     )  # fmt: skip
 
 
@@ -310,13 +348,14 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
         return float("nan")
     order = np.random.default_rng(packing.n).permutation(packing.n)
     place = np.argsort(order)
-    table = np.column_stack([packing.position, packing.radius])
-    mirrored = np.column_stack([packing.width - packing.position[:, 0], packing.position[:, 1], packing.radius])
-    unit = 3.75
+    unit, masses = 3.75, [] if packing.given_mass is None else [packing.given_mass]
+    mirror = [packing.width - packing.position[:, 0], packing.position[:, 1]]
+    table = np.column_stack([packing.position, packing.radius, *masses])
+    mirrored = np.column_stack([*(unit * column for column in (*mirror, packing.radius)), *masses])
     solved = []
     for disks, width, where, sign in (
         (table, packing.width, np.arange(packing.n), 1.0),
-        (unit * mirrored[order], unit * packing.width, place, -1.0),
+        (mirrored[order], unit * packing.width, place, -1.0),
     ):
         write_table(Path(folder, "twin.csv"), disks)
         sides = "periodic" if packing.periodic else "walls"
@@ -381,6 +420,32 @@ def contradiction(state: State, found: Audit, rounding: float) -> str:
             return f"{getattr(found, name)} {name.replace('_', ' ')}"
     if certificate.stable and max(found.force_residual, found.torque_residual) > BALANCE + rounding:
         return f"certified as stable with an unbalanced force of {found.force_residual:.3g}"
+    if certificate.stable and found.relative_residual > RELATIVE:
+        return f"certified as stable with a disk out of balance by {found.relative_residual:.3g} of what it bears"
     if certificate.stable and found.coulomb_excess > COULOMB + rounding:
         return f"certified with a friction force {found.coulomb_excess:.3g} beyond Coulomb's limit"
     return ""
+
+
+#: Steps of a scene of the command below.
+_STEPS = 400_000
+
+
+def _either(index: int, entropy: int) -> Trial:
+    return run(_STEPS, entropy, index, unlike=index % 2 == 1)
+
+
+def main(number: int, entropy: int) -> int:
+    """Try ``number`` scenes; prints what is wrong with which and the counts of the outcomes. 1 if any is wrong."""
+    trials = map_tasks(partial(_either, entropy=entropy), range(number), what="scenes")
+    for index, trial in enumerate(trials):
+        if trial.outcome == "wrong":
+            print(f"scene {index}: {trial.message}")
+    for unlike, kind in enumerate(("any scene", "unlike disks")):
+        counts = Counter(trial.outcome for trial in trials[unlike::2])
+        print(f"{kind}: " + ", ".join(f"{count} {outcome}" for outcome, count in counts.most_common()))
+    return int(any(trial.outcome == "wrong" for trial in trials))
+
+
+if __name__ == "__main__":
+    sys.exit(main(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 20260101))

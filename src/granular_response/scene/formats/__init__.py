@@ -8,7 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from pathlib import Path
 
-from .table import FormatError, Table
+from .table import NO_BOX, FileBox, FormatError, Mark, Table
 
 #: Formats of files that hold disks, and the endings of names by which each is known.
 SUFFIXES = {
@@ -23,7 +23,7 @@ _MODULES = {name: name.replace("-", "_") for name in SUFFIXES} | {"csv": "csv_ta
 
 def by_suffix(path: str | Path) -> str:
     """The format that a name ends with; csv for any other ending."""
-    suffix = Path(path).suffix
+    suffix = Path(path).suffix.lower()
     return next((name for name, suffixes in SUFFIXES.items() if suffix in suffixes), "csv")
 
 
@@ -33,4 +33,4 @@ def read(path: Path, file_format: str) -> Table:
     return table
 
 
-__all__ = ["SUFFIXES", "FormatError", "Table", "by_suffix", "read"]
+__all__ = ["NO_BOX", "SUFFIXES", "FileBox", "FormatError", "Mark", "Table", "by_suffix", "read"]

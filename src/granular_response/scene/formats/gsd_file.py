@@ -1,48 +1,110 @@
-"""GSD files: the last frame, positions from the lower corner of the box.
+"""GSD files: the last frame. A missing chunk has the value that the format gives it: masses and diameters of 1.
 
-The format has the origin in the middle of the box. Our own files have it in the lower left corner, as their log entry
-``origin`` says, and their bonds are contacts.
+The box of the format is periodic along every axis, and says nothing of walls. Our own files say theirs in the log
+entries ``origin``, ``box_width`` and ``periodic``. The layout is read here and not by the library of the format, which
+ends the process at some damaged files.
 """
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .table import FormatError, Table, heights
+from ...inputs import check_regular
+from ...state import FloatArray
+from .table import FileBox, FormatError, Table, upward
+
+_REASON = "a GSD file does not say what bounds its particles"
+
+#: Magic number, place and size of the index and of the list of names, versions of schema and format.
+_HEADER = struct.Struct("<5Q2I")
+_MAGIC = 0x65DF65DF65DF65DF
+_ENTRY = np.dtype(
+    [("frame", "<u8"), ("rows", "<u8"), ("at", "<i8"), ("columns", "<u4"), ("name", "<u2"), ("kind", "u1"), ("_", "u1")]
+)
+_NAME_BYTES = 64
+#: Kinds of numbers by their code, from 1 on.
+_KINDS = ("u1", "<u2", "<u4", "<u8", "i1", "<i2", "<i4", "<i8", "<f4", "<f8")
+
+
+class _Frames:
+    """The chunks of a file by name, of the last frame or, where it has none, of the first."""
+
+    def __init__(self, data: bytes) -> None:
+        if len(data) < _HEADER.size or _HEADER.unpack_from(data)[0] != _MAGIC:
+            raise FormatError("is not a GSD file with particles: it does not begin as one")
+        _, index_at, index_size, names_at, names_size, _, _ = _HEADER.unpack_from(data)
+        self._data = data
+        names = self._bytes(names_at, names_size * _NAME_BYTES).split(b"\0")
+        self._names = [name.decode("ascii", "replace") for name in names if name]
+        index = np.frombuffer(self._bytes(index_at, index_size * _ENTRY.itemsize), _ENTRY)
+        self._index = index[: int(np.argmin(index["at"] > 0)) if (index["at"] <= 0).any() else len(index)]
+        if not len(self._index):
+            raise FormatError("is not a GSD file with particles: it has no frame")
+        self._last = int(self._index["frame"].max())
+
+    def _bytes(self, start: int, size: int) -> bytes:
+        if start + size > len(self._data):
+            raise FormatError("is not a whole GSD file: it is cut or damaged")
+        return self._data[start : start + size]
+
+    def _chunk(self, frame: int, name: str) -> NDArray | None:
+        if name not in self._names:
+            return None
+        here = self._index[(self._index["frame"] == frame) & (self._index["name"] == self._names.index(name))]
+        if not len(here):
+            return None
+        rows, columns, at, kind = (int(here[0][key]) for key in ("rows", "columns", "at", "kind"))
+        if not 1 <= kind <= len(_KINDS):
+            raise FormatError(f"chunk {name}: has values of an unknown kind, code {kind}")
+        number = np.dtype(_KINDS[kind - 1])
+        return np.frombuffer(self._bytes(at, rows * columns * number.itemsize), number).reshape(rows, columns)
+
+    def has(self, name: str) -> bool:
+        """Whether any frame that counts has the chunk."""
+        return any(self._chunk(frame, name) is not None for frame in (self._last, 0))
+
+    def values(self, name: str, default: float | None, shape: tuple[int, ...]) -> FloatArray:
+        """A chunk of that shape as numbers; ``default`` is what the format takes for a missing one, None: an error."""
+        for frame in (self._last, 0):
+            found = self._chunk(frame, name)
+            if found is not None and (found.size == int(np.prod(shape)) or frame == self._last):
+                if found.size != int(np.prod(shape)):
+                    raise FormatError(f"chunk {name}: has {found.size} values, must have {int(np.prod(shape))}")
+                return found.astype(float).reshape(shape)
+        if default is None:
+            raise FormatError(f"is not a GSD file with particles: chunk {name} is missing")
+        return np.full(shape, default)
 
 
 def read(path: Path) -> Table:
     """The particles as disks."""
-    try:
-        import gsd.hoomd
-    except ModuleNotFoundError as error:
-        raise FormatError(f"needs the package {error.name}, install granular-response[export]") from None
-    with path.open("rb"):  # a missing file is the same error as of other formats
-        pass
-    try:
-        with gsd.hoomd.open(str(path), "r") as file:
-            last = len(file) - 1
-            frame = file[last]
-            named = any(file.file.chunk_exists(frame=k, name="particles/mass") for k in (0, last))
-            sized = any(file.file.chunk_exists(frame=k, name="particles/diameter") for k in (0, last))
-    except Exception as error:  # the library raises nearly anything on a damaged file
-        raise FormatError(f"is not a GSD file with particles: {error}") from None
-    if not sized:
-        raise FormatError("has no diameters")
-    x, y, z = frame.particles.position.astype(float).T
-    box = np.asarray(frame.configuration.box, float)
+    check_regular(path)
+    frames = _Frames(path.read_bytes())
+    count = float(frames.values("particles/N", 0.0, ()))
+    if not 0 < count < 2**31:
+        raise FormatError("has no particles")
+    n = int(count)
+    x, y, z = frames.values("particles/position", None, (n, 3)).T
+    diameter, mass = (frames.values(f"particles/{name}", 1.0, (n,)) for name in ("diameter", "mass"))
+    box = frames.values("configuration/box", None, (6,))
+    if not np.isfinite(box).all() or box[0] <= 0.0:
+        raise FormatError("the box must be of some size")
     if box[3:].any():
         raise FormatError("the box must not be tilted")
-    radius = 0.5 * frame.particles.diameter.astype(float)
-    mass = frame.particles.mass.astype(float) if named else None
-    places = [f"particle {k}" for k in range(len(x))]
-    up = heights(y, z)
-    if "origin" in frame.log:
-        one, two = frame.bonds.group.T
-        apart = np.hypot(x[one] - x[two], up[one] - up[two])
-        # Only across periodic sides do disks touch that are apart, here by more than the rounding of single precision.
-        periodic = True if (apart > 1.1 * (radius[one] + radius[two])).any() else None
-        return Table(x, up, radius, places, mass, width=float(frame.log["box_width"][0]), periodic=periodic)
-    return Table(x + 0.5 * box[0], up + 0.5 * box[1 if up is y else 2], radius, places, mass, width=float(box[0]))
+    places = [f"particle {k}" for k in range(n)]
+    up = y if upward(y, z) == "y" else z
+    return Table(x, up, 0.5 * diameter, places, mass, _file_box(frames, float(box[0])))
+
+
+def _file_box(frames: _Frames, width: float) -> FileBox:
+    if not all(frames.has(f"log/{name}") for name in ("origin", "box_width", "periodic")):
+        return FileBox(-0.5 * width, width, reason=_REASON)
+    left, floor, _ = frames.values("log/origin", None, (3,)).tolist()
+    own, periodic = (float(frames.values(f"log/{name}", None, ())) for name in ("box_width", "periodic"))
+    if not np.isfinite([left, floor, own]).all() or own <= 0.0 or periodic not in (0.0, 1.0):
+        raise FormatError("log entries origin, box_width, periodic: must be places, a width and 0 or 1")
+    return FileBox(left, own, floor, bool(periodic))

@@ -1,14 +1,17 @@
-"""What every format yields: the columns of a table of disks, and what the parsers of text share."""
+"""What every format yields: the columns of a table of disks and its box, and what the parsers of text share."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
 from ...errors import GranularError
+from ...inputs import read_text
 from ...state import FloatArray
 
 
@@ -21,16 +24,81 @@ class FormatError(GranularError, ValueError):
 
 
 @dataclass(frozen=True)
+class FileBox:
+    """What a file says of the box, in its unit of length and its coordinates; None is what it does not say.
+
+    The box of another program is not always what bounds the disks: it may follow them, or have no floor.
+    """
+
+    left: float | None = None  #: where it begins in x; known walls where ``periodic`` is False
+    width: float | None = None
+    floor: float | None = None  #: height of the floor
+    periodic: bool | None = None  #: whether it is in x; None: ``left`` and ``width`` hold for periodic sides alone
+    reason: str = "the file has no box"  #: why something is not known
+
+
+#: Remark on a file of a program that knows the masses of its particles, and has not written them.
+NO_MASSES = "has no masses; taken as those of one material, in proportion to the square of the radius"
+
+#: Tables that have no box: walls and floor are where their coordinates are 0.
+NO_BOX = FileBox(left=0.0, floor=0.0, periodic=None)
+
+
+@dataclass(frozen=True)
 class Table:
-    """n disks in the unit of length of their file, measured from the lower left corner of its box if it has one."""
+    """n disks in the unit of length and the coordinates of their file."""
 
     x: FloatArray  #: (n,)
     z: FloatArray  #: (n,) heights
     radius: FloatArray  #: (n,)
     places: Sequence[str]  #: (n,) where each disk stands in the file, such as "line 7"
-    mass: FloatArray | None = None  #: (n,) in any unit; None where all disks are of one material
-    width: float | None = None  #: of the file's box
-    periodic: bool | None = None  #: whether that box is in x; None where the file does not say
+    mass: FloatArray | None = None  #: (n,) in any unit; None where the file says nothing of masses
+    box: FileBox = field(default=NO_BOX)
+    remark: str = ""  #: what a reader should know where disks differ in size
+
+
+@dataclass(frozen=True)
+class Mark:
+    """The line by which our own tables say what their format has no place for, and by which a cut one is known."""
+
+    disks: int
+    width: float
+    periodic: bool
+
+    _PATTERN = re.compile(r"granular-response: (\d{1,20}) disks, width (\S+), sides (walls|periodic)\b")
+
+    def __str__(self) -> str:
+        sides = "periodic" if self.periodic else "walls"
+        return f"granular-response: {self.disks} disks, width {self.width!r}, sides {sides}"
+
+    @property
+    def box(self) -> FileBox:
+        """The box that it describes."""
+        return FileBox(0.0, self.width, 0.0, self.periodic)
+
+    @classmethod
+    def found(cls, line: str, place: str) -> Mark | None:
+        """The mark in a line; None if it is another one."""
+        match = cls._PATTERN.search(line)
+        if match is None:
+            return None
+        width = number(match[2], "width", place)
+        if width <= 0.0:
+            raise FormatError(f"width = {shown(match[2])}: must be greater than 0", place)
+        return cls(int(match[1]), width, match[3] == "periodic")
+
+    def check(self, disks: int, whole: bool) -> None:
+        """Raise FormatError unless there are as many disks as it says, and the last line is ``whole``."""
+        if disks != self.disks:
+            raise FormatError(f"holds {disks} of the {self.disks} disks of its first line")
+        if not whole:
+            raise FormatError("is cut: its last line has no end")
+
+
+def lines_of(path: Path) -> tuple[list[str], bool]:
+    """The lines of a text file, and whether the last one has an end. OSError, UnicodeError."""
+    text = read_text(path).replace("\r\n", "\n").replace("\r", "\n")
+    return text.split("\n")[: -1 if text.endswith("\n") else None], text.endswith("\n") or not text
 
 
 def number(text: str, name: str, place: str) -> float:
@@ -51,8 +119,23 @@ def shown(text: str) -> str:
 
 
 def numbers(cells: Sequence[str], names: Sequence[str], place: str) -> list[float]:
-    """One number for each name."""
+    """One number for each name. Raises FormatError for another count, too."""
+    if len(cells) != len(names):
+        raise FormatError(f"has {len(cells)} values, must have {' '.join(names)}", place)
     return [number(cell, name, place) for cell, name in zip(cells, names, strict=True)]
+
+
+def bounds(low: float, high: float, axis: str, place: str) -> tuple[float, float]:
+    """Where a box begins along an axis, and how far it reaches. Raises FormatError unless it is of some size."""
+    if not 0.0 < high - low < math.inf:
+        raise FormatError(f"bounds of the box in {axis}: the upper one must be greater than the lower one", place)
+    return low, high - low
+
+
+def upright(turned: Sequence[float], place: str) -> None:
+    """Raise FormatError unless all these components of the box's edges are 0."""
+    if any(turned):
+        raise FormatError("the box must not be tilted or turned, its edges must lie along x, y and z", place)
 
 
 def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
@@ -69,14 +152,14 @@ def by_id(ids: Sequence[str], places: Sequence[str]) -> list[int]:
     return [first[value] for value in sorted(first)]
 
 
-def heights(y: FloatArray, z: FloatArray) -> FloatArray:
-    """The coordinate of disks in one plane that points up: y or z, whichever differs, or is not 0.
+def upward(y: FloatArray, z: FloatArray) -> str:
+    """The axis of disks in one plane that points up: y or z, whichever differs, or is not 0.
 
     Raises FormatError where both differ.
     """
     if len(y) == 0:
-        return z
+        return "z"
     flat_y, flat_z = np.ptp(y) == 0.0, np.ptp(z) == 0.0
     if not flat_y and not flat_z:
         raise FormatError("disks must lie in one plane, y or z must be the same for all")
-    return z if flat_y and not (flat_z and z[0] == 0.0) else y
+    return "z" if flat_y and not (flat_z and z[0] == 0.0) else "y"

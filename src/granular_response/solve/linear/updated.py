@@ -60,7 +60,8 @@ class Updated:
         return True
 
     def _close(self) -> None:
-        self._order: NDArray[np.int64] = np.array([c for _, columns in self._columns.values() for c in columns], np.int64)
+        columns = [column for _, columns in self._columns.values() for column in columns]
+        self._order: NDArray[np.int64] = np.array(columns, np.int64)
         self._capacitance = np.zeros((len(self._order), len(self._order)))
         self._negative, smallest, largest = _factorise(
             self._order, self._places, self._right, self._solved, self._capacitance

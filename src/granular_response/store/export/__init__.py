@@ -21,16 +21,20 @@ Units are those of the result: mean disk radius, mean disk mass, g.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
+
+import numpy as np
+import xarray as xr
 
 from ...errors import GranularError
 from ...scene import formats
 from .. import atomic
 from ..checked import read_result
 from ..result import chosen_states
-from .frames import contact_force_sums
+from .frames import PREFIXES, contact_force_sums
 
 #: For each suffix its module, and the states of its file: the one asked for, every one, or either as frames.
 _WRITERS = {
@@ -44,6 +48,10 @@ _WRITERS = {
     **dict.fromkeys(formats.SUFFIXES["lammps-dump"], ("lammps_dump", "frames")),
     **dict.fromkeys(formats.SUFFIXES["yade"], ("yade", "one")),
 }
+#: Those that a scene reads again.
+_READ = {suffix for suffixes in formats.SUFFIXES.values() for suffix in suffixes}
+#: By which masses may differ from those of one material, relatively.
+_SAME_MASS = 1e-9
 #: What a file name may end with.
 SUFFIXES = tuple(sorted(_WRITERS))
 
@@ -71,6 +79,9 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
         For another ending, a state that does not exist or of a series of all, or a missing library.
     granular_response.store.files.StoreError, granular_response.store.result.ResultError
         If the result cannot be read, or is none.
+
+    Warns (UserWarning) of what a format that can be read again as a packing does not carry: masses, and the tangential
+    springs of contacts, from which friction goes on.
     """
     output = Path(output)
     double = "".join(output.suffixes[-2:])
@@ -103,7 +114,20 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
         raise ExportError(f"{output}: needs the package {error.name}, install granular-response[export]") from error
     except OSError as error:
         raise ExportError(f"{output}: cannot be written: {error.strerror or error}") from error
+    if ending in _READ:
+        for remark in _lost(dataset.isel(state=-1 if state is None else state), name):
+            warnings.warn(f"{output}: {remark}", stacklevel=2)
     return output
+
+
+def _lost(state: xr.Dataset, module: str) -> Iterator[str]:
+    """What is another one where a file of one state is read as a packing."""
+    one_material = state["radius"].values ** 2
+    mass = state["mass"].values * np.mean(one_material) / np.mean(state["mass"].values)
+    if module == "yade" and not np.allclose(mass, one_material, rtol=_SAME_MASS, atol=0.0):
+        yield "the format has no masses: read again, disks are of one material (.csv and others keep them)"
+    if any(np.any(state[f"{prefix}_spring"].values) for prefix in PREFIXES):
+        yield "the format has no springs of friction: read again, contacts begin anew (continue keeps them)"
 
 
 __all__ = ["SUFFIXES", "ExportError", "contact_force_sums", "export"]

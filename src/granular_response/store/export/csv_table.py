@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from .frames import mark
+
 
 def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     """The file as bytes."""
     state = dataset.isel(state=-1)
     columns = [*state["position"].values.T, state["radius"].values, state["mass"].values]
     rows = [",".join(map(repr, values)) for values in np.column_stack(columns).tolist()]
-    head = [f"# width {float(dataset.attrs['width'])!r}, load factor {float(state['state_load_factor'])!r}"]
+    head = [f"# {mark(dataset)}, load factor {float(state['state_load_factor'])!r}"]
     return {path: ("\n".join([*head, "x,z,radius,mass", *rows]) + "\n").encode("ascii")}

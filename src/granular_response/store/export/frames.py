@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from ...scene import formats
 from ...state import OPEN, Box, FloatArray
 
 PREFIXES = ("contact", "wall")
@@ -52,6 +53,12 @@ def contact_force_sums(state: xr.Dataset) -> tuple[FloatArray, np.ndarray]:
 def box(dataset: xr.Dataset) -> Box:
     """The box of a result."""
     return Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic")
+
+
+def mark(dataset: xr.Dataset) -> formats.Mark:
+    """What our own tables say of disks and box."""
+    bounds = box(dataset)
+    return formats.Mark(dataset.sizes["disk"], bounds.width, bounds.periodic)
 
 
 def extent(dataset: xr.Dataset) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 Coordinates are (x, z, 0), measured from the lower left corner. The format puts the middle of its box at the origin, so
 the box is twice as wide and high as the packing and holds every disk in its upper right quarter; the log entries
-``origin`` and ``box_width`` say so.
+``origin``, ``box_width`` and ``periodic`` say so.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from ...state import OPEN
-from .frames import extent, frames, in_plane
+from .frames import box, extent, frames, in_plane
 
 
 def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:
@@ -45,6 +45,7 @@ def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path
                 frame.log = {
                     "origin": np.zeros(3),
                     "box_width": np.array([width]),
+                    "periodic": np.array([box(dataset).periodic], np.uint8),
                     "load_factor": np.array([factor]),
                     "particles/force_change": in_plane(force),
                     "particles/coordination": count.astype(np.int32),

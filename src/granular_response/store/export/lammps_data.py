@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .frames import box, extent
+from .frames import extent, mark
 
 
 def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
@@ -20,9 +20,9 @@ def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
     width, height = extent(dataset)
     radius, depth = state["radius"].values, float(state["radius"].values.max())
     density = state["mass"].values / (4.0 / 3.0 * math.pi * radius**3)
-    sides = ", periodic in x" if box(dataset).periodic else ""  # the format has no place for it but its title
     lines = [
-        f"LAMMPS data file: disks in units of mean radius, mean mass and g{sides}", "",
+        # the format has no place for the sides but its title
+        f"LAMMPS data file by {mark(dataset)}; units of mean radius, mean mass and g", "",
         f"{len(radius)} atoms", "1 atom types", "",
         f"0.0 {width!r} xlo xhi", f"0.0 {height!r} ylo yhi", f"{-depth!r} {depth!r} zlo zhi", "",
         "Atoms # sphere", "",

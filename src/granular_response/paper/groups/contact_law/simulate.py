@@ -73,8 +73,9 @@ def compute(task: Task) -> Outcome:
 
 
 def typical_force(rest: State) -> float:
-    """Mean normal force between touching disks."""
-    return float(rest.pairs.normal_force[rest.pairs.touching].mean())
+    """Mean normal force between touching disks; a disk weight where none touch."""
+    force = rest.pairs.normal_force[rest.pairs.touching]
+    return float(force.mean()) if force.size else 1.0
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:

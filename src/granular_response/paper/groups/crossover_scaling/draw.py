@@ -137,10 +137,12 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             ends = np.array([layers.min(), layers.max()])
             through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
             axes.plot(ends, through, color=_symbol(look)["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
-        axes.set(xscale="log", yscale="log", xlabel="layers $N$", ylabel=style.FORCE)
+        style.logarithmic(axes)
+        axes.set(xlabel="layers $N$", ylabel=style.FORCE)
         _plain(axes, apart(slabs["layers"].values.tolist()))
         low, high = axes.get_ylim()
-        axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
+        if low > 0.0:
+            axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
         axes.legend(loc="upper left", title="power of $N$", fontsize=7, ncols=2, columnspacing=1.0)
         style.letter(axes, letter, place="above", text=NAMES[event])
     key = panels[1, 1]
@@ -175,7 +177,7 @@ def _plain(axes: Axes, ticks: list[int]) -> None:
 def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
     chosen = regions_of(powers)
-    figure, panels = style.figure(1, len(chosen), width="double", height=2.7, sharey=True)
+    figure, panels = style.figure(1, max(1, len(chosen)), width="double", height=2.7, sharey=True)
     for letter, axes, series in zip("abcdef", panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
         colours = style.ordered_colours(len(rows))
@@ -212,7 +214,7 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
     varied = powers["varied"].values
     kinds = [kind for kind in APART if (varied == kind).any()]
-    figure, panels = style.figure(1, len(kinds), width="double", height=2.7)
+    figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
     for letter, axes, kind in zip("abc", panels[0], kinds, strict=False):
         for look, series in enumerate(np.flatnonzero(varied == kind).tolist()):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
@@ -226,9 +228,11 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             friction, layers = float(powers["friction"][series]), int(one["layers"][0])
             label = f"$\\mu = {friction:g}$, $N = {layers}$:\n{said(power)} ({said(least)} to {said(largest)})"
             axes.errorbar(x, middle, half, capsize=2, label=label, **style.marked_line(look) | {"markersize": 4.5})
-        axes.set(xscale="log", yscale="log", xlabel=APART[kind])
+        style.logarithmic(axes)
+        axes.set(xlabel=APART[kind])
         low, high = axes.get_ylim()
-        axes.set_ylim(low / 1.3, high * max((high / low) ** 0.7, 3.0))
+        if low > 0.0:
+            axes.set_ylim(low / 1.3, high * max((high / low) ** 0.7, 3.0))
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())

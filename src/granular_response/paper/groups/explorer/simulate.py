@@ -15,7 +15,7 @@ from granular_response.observe.floor import floor_disks, floor_response, interio
 from granular_response.observe.peaks import peak_count
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.explorer.parameters import Parameters
-from granular_response.paper.slab_response import LoadPath, states_picture
+from granular_response.paper.slab_response import LoadPath, states_picture, wall_margin
 from granular_response.scene import Scene
 from granular_response.solve import SOLVE_ERRORS
 from granular_response.state import State
@@ -96,7 +96,7 @@ def _dataset(task: Task, path: LoadPath, found: list[State]) -> xr.Dataset:
     disks = floor_disks(found, np.flatnonzero(packing.row == 0))
     middle = float(path.rest.position[int(path.problem.load_disk[0]), 0])
     x = path.rest.position[disks, 0] - middle
-    interior = interior_mask(x, packing.width, left_wall=-middle)
+    interior = interior_mask(x, packing.width, wall_margin(packing.width), left_wall=-middle)
     response, smooth = np.full((2, len(found), len(disks)), np.nan)
     count = np.zeros(len(found))
     for k, state in enumerate(found[1:], 1):

@@ -83,6 +83,8 @@ def stress(data: Data, words: Bounds) -> Finding:
 def closer_with_friction(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "distance_to_lattice", "friction").sortby("friction")
     friction, distance = study["friction"].values, study["distance_to_lattice"].values
+    if len(friction) < 2:
+        raise NotMeasured(f"data/{GROUP}.nc: stress holds one friction, nothing to compare it with")
     worst = float((distance[1:] / distance[:-1]).max())
     return asked.one_reading(
         "rms difference of sigma_zz from the isotropic harmonic lattice: "

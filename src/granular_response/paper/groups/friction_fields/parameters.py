@@ -36,4 +36,7 @@ class Parameters(SceneGroup):
         if not set(self.profiles.frictions) <= set(self.frictions):
             rule = f"must be among frictions = {list(self.frictions)}"
             raise Problem(rule, key=("profiles", "frictions"), value=list(self.profiles.frictions))
+        if self.stress_half_width < self.stress_spacing:
+            rule = f"must be at least stress_spacing = {self.stress_spacing:g}"
+            raise Problem(rule, key=("stress_half_width",), value=self.stress_half_width)
         return self

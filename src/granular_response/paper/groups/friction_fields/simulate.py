@@ -175,6 +175,7 @@ def axis_measures(rest: State, loaded: State, loaded_disk: int) -> tuple[float, 
     """``axis_angle`` (degrees) and ``axis_share`` of the vertical below the load (claim S1).
 
     Taken over the oblique contacts within ``ON_AXIS`` of it, from the third row gap below the load down. The
+    NaN where there are none. The
     forces of a vertical chain point along it: an angle near zero. Without friction they keep the 30 degrees
     of the lattice. The share is that of the vertical force between two rows, averaged over the row gaps.
     """
@@ -192,6 +193,8 @@ def axis_measures(rest: State, loaded: State, loaded_disk: int) -> tuple[float, 
         total += magnitude[axis].sum()
         weighted += (magnitude * angle)[axis].sum()
         shares.append(force[axis, 1].sum() / force[here, 1].sum())
+    if total == 0.0:  # the slab has no rows so far below the load
+        return float("nan"), float("nan")
     return float(weighted / total), float(np.mean(shares))
 
 
@@ -285,10 +288,12 @@ def _profiles_dataset(packing: Packing, results: Sequence[Loaded], rows: Sequenc
     axis = strongest.copy()
     for m, profiles in enumerate(found):
         for r, (where, size) in enumerate(profiles):
+            if not len(where):  # the slab is not so deep
+                continue
             x[m, r, : len(where)], magnitude[m, r, : len(size)] = where, size
             top = size >= size.max() * (1.0 - 1e-3)  # both of a mirror pair
             strongest[m, r] = np.abs(where[top]).mean()
-            axis[m, r] = size[np.abs(where) <= ON_AXIS].max() / size.max()
+            axis[m, r] = size[np.abs(where) <= ON_AXIS].max(initial=0.0) / size.max()
     dims = ("friction", "row")
     return xr.Dataset(
         {

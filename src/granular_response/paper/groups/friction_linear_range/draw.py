@@ -19,6 +19,7 @@ from .parameters import Parameters
 
 #: Forces of the profiles (Fig. 7), of the pictures of contacts (Figs. 8 and 9) and of the large forces (Fig. 16).
 PROFILE_FRICTIONS, PROFILE_FORCES = (0.2, 1.0), (4.0, 10.0, 20.0, 30.0, 50.0)
+LARGE_FRICTION = 0.2
 CONTACT_FORCES = (6.0, 12.0, 20.0)
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
 DYNAMIC_FORCES = (91.0, 93.0, 95.0, 100.0)
@@ -43,14 +44,16 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     response = datasets["response"]
     figures = {
         "fig06_linear_range": _linear_range(response),
-        "fig07_friction_response": _profiles(response),
         "fig12_friction_crossover": _friction_axis(datasets["friction_axis"]),
     }
+    stored = response["friction"].values
+    if np.isin(PROFILE_FRICTIONS, stored).all():
+        figures["fig07_friction_response"] = _profiles(response)
     for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
         states = datasets.get(f"states_mu_{friction:g}")
         if states is not None:
             figures[stem] = _contacts(states, friction)
-    if "large_forces" in datasets:
+    if "large_forces" in datasets and LARGE_FRICTION in stored:
         figures["fig16_large_forces"] = _large_forces(response, datasets["large_forces"])
     return figures
 
@@ -72,17 +75,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "the later the larger the friction, most of them downwards, that of µ = 1 upwards.",
             of_scene(parameters.scene, force=response["force"].values.tolist(), friction=frictions),
         ),
-        "fig07_friction_response": Caption(
-            f"Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2; the paper sees the crossover "
-            f"from one peak to two near {PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. "
-            "Each curve has its symbols at other disks, as some nearly cover each other.",
-            "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
-            of_scene(
-                parameters.scene,
-                force=at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist(),
-                friction=[0.2, 1.0],
-            ),
-        ),
         "fig12_friction_crossover": Caption(
             "Floor response of ordered slabs at one force, for several coefficients of friction: two peaks at small "
             "ones, one at large ones.",
@@ -94,6 +86,18 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             ),
         ),
     }
+    if np.isin(PROFILE_FRICTIONS, frictions).all():
+        found["fig07_friction_response"] = Caption(
+            f"Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2; the paper sees the crossover "
+            f"from one peak to two near {PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. "
+            "Each curve has its symbols at other disks, as some nearly cover each other.",
+            "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
+            of_scene(
+                parameters.scene,
+                force=at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist(),
+                friction=list(PROFILE_FRICTIONS),
+            ),
+        )
     for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
         states = datasets.get(f"states_mu_{friction:g}")
         if states is not None:
@@ -106,10 +110,10 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
                 "them, more and deeper from panel to panel.",
                 of_scene(parameters.scene, force=shown, friction=friction),
             )
-    if "large_forces" in datasets:
+    if "large_forces" in datasets and LARGE_FRICTION in frictions:
         dynamic = datasets["large_forces"]
         beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values
-        left = at_forces(response.sel(friction=0.2), LARGE_FORCES)["force"].values
+        left = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)["force"].values
         found["fig16_large_forces"] = Caption(
             f"Floor response of ordered slabs under large forces. (a) µ = 0.2, F_ext = {values(left.tolist())} "
             f"{WEIGHT}; the paper sees the crossover near {PAPER_CROSSOVER:g} {WEIGHT} and a third peak at x = 0 "
@@ -177,7 +181,7 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
     figure, axes = style.figure(1, 2, width="double", height=2.9)
     left, right = axes[0]
-    curves = at_forces(response.sel(friction=0.2), LARGE_FORCES)
+    curves = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
     _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), style.FORCE))
     style.paper_note(left, f"paper:\n{PAPER_CROSSOVER:g} crossover\n{PAPER_THIRD_PEAK:g} third peak")
     style.letter(left, "a", place="above", text=style.equals(style.FRICTION, 0.2))

@@ -279,7 +279,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
         bracket = data[f"{name}_bracket"].values
         known = held & np.isfinite(bracket).all(axis=1)
         events.plot(k[known], bracket[known].mean(axis=1), **style.marked_line(at), label=label)
-    events.set(ylabel=f"force of the event, {style.FORCE}", yscale="log")
+    style.logarithmic(events, "y")
+    events.set(ylabel=f"force of the event, {style.FORCE}")
     events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
     events.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     events.yaxis.set_minor_formatter(NullFormatter())

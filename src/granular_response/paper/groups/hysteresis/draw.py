@@ -73,8 +73,11 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 
 def looped(polydispersity: np.ndarray, friction: np.ndarray) -> tuple[list[int], int]:
-    """Cases whose loops are drawn, the lattices, and the one whose floor forces are: a lattice, least friction."""
-    lattices = np.flatnonzero(polydispersity == 0.0)
+    """Cases whose loops are drawn, the lattices, and the one whose floor forces are: a lattice, least friction.
+
+    Where there are no lattices, all cases count.
+    """
+    lattices = np.flatnonzero(polydispersity == polydispersity.min())
     rubbing = lattices[friction[lattices] > 0.0]
     return lattices.tolist(), int(rubbing[np.argmin(friction[rubbing])] if rubbing.size else lattices[0])
 
@@ -182,13 +185,15 @@ def _shown(values: xr.DataArray) -> np.ndarray:
 
 def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarray) -> None:
     """A row for each case: medians over the realizations, from the smallest to the largest of them."""
-    last = float(np.nanmax(events["low"].values))
-    first = float(np.nanmin(events["high"].values))
+    last = float(events["low"].max())
+    first = min(float(events["high"].fillna(np.inf).min()), 3.0 * last)
     for index, (name, (_, marker)) in enumerate(NAMES.items()):
         for case in range(events.sizes["case"]):
             one = events.sel(event=name).isel(case=case)
             low, high = one["low"].values, one["high"].values
             there = np.isfinite(low)
+            if not there.any():
+                continue
             low, high = low[there], high[there]
             row = case + 0.22 * (index - 1)
             colour = style.COLOURS[index]
@@ -205,8 +210,9 @@ def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarra
                     arrowprops={"arrowstyle": "->", "color": colour, "linewidth": 0.9},
                 )  # fmt: skip
     names = [f"{_packing(d)}, {style.equals(style.FRICTION, mu)}" for d, mu in zip(delta, friction, strict=True)]
-    axes.set(xscale="log", xlabel=style.FORCE, ylim=(len(names) - 0.4, -0.6))
-    axes.set_xlim(max(0.5 * first, 2e-3 * last), 3.0 * last)
+    axes.set(xlabel=style.FORCE, ylim=(len(names) - 0.4, -0.6))
+    if last > 0.0:
+        axes.set(xscale="log", xlim=(max(0.5 * first, 2e-3 * last), 3.0 * last))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_yticks(range(len(names)), names)
     axes.tick_params(axis="y", length=0.0, which="both")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "influence"
@@ -29,6 +29,8 @@ def saint_venant(data: Data, words: Bounds) -> Finding:
         one = study.isel(case=case, separation=0)
         each = one["exponent"].values
         each = each[np.isfinite(each[:, 0])]
+        if not len(each):
+            raise NotMeasured(f"data/{GROUP}.nc: saint_venant holds no power, no rows are fitted")
         # of a lattice there is one: the range over the rows that are fitted
         found = over_realizations(each[:, 0], np.mean) if len(each) > 1 else Quantity.range(each[0])
         means.append(found.value)

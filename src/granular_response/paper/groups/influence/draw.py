@@ -106,6 +106,8 @@ def _decay(data: xr.Dataset) -> Figure:
         ratio = (one["height"] / (one["spacing"] * float(one["separation"]))).mean("realization").values
         each = one["difference"].values
         each = each[np.isfinite(each).any(axis=1)]
+        if not len(each):  # no row is as far from the walls as the margin asks
+            continue
         mean = each.mean(axis=0)
         look = style.marked_line(case) | {"markersize": 3.5}
         falls.plot(ratio, mean, label=_name(data, case), **look)
@@ -115,12 +117,15 @@ def _decay(data: xr.Dataset) -> Figure:
     ends = np.array(data.attrs["fitted"], float)
     falls.plot(ends, 0.5 * (ends / ends[0]) ** -2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
     falls.annotate("elastic: power 2", (ends[0], 0.5), (2, 3), textcoords="offset points")
-    falls.set(xscale="log", yscale="log", xlabel="height / distance of the halves", ylabel="difference on the floor")
+    style.logarithmic(falls)
+    falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
     falls.legend(loc="lower left")
     style.letter(falls, "a", place="above", text="a force and its two halves")
     for case in cases:
         each = data["exponent"].isel(case=case, separation=0).values
         each = each[np.isfinite(each[:, 0])]
+        if not len(each):
+            continue
         mean = each[:, 0].mean()
         if len(each) > 1:
             error = np.full((2, 1), 1.96 * each[:, 0].std(ddof=1) / np.sqrt(len(each)))

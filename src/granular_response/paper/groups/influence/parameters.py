@@ -36,4 +36,7 @@ class Parameters(SceneGroup):
     def _check_fitted(self) -> Parameters:
         if len(self.fitted) != 2 or self.fitted[0] >= self.fitted[1]:
             raise Problem("must be two growing numbers", key=("fitted",), value=list(self.fitted))
+        half = 0.5 * self.scene.packing.build().width
+        if self.margin >= half:
+            raise Problem(f"must be below {half:g}, half the width of the slab", key=("margin",), value=self.margin)
         return self

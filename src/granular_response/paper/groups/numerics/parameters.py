@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from granular_response.paper.parameters import Coefficients, Integrators, Positives, over, some
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio, allowed
+from granular_response.scene.errors import Problem
 
 
 class Restart(Description):
@@ -31,6 +32,12 @@ class Swing(Description):
 
     steps: Count = Field(description="Time steps of the paper's size after the stop, about one slow oscillation.")
     read_every: Count = Field(description="Time steps between two readings.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Swing:
+        if self.read_every > self.steps:
+            raise Problem(f"must be at most steps = {self.steps}", key=("read_every",), value=self.read_every)
+        return self
 
 
 class Disorder(Description):

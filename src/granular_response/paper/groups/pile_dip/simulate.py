@@ -44,7 +44,8 @@ def settle(scene: Scene) -> tuple[State, ...]:
 
     def higher_on_the_right(minimum: State) -> float:
         force = floor_force(minimum, bottom)
-        return float(force[x[bottom] > 1e-6].max() - force[x[bottom] < -1e-6].max())
+        right, left = force[x[bottom] > 1e-6], force[x[bottom] < -1e-6]  # neither in a pile of one disk
+        return float(right.max(initial=0.0) - left.max(initial=0.0))
 
     first, second = sorted((state, other), key=higher_on_the_right)
     return first, second

@@ -43,7 +43,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    scene = parameters.scene
+    scene, averages = parameters.scene, datasets["averages"]
     picture, single, linear = parameters.forces_picture, parameters.individual, parameters.linear_range
     disordered = sorted({case.polydispersity for case in parameters.columns if case.polydispersity})
     frictions = sorted({case.friction for case in parameters.columns})
@@ -104,7 +104,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             f"forces in {WEIGHT}; a number in brackets is that of the slabs at rest, where some collapsed.",
             "A table of panels. Without friction two peaks at every force; with friction one peak at the smallest "
             "force, which becomes two as the force grows, at smaller forces the larger the polydispersity.",
-            {**ensemble, "force": forces, "width": FIG21_WIDTH},
+            {**ensemble, "force": forces, "width": float(averages["width"].values[smoothed_by(averages)])},
         ),
         "packings": Caption(
             "Not in the paper: the packings at rest. (a) Directions of their contacts without friction, for every "
@@ -246,11 +246,19 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     return figure
 
 
+def smoothed_by(averages: xr.Dataset) -> int:
+    """Index of the width that is that of Fig. 21, or nearest to it."""
+    return int(np.abs(averages["width"].values - FIG21_WIDTH).argmin())
+
+
 def _central_means(
     axes: Axes, averages: xr.Dataset, delta: float, width: float, looks: Mapping[float, dict[str, Any]]
 ) -> None:
     """Mean responses at x = 0 with their standard errors, of the cases that have one of the frictions of ``looks``."""
-    smoothed = averages.isel(width=int(np.flatnonzero(averages["width"].values == width)[0]))
+    same = np.flatnonzero(averages["width"].values == width)
+    if not same.size:  # the averages are smoothed otherwise
+        return
+    smoothed = averages.isel(width=int(same[0]))
     for friction, look in looks.items():
         case = _case(averages, delta, friction, str(averages["lattice_constant"].values[0]))
         if case is None:
@@ -290,7 +298,7 @@ def _averages(data: xr.Dataset) -> Figure:
     figure, panels = style.figure(
         len(frictions), len(deltas), width="double", height=0.5 + 1.65 * len(frictions), sharex=True, sharey=True
     )
-    w = int(np.flatnonzero(data["width"].values == FIG21_WIDTH)[0])
+    w = smoothed_by(data)
     x = data["x"].values
     for row, friction in enumerate(frictions):
         for column, delta in enumerate(deltas):
@@ -314,6 +322,8 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     """Mean responses with bands of one standard error at a few forces of a case; their key stands over the panel."""
     usable = np.flatnonzero((one["count_at_rest"].values >= 2) & np.isfinite(one["force"].values))
     steps = usable[np.unique(np.linspace(0, len(usable) - 1, min(MOST_FORCES, len(usable))).round().astype(int))]
+    if not usable.size:
+        return
     total = int(_realizations(one)[usable[0]])
     for k, (step, colour) in enumerate(zip(steps, style.ordered_colours(len(steps)), strict=True)):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]

@@ -79,7 +79,8 @@ def _name(case: tuple) -> str:
 def _profiles(axes: Axes, data: xr.Dataset) -> None:
     """A thin and a deep slab of the first case on a smooth and the last one on a rough floor."""
     cases = _cases(data)
-    shown = [next(slabs for case, slabs in cases if case[1] == floor) for floor in ("smooth", "rough")]
+    first = {floor: slabs for case, slabs in reversed(cases) for floor in [case[1]]}
+    shown = [first[floor] for floor in ("smooth", "rough") if floor in first]
     for index, slabs in enumerate(shown):
         friction, floor = float(data["friction"][slabs[0]]), str(data["floor"].values[slabs[0]])
         for k, marker in zip((slabs[0], slabs[-1]), ("o.", "sx")[index], strict=True):

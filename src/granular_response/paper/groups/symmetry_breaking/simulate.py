@@ -75,7 +75,7 @@ class RampTask:
         measures = slab.Measures(path)
 
         def asymmetric(force: float) -> bool:
-            return measures.asymmetry(path.at(force)) > self.above
+            return force > 0.0 and measures.asymmetry(path.at(force)) > self.above
 
         low, high = self.protocol.between
         if first is not None and not asymmetric(first[0]) and asymmetric(first[1]):

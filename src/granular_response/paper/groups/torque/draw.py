@@ -95,16 +95,19 @@ def _reach(data: xr.Dataset) -> Figure:
         "antisymmetric_change": "antisymmetric stress",
     }
     changes = np.concatenate([data[name].values[turned].ravel() for name in panel_of])
-    limits = 0.6 * float(changes[changes > 0.0].min()), 1.6 * float(changes.max())
+    changes = changes[changes > 0.0]  # none without a torque, or where the rings lie beyond the slab
     named = zip(panels[0], letters("fig18_torque_reach"), panel_of.items(), strict=False)
     for axes, letter, (name, text) in named:
         for number, k in enumerate(turned):
             look = {**style.marked_line(number), "color": colours[number]}
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
-        axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None), yscale="log", ylim=limits)
+        axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None))
+        if changes.size:
+            axes.set(yscale="log", ylim=(0.6 * float(changes.min()), 1.6 * float(changes.max())))
         style.letter(axes, letter, place="above", text=text)
     panels[0, 0].set_ylabel("relative change by the torque")
-    panels[0, 2].legend(title=rf"torque$\,/\,{style.TORQUE_UNIT}$", loc="upper right")
+    if len(turned):
+        panels[0, 2].legend(title=rf"torque$\,/\,{style.TORQUE_UNIT}$", loc="upper right")
     return figure
 
 

@@ -1,0 +1,288 @@
+"""Files of every kind that others may hand over, cut and changed at random, and what the commands make of them.
+
+``python tests/unit/broken_files.py 10000`` tries so many and prints how many had which outcome (``make broken``). A
+broken file is refused in one line, or what it still says is taken: never a traceback, a quiet change, or more time or
+memory than a file of this size may cost.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pkgutil
+import resource
+import signal
+import struct
+import sys
+import tempfile
+import time
+import warnings
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import granular_response
+from granular_response.cli import main as cli
+from granular_response.scene import FilePacking, Packing, Scene, SceneError
+from granular_response.scene.formats.table import NO_MASSES
+from granular_response.solve import solve_scene
+from granular_response.store import files as store
+from granular_response.store.export import export
+from granular_response.store.result import to_dataset
+
+#: Seconds of processor time and bytes of memory, beyond what the libraries take, of one command on one file.
+MOST_SECONDS, MOST_MEMORY = 30, 2 * 2**30
+#: Outcomes that must not be.
+WRONG = ("traceback", "killed", "several lines", "quiet change", "too much memory")
+#: What stands in the place of a number or a word.
+HOSTILE = (
+    "1e300", "-1e300", "1e-300", "nan", "inf", "-1", "0", "", "abc", "9" * 5000, "1_0", "0x10", "1e5", "\0", "99",
+)  # fmt: skip
+SPOILT_ATTRIBUTES: tuple[float | str, ...] = (
+    1e300, -1.0, "", "[1", "[" * 100_000 + "]" * 100_000, "a: &a [*a]", "{" * 5000, "packing: {kind: file}",
+)  # fmt: skip
+TABLE = "x,z,radius,density\n1,1,1,1\n3,1,1,2\n5.2,1,0.9,1\n2,2.7,1,1\n4,2.7,0.95,3\n"
+SHORT = {"protocol": {"maximum_steps": 2000, "method": "path"}}
+
+
+class File(NamedTuple):
+    """A file as it should be, and what it means."""
+
+    name: str
+    content: bytes
+    given: dict[str, object]  #: what a scene has to add to a packing
+    #: Whether a cut is always seen: a table by hand that ends with a line is a whole one.
+    closed: bool
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What became of one file."""
+
+    what: str  #: ending of the name, what was done to it, and the command
+    outcome: str
+    said: str
+    seconds: float
+
+
+def originals(folder: Path) -> list[File]:
+    """Packings in all formats, by this package and by others, results and scenes."""
+    (folder / "disks.csv").write_text(TABLE)
+    load = {"disk": 3, "force": [0.0, -1.0]}
+    scenes = {
+        "walls": {"packing": {"kind": "file", "path": "disks.csv", "width": 6.3}, "contact": {"friction": 0.3}},
+        "periodic": {"packing": {"kind": "slab", "layers": 2, "disks_per_row": 5, "sides": "periodic"}},
+    }
+    found = [File("scene.yaml", Scene.from_dict({**scenes["periodic"], "loads": [load]}).to_yaml().encode(), {}, False)]
+    for name, scene in scenes.items():
+        path = folder / f"{name}.nc"
+        store.write(path, to_dataset(solve_scene(Scene.from_dict({**scene, "loads": [load]}, folder=folder))))
+        found.append(File(path.name, path.read_bytes(), {}, True))
+        for suffix in (".csv", ".data", ".dump", ".txt", ".gsd"):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                made = export(path, folder / f"{name}{suffix}")
+            found.append(File(made.name, made.read_bytes(), {"sides": name}, True))
+    found.append(File("disks.csv", TABLE.encode(), {"width": 6.3}, False))
+    data = Path(__file__).parents[1] / "data" / "packings"
+    found.append(File("sw.dump", (data / "shrink_wrapped.dump").read_bytes(), {"width": 6.0, "origin": [0, 0]}, True))
+    found.append(File("edges.dump", (data / "general_box.dump").read_bytes(), {"sides": "periodic"}, True))
+    return found
+
+
+def changed(g: np.random.Generator, content: bytes, text: bool) -> tuple[str, bytes]:
+    """What was done, and the file after it."""
+    kinds = ["cut", "byte", "bytes", "gone", "twice", "number"]
+    kinds += ["line gone", "line twice", "lines swapped", "word", "word gone"] if text else []
+    kind = str(g.choice(kinds, p=None if not text else [0.2, 0.08, 0.04, 0.04, 0.04, 0.2, 0.1, 0.05, 0.05, 0.1, 0.1]))
+    at, end = sorted(int(k) for k in g.integers(0, len(content) + 1, 2))
+    end = min(end, at + 64)
+    if kind == "cut":
+        return kind, content[: int(g.integers(0, len(content)))]
+    if kind == "byte":
+        flipped = bytearray(content)
+        flipped[at - (at == len(content))] ^= 1 << int(g.integers(8))
+        return kind, bytes(flipped)
+    if kind == "bytes":
+        return kind, content[:at] + g.bytes(int(g.integers(1, 32))) + content[end:]
+    if kind in ("gone", "twice"):
+        return kind, content[:at] + (b"" if kind == "gone" else 2 * content[at:end]) + content[end:]
+    if kind == "number" and not text:
+        place = at - at % 8
+        value = float(g.choice([1e300, -1e300, np.nan, np.inf, -1.0, 0.0, 2.0**40]))
+        packed = struct.pack("<d", value) if g.random() < 0.5 else struct.pack("<q", int(g.integers(-2, 2**40)))
+        return kind, content[:place] + packed + content[place + 8 :]
+    lines = content.split(b"\n")
+    k, m = (int(value) for value in g.integers(0, len(lines), 2))
+    if kind == "line gone":
+        del lines[k]
+    elif kind == "line twice":
+        lines.insert(k, lines[k])
+    elif kind == "lines swapped":
+        lines[k], lines[m] = lines[m], lines[k]
+    else:
+        mark = b"," if b"," in lines[k] else b" "
+        words = lines[k].split(mark)
+        j = int(g.integers(len(words)))
+        if kind == "word gone":
+            del words[j]
+        elif kind == "word":
+            words[j] = words[int(g.integers(len(words)))]
+        else:
+            words[j] = str(g.choice(HOSTILE)).encode()
+        lines[k] = mark.join(words)
+    return kind, b"\n".join(lines)
+
+
+def spoilt(g: np.random.Generator, data: xr.Dataset) -> tuple[str, xr.Dataset]:
+    """A result with one value that it cannot have, to be sealed as if it were right."""
+    name = str(g.choice(list(map(str, data.variables))))
+    kind = str(g.choice(["value", "value", "value", "gone", "attribute"]))
+    if kind == "gone":
+        return kind, data.drop_vars(name)
+    data = data.copy(deep=True)
+    if kind == "attribute":
+        name = str(g.choice(list(data.attrs)))
+        return kind, data.assign_attrs({name: SPOILT_ATTRIBUTES[int(g.integers(len(SPOILT_ATTRIBUTES)))]})
+    values = data[name].values
+    if values.size and values.dtype.kind in "fiu":
+        worst = [1e300, -1e300, np.nan, np.inf, -1.0, 0.0, 1e9, 1e-300]
+        if values.dtype.kind != "f":
+            worst = [-1, 100, 2**31 - 1]
+        if values.ndim == 0:
+            data[name] = data[name].copy(data=np.asarray(g.choice(worst), values.dtype))
+        elif name not in data.indexes:
+            values.flat[int(g.integers(values.size))] = g.choice(worst).astype(values.dtype)
+    return kind, data
+
+
+def packing_of(path: Path, given: dict[str, object]) -> Packing | None:
+    """What a file still says; None where it is refused."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return FilePacking(path=str(path), **given).build()  # type: ignore[arg-type]
+    except SceneError:
+        return None
+
+
+def same(one: Packing | None, other: Packing) -> bool:
+    """Whether a packing is another one."""
+    if one is None or one.width != other.width or one.periodic != other.periodic:
+        return False
+    return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in ("position", "radius", "mass"))
+
+
+def run(arguments: list[str], folder: Path) -> tuple[int, str, float]:
+    """Exit code (negative: the signal), standard error and seconds of a command in a forked process."""
+    out, started = folder / "stderr", time.monotonic()
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            os.chdir(folder)
+            for stream, name in ((1, os.devnull), (2, str(out))):
+                os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644), stream)
+            sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)  # noqa: SIM115
+            used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+            resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, used + MOST_MEMORY))
+            resource.setrlimit(resource.RLIMIT_CPU, (MOST_SECONDS, MOST_SECONDS))
+            signal.alarm(4 * MOST_SECONDS)  # for what waits
+            sys.argv = ["granular-response", *arguments]
+            cli.main()
+            code = 0
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else int(end.code is not None)
+        except BaseException:
+            import traceback
+
+            traceback.print_exc()
+        finally:
+            sys.stderr.flush()
+            os._exit(code)
+    _, status, _ = os.wait4(child, 0)
+    code = os.waitstatus_to_exitcode(status)
+    return code, out.read_text(errors="replace"), time.monotonic() - started
+
+
+def outcome(code: int, said: str) -> str:
+    """What a command did, by how it ended."""
+    if code < 0:
+        return "killed"
+    if "Traceback" in said:
+        return "traceback"
+    if code == 2 and sum(NO_MASSES not in line for line in said.splitlines()) != 1:  # a remark may come before
+        return "several lines"
+    if "not enough memory" in said:
+        return "too much memory"
+    return {0: "taken", 1: "taken", 2: "refused"}.get(code, "killed")
+
+
+def attempt(g: np.random.Generator, files: list[File], folder: Path) -> Trial:
+    """Change one file and give it to a command that reads it."""
+    file = files[int(g.integers(len(files)))]
+    path = folder / file.name
+    suffix = path.suffix
+    if suffix == ".nc" and g.random() < 0.5:
+        path.write_bytes(file.content)
+        done, data = spoilt(g, store.read(path)[""])
+        try:
+            store.write(path, data)
+        except store.StoreError:
+            return Trial(f"{suffix} sealed {done}: write", "refused", "", 0.0)
+        done = f"sealed {done}"
+    else:
+        done, content = changed(g, file.content, suffix not in (".nc", ".gsd"))
+        path.write_bytes(content)
+    if suffix == ".nc":
+        command = str(g.choice(["show", "continue", "export", "plot"], p=[0.4, 0.3, 0.25, 0.05]))
+        output = {"show": [], "continue": ["--to", "1.1", "-o", "out.nc"], "plot": ["-o", "out.png"],
+                  "export": ["-o", f"out{g.choice(['.gsd', '.vtu', '.csv', '.xyz', '.dump'])}"]}[command]  # fmt: skip
+        arguments = [command, file.name, *output]
+    else:
+        command = "run"
+        arguments = ["run", file.name, "-o", "out.nc"]
+        if suffix != ".yaml":
+            scene = {"packing": {"kind": "file", "path": file.name, **file.given}, "loads": [], **SHORT}
+            (folder / "of.yaml").write_text(Scene.from_dict(scene).to_yaml())
+            arguments[1] = "of.yaml"
+    code, said, seconds = run(arguments, folder)
+    found = outcome(code, said)
+    if suffix == ".nc" and not done.startswith("sealed") and found == "taken" and path.read_bytes() != file.content:
+        found = "quiet change"
+    if suffix not in (".nc", ".yaml") and done == "cut" and file.closed and found != "refused":
+        (folder / f"whole{suffix}").write_bytes(file.content)
+        whole = packing_of(folder / f"whole{suffix}", file.given)
+        if whole is None or not same(packing_of(path, file.given), whole):
+            found = "quiet change"
+    return Trial(f"{suffix} {done}: {command}", found, said, seconds)
+
+
+def attempts(count: int, seed: int, folder: Path, *, show: bool = False) -> list[Trial]:
+    """That many trials, the same ones for the same seed; ``show`` prints those that are wrong as they come."""
+    for module in pkgutil.walk_packages(granular_response.__path__, "granular_response."):
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)  # once, and not in every process
+    files = originals(folder)
+    trials = []
+    for index in range(count):
+        g = np.random.default_rng([seed, index])
+        trial = attempt(g, files, folder)
+        trials.append(trial)
+        if show and trial.outcome in WRONG:
+            print(f"{index}: {trial.what}: {trial.outcome}: {trial.said.strip().splitlines()[-1:]}", flush=True)
+    return trials
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place:
+        made = attempts(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0, Path(place), show=True)
+    for name, number in sorted(Counter(trial.outcome for trial in made).items()):
+        print(f"{number:6} {name}")
+    longest = max(made, key=lambda trial: trial.seconds)
+    print(f"longest {longest.seconds:.1f} s: {longest.what}")
+    sys.exit(any(trial.outcome in WRONG for trial in made))

@@ -1,0 +1,59 @@
+"""Every stage of every figure group with parameters that leave little to be measured: results, or one line."""
+
+import json
+
+import odd_settings
+import pytest
+import reduced
+
+from granular_response.paper.groups import NAMES
+from granular_response.paper.pipeline import GroupError, drawing, measuring, simulation
+from granular_response.scene import SceneError, text
+from granular_response.solve import SOLVE_ERRORS
+from granular_response.sweeps.errors import SweepError
+
+#: What the command line tells in one line.
+LINES = (GroupError, SceneError, *SOLVE_ERRORS)
+#: The group that measures what another pipeline has simulated.
+MEASURES_THE_SURVEY = "phase_diagram"
+
+
+def test_every_group_has_odd_settings():
+    assert set(odd_settings.SETTINGS) == set(NAMES) - {MEASURES_THE_SURVEY}
+    assert {len(settings) for settings in odd_settings.SETTINGS.values()} == {3}
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("number", range(3))
+@pytest.mark.parametrize("group", odd_settings.SETTINGS)
+def test_an_experiment_never_ends_in_a_traceback(group, number, tmp_path):
+    sections = {"common": {"method": "auto"}, group: odd_settings.section(group, number)}
+    (tmp_path / "params.yaml").write_text(text.write(sections))
+    data, metrics = tmp_path / "data.nc", tmp_path / "metrics.json"
+    done = []
+    for stage in (
+        lambda: simulation.simulate(group, data, parameter_file=tmp_path / "params.yaml", workers=1),
+        lambda: measuring.measure(group, data, metrics),  # it does not wait for pictures
+        lambda: drawing.draw(group, data, tmp_path / "figures"),
+    ):
+        try:
+            done.append(stage())
+        except SweepError as error:  # a scene that is not solved is told by its own line
+            assert isinstance(error.__cause__, LINES), error
+            assert "\n" not in str(error)
+        except LINES as error:
+            assert "\n" not in str(error)
+        if not data.exists():
+            return
+    assert json.loads(metrics.read_text())
+    assert len(done) == 3 or not (tmp_path / "figures" / "captions.json").exists()
+
+
+def test_a_slab_narrower_than_its_rings_has_figure_and_metrics(tmp_path):
+    """Rings beyond the slab hold nothing, and limits of an axis were not a number."""
+    small = {**reduced.parameters("torque"), "distances": [60.0, 80.0, 100.0]}
+    (tmp_path / "params.yaml").write_text(text.write({"common": {"method": "auto"}, "torque": small}))
+    data = simulation.simulate("torque", tmp_path / "data.nc", parameter_file=tmp_path / "params.yaml", workers=1)
+    assert tmp_path / "fig18_torque_reach.png" in drawing.draw("torque", data, tmp_path)
+    claims = json.loads(measuring.measure("torque", data, tmp_path / "torque.json").read_text())["claims"]
+    assert {claim["outcome"] for claim in claims.values()} == {"not measured"}
