@@ -146,13 +146,11 @@ def _first(result: Result, kind: str, where: Callable[[Event], bool] | None, low
         (high,) = result.load_factors
         asked = "" if where is None else " of those asked for"
         raise EventNotBracketed(f"no event {kind!r}{asked} between load factors {low:g} and {high:g}")
+    begin, end = float(event.load_factor), max(float(event.load_factor), float(event.until))
     within = result.loaded[-1].reached.events_within
-    if event.lost:
-        begin, end = event.load_factor, event.until
-    else:
-        end = event.load_factor
-        begin = end if within is None else max(end - LONGER * within / _solution(result).problem.load_size, 0.0)
-    return Bracket(low=float(begin), high=float(end), at_low=False, evaluations=1)
+    if within is not None and begin == end:
+        begin = max(end - LONGER * within / _solution(result).problem.load_size, 0.0)
+    return Bracket(low=begin, high=end, at_low=False, evaluations=1)
 
 
 class _Search:

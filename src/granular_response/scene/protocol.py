@@ -57,9 +57,9 @@ class Protocol(Description):
     """How equilibrium is reached. Sec. III of the paper, with its values as defaults."""
 
     replaced: ClassVar[Mapping[str, str]] = {
-        "path_tolerance": "is gone, must be left out: a path is exact, from one contact event to the next",
-        "inertia": "is gone, must be left out: it was for method stages, whose place the path has taken",
-        "stage_damping": "is gone, must be left out: it was for method stages, whose place the path has taken",
+        "path_tolerance": "is gone, must be left out: a path is exact from one contact event to the next",
+        "inertia": "is gone, must be left out: it was for method stages, now path",
+        "stage_damping": "is gone, must be left out: it was for method stages, now path",
     }
 
     method: Method = Field(

@@ -34,7 +34,7 @@ class Event:
     at_wall: bool = False
     x: float = float("nan")  #: of the point of contact, or of the disk
     z: float = float("nan")
-    until: float = float("nan")  #: load factor at which the path goes on
+    until: float = float("nan")  #: load factor at which the path goes on: it happens between the two
     displacement: float = 0.0  #: largest of a disk on the way from a lost equilibrium to the next
     reason: str = ""  #: why an equilibrium is lost
 

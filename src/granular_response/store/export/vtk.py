@@ -16,7 +16,7 @@ import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
 from ...state import OPEN
-from ..result import EVENTS, state_from
+from ..result import EVENTS, events_from, state_from
 from .frames import PREFIXES, box, contact_force_sums, in_plane
 
 
@@ -115,7 +115,7 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
 
 def _events(dataset: xr.Dataset, index: int) -> dict[str, np.ndarray]:
     """The events on the way to a state, without the reasons, which are words."""
-    if "event_state" not in dataset:
+    if not events_from(dataset, index):
         return {}
     here = dataset["event_state"].values == range(dataset.sizes["state"])[index]
     arrays = {f"event_{name}": dataset[f"event_{name}"].values[here] for name in EVENTS if name != "reason"}
