@@ -380,7 +380,10 @@ class _Path:
         return self._by_motion(point, "jump", reason, None)
 
     def _by_motion(self, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
-        """The equilibrium that the disks move to from a lost one, displaced a little along ``direction``."""
+        """The equilibrium that the disks move to from a lost one, displaced a little along ``direction``.
+
+        The load goes on growing as fast as the protocol says.
+        """
         here = self._state(point)
         start = here if direction is None else nudged(self.problem, here, direction)
         new = self._towards(point.factor, self.jump)
@@ -399,7 +402,7 @@ class _Path:
         try:
             settled = settle(
                 self.problem, start, CROSSING, Stop(CROSSING_STOP, maximum_steps=protocol.maximum_steps),
-                what=f"load factor {new:g}", load=(point.factor, new, protocol.ramp_time), accept=accept,
+                what=f"load factor {new:g}", load=(point.factor, new, protocol.ramp_time * abs(new - point.factor)), accept=accept,
                 watch=watch,
             )  # fmt: skip
         except NotSettled as error:
