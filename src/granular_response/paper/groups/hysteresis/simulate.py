@@ -67,11 +67,11 @@ MEASURED = {
     "slid": f"energy that sliding took in the first loop {ENERGY}",
     "slid_walls": f"the part of that at floor and side walls {ENERGY}",
     "slid_opened": f"the part of that in contacts which touch at rest and not under load {ENERGY}",
-    "crossed": f"where dynamics had a part in the first loop, what was neither kept nor slid; else 0 {ENERGY}",
+    "crossed": f"where disks jumped in the first loop, what was neither kept nor slid; else 0 {ENERGY}",
     "lost_again": f"work of the load round the second loop, from the load to the load {ENERGY}",
     "kept_again": f"energy that the packing has stored more after the second loop {ENERGY}",
     "slid_again": f"energy that sliding took in the second loop {ENERGY}",
-    "crossed_again": f"where dynamics had a part in the second loop, what was neither kept nor slid; else 0 {ENERGY}",
+    "crossed_again": f"where disks jumped in the second loop, what was neither kept nor slid; else 0 {ENERGY}",
 }
 
 
