@@ -456,8 +456,11 @@ class _Path:
         towards = np.concatenate([apart, -system.wall_normals[wall]])
         place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
         kinds = map(_kind, point.sense[contacts].tolist(), after[contacts].tolist())
-        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
-        self.record.events += [Event(point.factor, *row, point.factor) for row in rows]
+        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), place[:, 0], place[:, 1], strict=True)
+        self.record.events += [
+            Event(point.factor, kind, i, j, wall_contact, float(x), float(z), point.factor)
+            for kind, i, j, wall_contact, x, z in rows
+        ]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
         """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""
