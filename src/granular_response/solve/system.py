@@ -222,8 +222,8 @@ class StaticSystem:
     def elastic_energy(self, trial: Trial) -> float:
         """Energy of the normal springs (mean disk weight times mean radius)."""
         total = 0.0
-        overlaps = self.split(trial.configuration.overlap)
-        for overlap, contacts in zip(overlaps, (self.pairs, self.walls), strict=True):
+        listed: tuple[Any, Any] = (self.pairs, self.walls)
+        for overlap, contacts in zip(self.split(trial.configuration.overlap), listed, strict=True):
             energies = np.zeros(len(overlap))
             statics.elastic_energies(overlap, contacts.shape, contacts.law, energies)
             total += float(energies.sum())
