@@ -86,18 +86,20 @@ def fall(c, what, q, v, n, radius, pairs, walls):
 
 
 @kernel
-def _count(pairs, walls, status, normal, tip, closed, bearing):
-    """Count the closed contacts of each disk, (n,), and those that bear more than ``tip``."""
+def _count(pairs, walls, status, normal, tip, ties, bearing):
+    """Count what ties each disk, (n,), along normals and where contacts stick, and the contacts that bear something."""
     m = pairs.first.size
     for c in range(m + walls.disk.size):
         if status[c] == OPEN:
             continue
+        mu = pairs.law.friction if c < m else walls.law.friction
+        tied = 2 if mu > 0.0 and abs(status[c]) != SLIDING else 1
         bears = normal[c] > tip
         i = pairs.first[c] if c < m else walls.disk[c - m]
-        closed[i] += 1
+        ties[i] += tied
         bearing[i] += bears
         if c < m:
-            closed[pairs.second[c]] += 1
+            ties[pairs.second[c]] += tied
             bearing[pairs.second[c]] += bears
 
 
@@ -109,19 +111,20 @@ def next_changes(
 
     ``q``, ``v`` (dof,) : displacements and their rates; ``status`` (m + w,) : negative for contacts that slide under a
     negative force; ``normal``, ``tangential``, ``overlap`` (m + w,); ``tip``, ``negligible`` : a force and a rate of a
-    force that are none; ``count`` (2, n) : zeros, to count contacts in. A rattler that rests on one contact and is
-    pushed along by another bears nothing there, however it moves: such a contact opens when the other disk withdraws,
-    and nothing else happens to it.
+    force that are none; ``count`` (2, n) : zeros, to count contacts in. A rattler that rests on one contact and
+    that no more ties than it has freedoms, pushed along by another disk, bears nothing there however it moves: such a
+    contact opens when the other disk withdraws, and nothing else happens to it.
     """
     m = pairs.first.size
     turn = q.size == 3 * n
-    closed, bearing = count[0], count[1]
-    _count(pairs, walls, status, normal, tip, closed, bearing)
+    ties, bearing = count[0], count[1]
+    _count(pairs, walls, status, normal, tip, ties, bearing)
+    freedoms = q.size // n
     for c in range(m):
         i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         if status[c] != OPEN and normal[c] <= tip:
-            first = closed[i] <= 2 and bearing[i] <= 1
-            if first or (closed[j] <= 2 and bearing[j] <= 1):
+            first = ties[i] <= freedoms and bearing[i] <= 1
+            if first or (ties[j] <= freedoms and bearing[j] <= 1):
                 # the velocity of the rattler towards the other disk: one that would be drawn along stays behind
                 drawn = (v[j] * dx + v[n + j] * dz) / d if not first else -(v[i] * dx + v[n + i] * dz) / d
                 drawn *= pairs.law.normal_stiffness
@@ -139,7 +142,7 @@ def next_changes(
     for c in range(walls.disk.size):
         i, nx, nz, xi = _wall_at(q, n, walls, c)
         w = m + c
-        if status[w] != OPEN and normal[w] <= tip and closed[i] <= 2 and bearing[i] <= 1:
+        if status[w] != OPEN and normal[w] <= tip and ties[i] <= freedoms and bearing[i] <= 1:
             what[w], left[w], rate[w] = NOTHING, 0.0, 0.0
             continue
         along = v[n + i] * nx - v[i] * nz

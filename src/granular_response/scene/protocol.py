@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from .base import Count, Description, Flag, NonNegative, Positive, allowed
+from .errors import Problem
 
 TimeStep = Annotated[
     Annotated[float, Field(strict=True, gt=0)] | Literal["auto"],
@@ -21,7 +23,17 @@ LoadFactors = Annotated[
     Field(min_length=1),
     allowed("must be a list of one or more finite numbers"),
 ]
-Method = Literal["auto", "dynamics", "path", "minimise"]
+#: Methods that are gone, each with the one that took its place.
+REPLACED_METHODS = {"stages": "path"}
+
+
+def _check_method(value: Any) -> Any:
+    if isinstance(value, str) and value in REPLACED_METHODS:
+        raise Problem(f"is gone, must be {REPLACED_METHODS[value]}, which follows disordered packings too")
+    return value
+
+
+Method = Annotated[Literal["auto", "dynamics", "path", "minimise"], BeforeValidator(_check_method)]
 Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
@@ -43,6 +55,12 @@ class Preparation(Description):
 
 class Protocol(Description):
     """How equilibrium is reached. Sec. III of the paper, with its values as defaults."""
+
+    replaced: ClassVar[Mapping[str, str]] = {
+        "path_tolerance": "is gone, must be left out: a path is exact from one contact event to the next",
+        "inertia": "is gone, must be left out: it was for method stages, now path",
+        "stage_damping": "is gone, must be left out: it was for method stages, now path",
+    }
 
     method: Method = Field(
         default="auto",
@@ -99,3 +117,18 @@ class Protocol(Description):
         default=5_000_000,
         description="Most time steps that one stage, gravity or load, may take to reach rest.",
     )
+
+
+def without_replaced(scene: Any) -> Any:
+    """The data of a scene as versions before wrote it, without the keys and methods of its protocol that are gone.
+
+    They said how equilibrium was to be reached, not what was simulated, so that a stored result is read without them.
+    """
+    protocol = scene.get("protocol") if isinstance(scene, Mapping) else None
+    if not isinstance(protocol, Mapping):
+        return scene
+    kept = {key: value for key, value in protocol.items() if key not in Protocol.replaced}
+    method = kept.get("method")
+    if isinstance(method, str):
+        kept["method"] = REPLACED_METHODS.get(method, method)
+    return {**scene, "protocol": kept}

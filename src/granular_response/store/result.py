@@ -19,6 +19,8 @@ from ..errors import GranularError
 from ..observe.difference import match_candidates, pair_force_difference, wall_force_difference
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
+from ..scene import text as scene_text
+from ..scene.protocol import without_replaced
 from ..solve.choice import load_method, rest_method
 from ..solve.problem import Problem
 from ..solve.solution import Solution
@@ -60,6 +62,8 @@ _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 
 #: Number of unstable directions in files where it was not determined.
 NOT_DETERMINED = -1
+#: Parts of a certificate that older files do not have.
+ADDED_LATER = frozenset({"certificate_unbalanced_part"})
 
 
 class ResultError(GranularError, ValueError):
@@ -144,8 +148,8 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
     }
 
 
-#: What is stored of the events of a path.
-_EVENTS = {
+#: What is stored of the events of a path: the fields of each, in order.
+EVENTS = {
     "load_factor": "load factor at which it happens",
     "kind": "what happens",
     "first": "disk that it happens to; the one that moves farthest where an equilibrium is lost",
@@ -157,55 +161,51 @@ _EVENTS = {
     "displacement": f"largest displacement of a disk from a lost equilibrium to the next {LENGTH}",
     "reason": "why an equilibrium is lost",
 }
-_EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS
+EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS
 
 
-def _events(states: Sequence[State]) -> dict[str, Values]:
-    """Events on the way to each state, none where there were none."""
-    found = [(k, event) for k, state in enumerate(states) for event in state.reached.events]
+def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, Values]:
+    """Events with the index of the state that each leads to, along ``event``; no variables where there are none."""
     if not found:
         return {}
     data = {}
-    for name, text in _EVENTS.items():
+    for name, text in EVENTS.items():
         values: Any = [getattr(event, name) for _, event in found]
+        attributes: dict[str, Any] = {}
         if name == "kind":
-            codes = np.array([_EVENT_KINDS.index(kind) for kind in values], np.int8)
-            data["event_kind"] = described("event", codes, text, **flags(_underlined(_EVENT_KINDS)))
-            continue
-        if name == "reason":
-            values = np.array(values, str)
+            values = np.array([EVENT_KINDS.index(kind) for kind in values], np.int8)
+            attributes = flags([kind.replace(" ", "_") for kind in EVENT_KINDS])
         elif name == "at_wall":
-            values = np.array(values, np.int8)
-        data[f"event_{name}"] = described("event", values, text)
-    data["event_state"] = described("event", [k for k, _ in found], "state that the path led to with this event")
-    return data
+            values, attributes = np.array(values, np.int8), flags(("no", "yes"))
+        elif name == "reason":
+            values = np.array(values, str)
+        data[f"event_{name}"] = described("event", values, text, **attributes)
+    return {**data, "event_state": described("event", [k for k, _ in found], "state that the event leads to")}
 
 
-def _underlined(kinds: Sequence[str]) -> list[str]:
-    """Names without spaces, which part the meanings of flags."""
-    return [kind.replace(" ", "_") for kind in kinds]
+def events_from(dataset: xr.Dataset, index: int | None = None) -> list[tuple[int, Event]]:
+    """Stored events with the index of the state that each leads to: of the state ``index``, or all."""
+    if "event_state" not in dataset:
+        return []
+    states = dataset["event_state"].values
+    here = slice(None) if index is None else states == range(dataset.sizes["state"])[index]
+    columns = {name: dataset[f"event_{name}"].values[here].tolist() for name in EVENTS}
+    columns["kind"] = [EVENT_KINDS[code] for code in columns["kind"]]
+    columns["at_wall"] = list(map(bool, columns["at_wall"]))
+    events = (Event(**dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True))
+    return list(zip(states[here].tolist(), events, strict=True))
 
 
-def _events_of(dataset: xr.Dataset, index: int) -> tuple[Event, ...]:
-    """The events on the way to one state."""
-    return _events_from(dataset, dataset.sizes["state"])[index] if "state" in dataset.dims else ()
-
-
-def _events_from(dataset: xr.Dataset, count: int) -> list[tuple[Event, ...]]:
-    """The events on the way to each of ``count`` states; of an older file, the lost equilibria that it knows of."""
-    found: list[list[Event]] = [[] for _ in range(count)]
-    if "event_load_factor" in dataset:
-        columns = {name: dataset[f"event_{name}"].values.tolist() for name in (*_EVENTS, "state")}
-        for row in zip(*columns.values(), strict=True):
-            one = dict(zip(columns, row, strict=True))
-            k = one.pop("state")
-            found[k].append(Event(**{**one, "kind": _EVENT_KINDS[one["kind"]], "at_wall": bool(one["at_wall"])}))
-    elif "crossing_start" in dataset and count > 1:
-        names = ("start", "end", "displacement", "reason")
-        columns = [dataset[f"crossing_{name}"].values.tolist() for name in names]
-        for start, end, displacement, reason in zip(*columns, strict=True):
-            found[1].append(Event(start, "jump", until=end, displacement=displacement, reason=str(reason)))
-    return [tuple(events) for events in found]
+def chosen_states(dataset: xr.Dataset, indices: Sequence[int]) -> xr.Dataset:
+    """The states with these indices, in this order, and the events that lead to them."""
+    count = dataset.sizes["state"]
+    places = {index % count: place for place, index in enumerate(indices)}
+    chosen = dataset.isel(state=list(indices))
+    if "event_state" not in dataset:
+        return chosen
+    state = dataset["event_state"]
+    chosen = chosen.isel(event=np.isin(state.values, list(places)))
+    return chosen.assign(event_state=("event", [places[k] for k in chosen["event_state"].values], state.attrs))
 
 
 #: What is stored of the record of each state, where it is known for one of them.
@@ -228,6 +228,8 @@ _REACHED = {
     "escapes": "saddles of the energy that were left",
     "increments": "increments of the path so far, in the command that made the state",
     "factorisations": "factorisations of the path so far, in the command that made the state",
+    "events_within": f"load within which the path took events together {FORCE}",
+    "events_error": "what that leaves out of a force of the floor or a wall, per load, as measured",
 }
 
 
@@ -384,7 +386,7 @@ def to_labelled(solution: Solution) -> Labelled:
         **_listed(own, states),
         **_certificates(states, "state"),
         **_reached(states),
-        **_events([solution.rest, *solution.loaded]),
+        **described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events]),
         "floor_disk": described("floor_disk", disks, "index of the floor disk"),
         "x": described("floor_disk", x, f"rest position from the loaded disk {LENGTH}"),
         "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
@@ -487,8 +489,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     one = dataset.isel(state=index)
     stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
     certificate = None
-    # files from before have no such part
-    if set(stored.values()) - {"certificate_unbalanced_part"} <= set(one.variables):
+    if set(stored.values()) - ADDED_LATER <= set(one.variables):
         numbers: dict[str, Any] = {
             name: one[variable].values.item() for name, variable in stored.items() if variable in one.variables
         }
@@ -509,7 +510,11 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         walls=contacts("wall", "wall_index"),
         box=Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic"),
         load_factor=float(one["state_load_factor" if "state_load_factor" in one else "load_factor"]),
-        reached=Reached(certificate=certificate, events=_events_of(dataset, index), **_reached_from(one)),
+        reached=Reached(
+            certificate=certificate,
+            events=tuple(event for _, event in events_from(dataset, index)),
+            **_reached_from(one),
+        ),
     )
 
 
@@ -546,5 +551,5 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
 
 
 def scene_of(dataset: xr.Dataset, *, folder=None) -> Scene:
-    """The scene that a dataset was made from."""
-    return Scene.from_text(dataset.attrs["scene"], folder=folder)
+    """The scene that a dataset was made from, also by a version that had other keys for how it was to be solved."""
+    return Scene.from_dict(without_replaced(scene_text.read(dataset.attrs["scene"])), folder=folder)
