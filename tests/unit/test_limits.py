@@ -141,8 +141,8 @@ def test_a_setting_without_effect_is_said_on_the_terminal_and_in_python(tmp_path
     }
     (tmp_path / "scene.yaml").write_text(Scene.from_dict(scene).to_yaml())
     finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
-    line = "protocol.friction_law = literal has no effect (no friction)"
+    line = "protocol.friction_law = 'literal' has no effect (no friction)"
     assert finished.returncode == 0
     assert finished.stderr == f"granular-response: result.nc: {line}\n"
-    with pytest.warns(UserWarning, match="protocol.friction_law = literal has no effect"):
+    with pytest.warns(UserWarning, match="protocol.friction_law = 'literal' has no effect"):
         granular_response.solve(scene)
