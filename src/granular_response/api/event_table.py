@@ -64,7 +64,7 @@ class Events(Sequence[Event]):
         return {kind: kinds.count(kind) for kind in KINDS if kind in kinds}
 
     def to_dataframe(self) -> Any:
-        """A ``pandas.DataFrame`` with a row for each event: its fields, after the index of the ``state`` it leads to."""
+        """A ``pandas.DataFrame``, a row for each event: its fields, after the index of the ``state`` it leads to."""
         import xarray as xr
 
         columns = {"state": self.states}
