@@ -1,7 +1,7 @@
 """Error of load paths: against the same path in small increments with the return map.
 
-`python benchmarks/exactness.py OUTPUT.json`. The paper's slab at nine pairs of friction and force; small packings of all
-kinds under loads of all sizes; slabs of 8 to 15 layers. Errors are largest differences of a force of the floor or a
+`python benchmarks/exactness.py OUTPUT.json`. The paper's slab at nine pairs of friction and force; small packings of
+all kinds under loads of all sizes; slabs of 8 to 15 layers. Errors are largest differences of a force of the floor or a
 wall, per load. Increments have an error of their own, which falls with their length; what is left of it at the length
 used is the difference from increments of twice the length, which is stored beside.
 """
@@ -119,7 +119,10 @@ def lost(record: PathRecord) -> list[dict[str, Any]]:
 
 def difference(one: State, other: State) -> float:
     """Largest difference of a force of the floor or a wall (mean weights)."""
-    at = [{(int(i), int(w)): f for i, w, f in zip(s.walls.first, s.walls.second, s.wall_force(), strict=True)} for s in (one, other)]
+    at = [
+        {(int(i), int(w)): f for i, w, f in zip(s.walls.first, s.walls.second, s.wall_force(), strict=True)}
+        for s in (one, other)
+    ]
     zero = np.zeros(2)
     return max(float(np.abs(at[0].get(key, zero) - at[1].get(key, zero)).max()) for key in at[0] | at[1])
 

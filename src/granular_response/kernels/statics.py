@@ -66,7 +66,8 @@ class Response(NamedTuple):
     @classmethod
     def empty(cls, size: int) -> Response:
         """Room for ``size`` contacts."""
-        return cls(*np.zeros((4, size)), np.zeros(size, np.int8))
+        overlap, normal, tangential, spring = np.zeros((4, size))
+        return cls(overlap, normal, tangential, spring, np.zeros(size, np.int8))
 
 
 @kernel

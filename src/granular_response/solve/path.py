@@ -59,9 +59,9 @@ class PathOptions:
     landings: int = 12
     #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
     still: int = 30
-    #: Loads by which the next equilibrium is looked for, with limits of friction held fixed, where none are found for
-    #: the rates: after the first one mostly the path goes on, only with other statuses.
-    beyond: tuple[float, ...] = (1e-4, 1e-2, 1e-1)
+    #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
+    #: for the rates. In lattices the path mostly goes on there, only with other statuses.
+    beyond: float = 1e-4
     #: Times by which disks may be faster than before there, or the equilibrium before was lost.
     faster: float = 10.0
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
@@ -358,25 +358,19 @@ class _Path:
 
     def _lost(self, point: Point, reason: str) -> Point:
         """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
-        n, usual = 2 * self.problem.n, 0.0
-        if self.velocity is not None:
-            usual = self.options.faster * float(np.abs(self.velocity[:n]).max(initial=0.0))
-        for beyond in self.options.beyond:
-            new = self._towards(point.factor, beyond / self.unit)
-            guess = self.system.displaced(point.known.q, new)
-            found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
-            if found is None:
-                if new == self.target:
-                    break
-                continue
+        new = self._towards(point.factor, self.options.beyond / self.unit)
+        guess = self.system.displaced(point.known.q, new)
+        found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+        if found is not None:
+            n = 2 * self.problem.n
             moved = found.configuration.q - point.known.q
             far = float(np.abs(moved[:n]).max(initial=0.0))
-            if far > self.options.nearby:
-                break
-            if far > usual * abs(new - point.factor):
-                self._record_lost("stepped over", point, new, moved, reason)
-            self._record(point, found.sense)
-            return Point(new, found, found.sense, found.sense)
+            if far <= self.options.nearby:
+                usual = 0.0 if self.velocity is None else float(np.abs(self.velocity[:n]).max(initial=0.0))
+                if far > self.options.faster * usual * abs(new - point.factor):
+                    self._record_lost("stepped over", point, new, moved, reason)
+                self._record(point, found.sense)
+                return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)
 
     def _by_motion(self, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
@@ -402,7 +396,8 @@ class _Path:
         try:
             settled = settle(
                 self.problem, start, CROSSING, Stop(CROSSING_STOP, maximum_steps=protocol.maximum_steps),
-                what=f"load factor {new:g}", load=(point.factor, new, protocol.ramp_time * abs(new - point.factor)), accept=accept,
+                what=f"load factor {new:g}", accept=accept,
+                load=(point.factor, new, protocol.ramp_time * abs(new - point.factor)),
                 watch=watch,
             )  # fmt: skip
         except NotSettled as error:
@@ -461,8 +456,11 @@ class _Path:
         towards = np.concatenate([apart, -system.wall_normals[wall]])
         place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
         kinds = map(_kind, point.sense[contacts].tolist(), after[contacts].tolist())
-        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
-        self.record.events += [Event(point.factor, *row, point.factor) for row in rows]
+        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), place[:, 0], place[:, 1], strict=True)
+        self.record.events += [
+            Event(point.factor, kind, i, j, wall_contact, float(x), float(z), point.factor)
+            for kind, i, j, wall_contact, x, z in rows
+        ]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
         """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""

@@ -7,8 +7,10 @@ digits.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,7 +18,7 @@ import scipy.sparse as sp
 from ..kernels import events, statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
-from .linear import REMEMBERED, Factor, Sequence, elimination
+from .linear import REMEMBERED, Eliminated, Factor, Sequence, elimination
 from .linear.band import Band
 from .linear.updated import Updated
 from .pattern import pattern
@@ -59,7 +61,7 @@ class Trial:
     normal: FloatArray  #: (m + w,)
     tangential: FloatArray  #: (m + w,)
     status: np.ndarray  #: (m + w,)
-    tangent: FloatArray | None  #: (m + w, 3, 3); None where it was not asked for
+    tangent: FloatArray  #: (m + w, 3, 3); (0, 3, 3) where it was not asked for
 
     @cached_property
     def sense(self) -> np.ndarray:
@@ -172,10 +174,11 @@ class StaticSystem:
         overlap, normal, tangential, spring = np.zeros((4, count))
         out = statics.Response(overlap, normal, tangential, spring, np.zeros(count, np.int8))
         local = np.empty((count, 3, 3)) if tangent else None
-        for part, contacts, friction, add in (
+        ways: tuple[tuple[slice, Any, bool, Callable], ...] = (
             (slice(None, m), self.pairs, problem.pair_friction, statics.pair_statics),
             (slice(m, None), self.walls, problem.wall_friction, statics.wall_statics),
-        ):
+        )
+        for part, contacts, friction, add in ways:
             add(
                 q, known.q, problem.n, problem.packing.radius, contacts, contacts.shape, known.overlap[part],
                 known.spring[part] if friction else None, limits[part] if friction and limits is not None else None,
@@ -183,7 +186,8 @@ class StaticSystem:
                 None if local is None else local[part], force,
             )  # fmt: skip
         force[self.held] = 0.0
-        return Trial(Configuration(q, spring, overlap), force, normal, tangential, out.status, local)
+        tangents = np.empty((0, 3, 3)) if local is None else local
+        return Trial(Configuration(q, spring, overlap), force, normal, tangential, out.status, tangents)
 
     def normal_forces(self, q: FloatArray) -> FloatArray:
         """(dof,) forces of contacts without friction at ``q``: those of a trial up to rounding, and no tangents."""
@@ -218,8 +222,8 @@ class StaticSystem:
     def elastic_energy(self, trial: Trial) -> float:
         """Energy of the normal springs (mean disk weight times mean radius)."""
         total = 0.0
-        overlaps = self.split(trial.configuration.overlap)
-        for overlap, contacts in zip(overlaps, (self.pairs, self.walls), strict=True):
+        listed: tuple[Any, Any] = (self.pairs, self.walls)
+        for overlap, contacts in zip(self.split(trial.configuration.overlap), listed, strict=True):
             energies = np.zeros(len(overlap))
             statics.elastic_energies(overlap, contacts.shape, contacts.law, energies)
             total += float(energies.sum())
@@ -242,7 +246,7 @@ class StaticSystem:
             along -= along.mean()
         return result
 
-    def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Factor:
+    def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Eliminated:
         """LU of the tangent, a tiny regularisation included."""
         return self._factorise(trial, shift, self._regularised(trial, shift))
 
@@ -250,7 +254,7 @@ class StaticSystem:
         """The tangent with ``shift`` and a tiny regularisation."""
         return self.tangent(trial, np.asarray(shift) + REGULARISATION * self.problem.stiffness)
 
-    def _factorise(self, trial: Trial, shift: float | FloatArray, matrix: sp.csc_array) -> Factor:
+    def _factorise(self, trial: Trial, shift: float | FloatArray, matrix: sp.csc_array) -> Eliminated:
         self.forget()
         factor = self.storage.factor(matrix)
         self._keep(trial, factor, shift)

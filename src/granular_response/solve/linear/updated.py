@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...machine.machine_code import kernel
 from ...state import FloatArray
-from .factor import Factor
+from .factor import Eliminated
 
 #: Pivot of ``C``, or its inverse, from which on half of the digits of a solution are lost.
 LEAST = 1e-7
@@ -25,7 +25,7 @@ class Updated:
     A column has ``entries`` numbers that are not zero.
     """
 
-    def __init__(self, factor: Factor, n: int, most: int, entries: int):
+    def __init__(self, factor: Eliminated, n: int, most: int, entries: int):
         self.factor = factor
         self._solved = np.zeros((most, n))
         self._places = np.zeros((most, entries), np.int64)
