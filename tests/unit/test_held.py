@@ -54,7 +54,7 @@ def test_force_and_displacement_lead_to_one_state(friction, displacement):
     # a force in one direction can follow how the reaction grows
     factors = [0.25, 0.5, 1.0] if None in displacement else [1.0]
     record = PathRecord()
-    moved = follow(moving, rest, factors, record=record)
+    moved = follow(moving, rest, factors, together=10.0, record=record)
     assert not any(event.lost for event in record.events)
     forces = [reaction(moving, state)[0] for state in moved]
     free = [part is None for part in displacement]
@@ -64,7 +64,7 @@ def test_force_and_displacement_lead_to_one_state(friction, displacement):
     load = [{"disk": disk, "force": force.tolist()}]
     forcing = Problem.from_scene(moving.scene.updated({"loads": load})).with_loads(rest.position)
     for state, other, factor in zip(
-        moved, follow(forcing, rest, [float(f @ force / (force @ force)) for f in forces]), factors,
+        moved, follow(forcing, rest, [float(f @ force / (force @ force)) for f in forces], together=10.0), factors,
         strict=True,
     ):  # fmt: skip
         wanted = [factor * (part or 0.0) for part in displacement]

@@ -276,9 +276,7 @@ def test_a_tangent_keeps_short_integers_for_its_pattern():
     solved = solve_scene(scene(4, 9))
     system = StaticSystem(solved.problem, solved.rest)
     matrix = system.tangent(system.trial(known := system.start(solved.rest), known.q))
-    assert {array.dtype for array in (matrix.indices, matrix.indptr, system.storage.across(matrix))} == {
-        np.dtype("i4")
-    }
+    assert {array.dtype for array in (matrix.indices, matrix.indptr, system.storage.across(matrix))} == {np.dtype("i4")}
     assert system.pattern.transposed(matrix).toarray().tolist() == matrix.toarray().T.tolist()
 
 
