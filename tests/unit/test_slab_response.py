@@ -192,8 +192,10 @@ def test_an_event_in_a_lost_equilibrium_has_the_bracket_of_the_loss(rough):
     path = LoadPath(rough.scene, rough.problem, rough.rest)
     states = path.through([3.0, 6.0])
     jump = PathEvent(4.0, "jump", 7, until=4.5, displacement=0.1, reason="unstable")
-    states[1] = replace(states[1], reached=replace(states[1].reached, events=(jump,)))
-    path.known[6.0] = states[1]
+    path.through([3.9999, 4.0, 4.5])
+    for force in (4.5, 6.0):
+        path.known[force] = replace(path.known[force], reached=replace(path.known[force].reached, events=(jump,)))
+    states[1] = path.known[6.0]
     for of_contacts in (False, True):
         what = Happening(lambda state: state.load_factor > 4.2, "made up", of_contacts)
         event = locate("event", path, [3.0, 6.0], what)

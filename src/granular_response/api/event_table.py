@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
-from typing import TYPE_CHECKING, overload
+from dataclasses import fields
+from typing import Any, overload
 
 from ..scene.errors import suggestion
 from ..state import CONTACT_EVENTS, LOST_EVENTS, Event
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Every kind of event.
 KINDS = CONTACT_EVENTS + LOST_EVENTS
@@ -66,13 +63,13 @@ class Events(Sequence[Event]):
         kinds = [event.kind for event in self._events]
         return {kind: kinds.count(kind) for kind in KINDS if kind in kinds}
 
-    def to_dataframe(self) -> pd.DataFrame:
-        """A table with a row for each event: ``state``, the index of the state that it leads to, then its fields."""
-        import pandas as pd
+    def to_dataframe(self) -> Any:
+        """A ``pandas.DataFrame``, a row for each event: its fields, after the index of the ``state`` it leads to."""
+        import xarray as xr
 
-        columns = ["state", *Event.__dataclass_fields__]
-        rows = [{"state": k, **asdict(event)} for k, event in zip(self.states, self._events, strict=True)]
-        return pd.DataFrame(rows, columns=columns)
+        columns = {"state": self.states}
+        columns |= {field.name: tuple(getattr(event, field.name) for event in self._events) for field in fields(Event)}
+        return xr.Dataset({name: ("event", list(values)) for name, values in columns.items()}).to_dataframe()
 
     def _where(self, chosen: Sequence[bool]) -> Events:
         kept = [pair for pair, one in zip(zip(self._events, self.states, strict=True), chosen, strict=True) if one]

@@ -165,8 +165,11 @@ class LoadPath:
         states = self.through([*ends[1:], high])
         low, high = first_change([*ends[1:], high], [happening.happened(state) for state in states])
         low = low or ends[0]
-        if any(event.lost and event.load_factor <= low and high <= event.until for event in passed):
-            return low, high  # an equilibrium was lost: there is none between
+        if gone := lost([self.known[high]]):  # and no equilibrium from there on
+            before = gone[0].load_factor - width * high
+            if before <= low or not happening.happened(self.at(before)):
+                return max(before, low), high
+            high = before
         if high - low > width * high:
             found = events.bisect_event(
                 lambda force: happening.happened(self.at(force)), low, high, width * high, at_low=False, at_high=True

@@ -12,7 +12,7 @@
   ``packing: {kind: file}`` reads again (``scene.formats`` has the suffixes). A dump has all states or one, the others
   one.
 * ``.events.csv``: the events of the load path, one a line, all of them or those on the way to one state. ``.vtu`` has
-  them as field data; the other formats have no place for them.
+  them as field data; the other formats leave them out.
 
 Disks lie in the plane of the screen: file coordinates are (x, z, 0); YADE's are (x, 0, z), where gravity points to -z.
 Units are those of the result: mean disk radius, mean disk mass, g.

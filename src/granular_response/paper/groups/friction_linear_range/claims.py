@@ -57,8 +57,7 @@ for _k, _mu, _paper, _figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (
     CLAIMS.add(
         f"F{_k}",
         "V.B",
-        f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, on the load "
-        "path",
+        f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, on the load path",
         f"{_paper:g} mg",
         _figures,
     )(at_force("first_opening", _mu, _paper, what="first opening", text="opens at", first_sampled=True))

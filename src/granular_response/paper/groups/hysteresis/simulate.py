@@ -19,9 +19,7 @@ from itertools import pairwise
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from granular_response.observe import network
 from granular_response.observe.events import bisect_event
 from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.paper.datasets import labelled
@@ -205,12 +203,6 @@ class Packing:
         response = self.measures.response(state)
         return float(smoothed_response([0.0], self.measures.x, response, self.task.width)[0])
 
-    def opened(self, state: State) -> NDArray[np.bool_]:
-        """(m,) candidates of both that touch at rest and not in ``state``, in the central third of the slab."""
-        rest, there = common_candidates([self.path.rest, state], self.problem.packing.radius)
-        width = self.problem.packing.width
-        return rest.pairs.touching & ~there.pairs.touching & network.interior_contacts(rest, width, width / 3.0)
-
     def after(self, state: State, loads: Sequence[float]) -> list[State]:
         """States at ``loads`` in turn, from ``state`` on."""
         return loaded_states(self.problem, state, loads)[1]
@@ -232,7 +224,7 @@ class Packing:
         passed = sorted(path.known)
         linear = self.centre(path.known[forces[0]])
         opening, nonlinear = (
-            Happening(lambda state: bool(self.opened(state).any()), EVENTS["first_opening"], of_contacts=True),
+            Happening(lambda state: self.measures.opened(state) > 0, EVENTS["first_opening"], of_contacts=True),
             Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"]),
         )
         # a loop is known of where the load turns alone, and to each further force it is a way of its own
@@ -274,7 +266,7 @@ def compute(task: Task) -> Outcome:
                 "displacement_left": packing.sunk(unloaded),
                 "displacement_repeated": packing.sunk(second),
                 "nonlinearity": packing.centre(loaded) / linear - 1.0,
-                "opened_contacts": packing.opened(first[turn]).sum(),
+                "opened_contacts": packing.measures.opened(first[turn]),
                 "sliding_contacts": loaded.pairs.sliding.sum() + loaded.walls.sliding.sum(),
                 "work": once.work,
                 "lost": loop.work,
