@@ -4,9 +4,9 @@ What stands in ``__all__`` is the public namespace: it keeps its names and meani
 first use. Everything below it may change from version to version.
 
 ``Scene`` says what is simulated, ``solve`` settles and loads it, and a ``Result`` holds what came of it: states,
-certificates, floor response, contacts, stress. ``plot`` draws results, ``open_result`` reads a stored one. ``sweep``
-solves a scene with many values of its keys, ``find_event`` narrows down where something happens. Everything that goes
-wrong is a ``GranularError``.
+certificates, events, floor response, contacts, stress. ``plot`` draws results, ``open_result`` reads a stored one.
+``sweep`` solves a scene with many values of its keys, ``find_event`` finds where something happens. Everything that
+goes wrong is a ``GranularError``.
 
 >>> import granular_response as gr
 >>> result = gr.solve(gr.Scene().updated({"contact.friction": 0.2}))
@@ -32,12 +32,14 @@ if TYPE_CHECKING:
     from .errors import SolveError as SolveError
     from .scene import Scene as Scene
     from .scene import SceneError as SceneError
+    from .state import Event as Event
     from .store.files import StoreError as StoreError
     from .store.result import ResultError as ResultError
     from .sweeps.errors import SweepError as SweepError
 
 #: Where the public names are; those of "" are modules.
 _HOME = {
+    "Event": "state",
     "GranularError": "errors",
     "Result": "api.result",
     "ResultError": "store.result",
@@ -73,6 +75,7 @@ def __dir__() -> list[str]:
 
 
 __all__ = [
+    "Event",
     "GranularError",
     "Result",
     "ResultError",

@@ -115,10 +115,10 @@ def test_figures_have_their_panels_and_captions(datasets):
 
 def test_the_document_gets_a_line_for_each_packing_and_how_the_books_close(datasets):
     _, _, smooth, rough, disordered, _, count, lattices, disorder = beyond.loops(datasets)
-    low, high = (float(datasets["events"][end].isel(case=ROUGH, realization=0).sel(event="first_opening"))
-                 for end in ("low", "high"))  # fmt: skip
+    opening = datasets["events"].isel(case=ROUGH, realization=0).sel(event="first_opening")
+    assert float(opening["high"]) == pytest.approx(float(opening["low"]), rel=1e-6)
     assert smooth.startswith("| lattice, µ = 0 |") and smooth.endswith("| above 2 | 2 | nothing | nothing | nothing |")
-    assert rough.startswith(f"| lattice, µ = 0.2 | {low:.3g} to {high:.3g} |")
+    assert rough.startswith(f"| lattice, µ = 0.2 | {float(opening['high']):.3g} |")
     loops = datasets["loops"].isel(case=DISORDERED, turn=1)
     left = 100.0 * loops["floor_left"].values
     assert f"| 1 | {np.median(left):.2g} ({left.min():.2g} to {left.max():.2g}) % |" in disordered

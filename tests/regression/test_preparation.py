@@ -40,7 +40,7 @@ def test_slabs_of_one_friction_differ_by_their_preparation_alone(datasets):
     assert mobilised[3] == 0 < mobilised[2]
 
 
-def test_brackets_are_neighbours_that_hold_the_event(datasets):
+def test_an_event_is_between_the_forces_that_show_it(datasets):
     forces = np.array(PARAMETERS["forces"])
     found, response = datasets["events"], datasets["response"]
     assert found.sizes["event"] == 6 * 6
@@ -51,8 +51,8 @@ def test_brackets_are_neighbours_that_hold_the_event(datasets):
         assert str(found["way"].values[row]) == str(response["way"].values[case])
         open_ = np.flatnonzero(opened > 0)
         low, high = float(found["low"][row]), float(found["high"][row])
-        assert high == forces[open_[0]]
-        assert low == (forces[open_[0] - 1] if open_[0] else 0.0)
+        assert (forces[open_[0] - 1] if open_[0] else 0.0) <= low < high <= forces[open_[0]]
+        assert high - low <= 1e-5 * high
 
 
 def test_a_case_is_what_its_scene_says():

@@ -74,14 +74,14 @@ def test_the_end_of_the_linear_range_is_bracketed(datasets) -> None:
     assert np.any(np.isfinite(linear["nonlinear_from"]))
 
 
-def test_stages_agree_with_the_protocol_of_the_paper(datasets) -> None:
-    """Dynamics from rest to the force, in place of stages: a different history, nearly the same responses."""
+def test_paths_agree_with_the_protocol_of_the_paper(datasets) -> None:
+    """Dynamics from rest to the force, in place of a path: a different history, nearly the same responses."""
     changes = {"protocol.method": "dynamics", "protocol.ramp_time": 20.0, "loads": []}
     scene = Scene().updated({**PARAMETERS["scene"], **changes})
     pair = study.load_pair(study.Task(scene, rest_of(scene), 4, (0.2,)))
-    assert pair.by_dynamics.all()
-    staged = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=0.2).values
-    np.testing.assert_allclose(pair.response[0], staged, atol=0.01 * staged.max())
+    assert pair.by_motion.all()
+    slow = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=0.2).values
+    np.testing.assert_allclose(pair.response[0], slow, atol=0.01 * slow.max())
 
 
 @pytest.mark.parametrize(

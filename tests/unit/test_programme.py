@@ -6,8 +6,7 @@ from small_scenes import scene
 
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import Problem, continue_solution, rest_state, solve_scene
-from granular_response.solve.stages import climb
+from granular_response.solve import continue_solution, solve_scene
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
 
@@ -96,9 +95,9 @@ def test_loads_may_change_their_sign():
         {"contact__friction": 0.2},
         {"contact__friction": 0.0},
         {"contact__friction": 0.2, "protocol__method": "dynamics", "protocol__stop_kinetic_energy": 1e-9},
-        {"contact__friction": 0.2, "protocol__method": "stages", "packing__polydispersity": 0.1},
+        {"contact__friction": 0.2, "packing__polydispersity": 0.1},
     ],
-    ids=["path", "minimise", "dynamics", "stages"],
+    ids=["path", "minimise", "dynamics", "disordered path"],
 )
 def test_a_programme_that_is_cut_and_taken_up_again_has_the_same_bits(tmp_path, changes):
     whole = solve_scene(slab(**changes), load_factors=PROGRAMME)
@@ -119,42 +118,6 @@ def test_dynamics_starts_from_rest_until_the_programme_turns():
     assert np.array_equal(both.loaded[1].position, alone.loaded[0].position)
     assert np.array_equal(both.loaded[2].position, alone.loaded[1].position)
     assert not np.array_equal(both.loaded[0].position, both.loaded[2].position)
-
-
-def test_stages_are_a_method_of_a_scene():
-    disordered = slab(contact__friction=0.2, packing__polydispersity=0.1, packing__lattice_constant="touching-largest")
-    path, stages = (
-        solve_scene(disordered.updated({"protocol.method": method}), load_factors=(0.1, 0.2))
-        for method in ("path", "stages")
-    )
-    assert stages.load_choice.method == "stages"
-    assert under_the_load(stages) == pytest.approx(under_the_load(path), abs=0.02)
-    for state in stages.loaded:
-        assert state.certificate.stable and state.certificate.force_residual < 1e-9
-    smooth = solve_scene(slab(contact__friction=0.0, protocol__method="stages"))
-    assert smooth.load_choice.method == "minimise"
-
-
-def test_rings_and_few_dashpots_lead_stages_along_the_path_in_fewer_steps():
-    """Inertia and dashpots of a stage's dynamics do not matter in the quasi-static limit; the fall has the scene's."""
-    disordered = slab(
-        contact__friction=0.2, packing__polydispersity=0.01, packing__lattice_constant="touching-largest",
-        protocol__integrator="leapfrog", protocol__time_step="auto", protocol__ramp_time=40.0,
-    )  # fmt: skip
-    (path,) = solve_scene(disordered, load_factors=[0.2]).loaded
-    steps = []
-    for inertia, damping in (("disks", 1.0), ("rings", 1.0), ("rings", 0.25)):
-        changes = {"protocol.inertia": inertia, "protocol.stage_damping": damping}
-        problem = Problem.from_scene(disordered.updated(changes))
-        rest = rest_state(problem)
-        state, _ = climb(problem.with_loads(rest.position), rest, 0.2, statics=False)
-        assert state.certificate.stable and state.certificate.force_residual < 1e-9
-        floor = floor_disks([rest, path, state])
-        added, expected = (floor_force(one, floor) - floor_force(rest, floor) for one in (state, path))
-        assert np.abs(expected).max() > 1.0
-        assert added == pytest.approx(expected, abs=0.02)
-        steps.append(state.reached.steps)
-    assert steps[1] < 0.6 * steps[0] and steps[2] < 0.6 * steps[1]
 
 
 @pytest.mark.parametrize("factors", [[], [float("nan")], [1.0, float("inf")]])

@@ -349,10 +349,10 @@ def test_progress_in_a_notebook_is_a_line_of_text():
 
 def test_what_solve_warns_of_is_said_once():
     with pytest.warns(UserWarning) as said:
-        gr.sweep(SCENE, {"protocol.path_tolerance": [None, 1e-5], "packing.layers": [3, 4]}, workers=1, progress=False)
+        gr.sweep(SCENE, {"preparation.ramp_time": [100.0, 3.0], "packing.layers": [3, 4]}, workers=1, progress=False)
     lines = [str(warning.message) for warning in said]
     assert [line.partition(" (")[0] for line in lines] == [
-        "2 of 4 combinations: protocol.path_tolerance = 1e-05 has no effect"
+        "2 of 4 combinations: preparation.ramp_time = 3.0 has no effect"
     ]
 
 

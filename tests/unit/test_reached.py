@@ -6,18 +6,18 @@ import pytest
 from small_scenes import scene
 
 from granular_response.solve import solve_scene
-from granular_response.state import Crossing, Reached
+from granular_response.state import Event, Reached
 from granular_response.store import files as store
 from granular_response.store.result import state_from, to_dataset
 from granular_response.store.summary import summarise
 
 
 def test_a_record_takes_from_an_earlier_one_what_it_does_not_know():
-    crossings = (Crossing(0.1, 0.2, "unstable", 0.3),)
-    earlier = Reached(method="dynamics", steps=700, settled=True, crossings=crossings)
+    events = (Event(0.1, "jump", until=0.2, displacement=0.3, reason="unstable"),)
+    earlier = Reached(method="dynamics", steps=700, settled=True, events=events)
     later = Reached(method="minimise", newton_iterations=0, settled=False)
     assert later.after(earlier) == Reached(
-        method="minimise", steps=700, settled=False, newton_iterations=0, crossings=crossings
+        method="minimise", steps=700, settled=False, newton_iterations=0, events=events
     )
 
 

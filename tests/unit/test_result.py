@@ -1,6 +1,6 @@
 """Solutions as datasets and back."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -9,9 +9,9 @@ from small_scenes import scene
 import granular_response
 from granular_response.scene import Scene
 from granular_response.solve import solve_scene
-from granular_response.state import Contacts, Crossing
+from granular_response.state import Contacts
 from granular_response.store import files as store
-from granular_response.store.result import ResultError, scene_of, solution_from, state_from, to_dataset
+from granular_response.store.result import ResultError, scene_of, state_from, to_dataset
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.3], ids=["frictionless", "frictional"])
@@ -69,24 +69,6 @@ def test_a_dataset_without_states_is_refused(solution):
         state_from(to_dataset(solution).drop_vars("contact_spring"))
 
 
-def test_stretches_that_dynamics_crossed_are_stored(solution, tmp_path):
-    assert not any(name.startswith("crossing") for name in to_dataset(solution).variables)
-    crossings = (Crossing(0.2, 0.25, "unstable", 0.5), Crossing(0.7, 0.8, "no equilibrium", 1.5))
-    # the record of a path grows: later states repeat what earlier ones tell
-    loaded = tuple(
-        replace(state, reached=replace(state.reached, crossings=crossings[: k + 1]))
-        for k, state in enumerate(solution.loaded)
-    )
-    crossed = replace(solution, loaded=loaded)
-    store.write(tmp_path / "result.nc", to_dataset(crossed))
-    dataset = store.read(tmp_path / "result.nc")[""]
-    assert dataset["crossing_start"].values.tolist() == [0.2, 0.7]
-    assert dataset["crossing_reason"].values.tolist() == ["unstable", "no equilibrium"]
-    again = solution_from(dataset)
-    assert again.loaded[0].reached.crossings == crossings
-    assert to_dataset(again).identical(to_dataset(crossed))
-
-
 CHANGING = {
     "packing.layers": 4,
     "packing.disks_per_row": 7,
@@ -100,7 +82,7 @@ CHANGING = {
 }
 
 
-@pytest.mark.parametrize("changes", [{}, {"protocol.method": "stages"}, {"contact.friction": 0.0}])
+@pytest.mark.parametrize("changes", [{}, {"contact.friction": 0.0}])
 def test_a_stored_result_goes_on_with_the_bits_of_a_run_that_was_not_cut(changes, tmp_path):
     """Dynamics on the way lists other candidates: each stored state keeps its own list."""
     scene = Scene().updated({**CHANGING, **changes})

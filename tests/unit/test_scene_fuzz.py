@@ -76,8 +76,6 @@ scenes = options(
     protocol=options(
         method=st.sampled_from(["auto", "dynamics", "path", "minimise"]),
         integrator=st.sampled_from(["beeman", "verlet", "leapfrog", "gear"]),
-        inertia=st.sampled_from(["disks", "rings"]),
-        stage_damping=st.floats(0.0, 1.0, exclude_min=True),
         time_step=st.just("auto") | numbers(open_low=True),
         ramp_time=numbers(),
         stop_kinetic_energy=numbers(open_low=True),

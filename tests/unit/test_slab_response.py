@@ -9,20 +9,28 @@ from small_scenes import scene
 from granular_response.paper import slab_response
 from granular_response.paper.groups.symmetry_breaking import simulate as symmetry_breaking
 from granular_response.paper.slab_response import (
+    EXACT,
+    NARROW,
     SCALARS,
     Event,
+    Happening,
     LoadPath,
     Measures,
     asymmetry_sign,
+    by_motion,
     events_dataset,
     first_change,
     half_maximum_width,
+    happenings,
     locate,
+    lost,
+    lost_dataset,
     measured,
     measured_dataset,
     states_picture,
 )
 from granular_response.state import OPEN, SLIDING, STICKING
+from granular_response.state import Event as PathEvent
 
 UNIT_LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 
@@ -132,23 +140,80 @@ def test_first_change():
 
 
 @pytest.mark.parametrize(("threshold", "low", "high"), [(0.33, 0.3, 0.4), (0.055, 0.0, 0.1)])
-def test_events_are_located_on_the_path(path, threshold, low, high):
+def test_events_among_minima_of_the_energy_are_bisected(path, threshold, low, high):
     path = LoadPath(path.scene, path.problem, path.rest)
     forces = [0.1, 0.2, 0.5]
     path.through(forces)
-    event = locate("event", path, forces, lambda s: s.load_factor > threshold, 0.02, "made up")
+    event = locate("event", path, forces, Happening(lambda s: s.load_factor > threshold, "made up"), 0.04)
     assert low <= event.low < threshold <= event.high <= high
     assert event.high - event.low <= 0.02
-    assert event.evaluations == len(path.known) - 3 > 0
-    assert event.friction == 0.0
+    assert event.friction == 0.0 and event.definition == "made up"
+
+
+@pytest.fixture(scope="module")
+def rough():
+    path = LoadPath.of(scene(5, 17, contact__friction=0.2, loads=UNIT_LOAD))
+    path.through([0.5, 3.0, 6.0])
+    return path
+
+
+def test_what_contacts_decide_happens_at_an_event_of_the_path_and_costs_no_state(rough, calls):
+    measures = Measures(rough)
+    asked = happenings(measures, rough.known[0.5], 0.2)
+    known = dict(rough.known)
+    for name in ("first_opening", "reaches_floor"):
+        event = locate(name, rough, [0.5, 3.0, 6.0], asked[name])
+        (at,) = {
+            e.load_factor for s in known.values() for e in s.reached.events if event.low < e.load_factor < event.high
+        }
+        assert event.high - event.low <= 2.001 * EXACT * at
+        before, after = (LoadPath(rough.scene, rough.problem, rough.rest).at(at + d) for d in (-1e-5, 1e-5))
+        assert [asked[name].happened(state) for state in (before, after)] == [False, True]
+    assert rough.known == known
+
+
+def test_what_forces_decide_is_narrowed_within_one_piece(rough):
+    path = LoadPath(rough.scene, rough.problem, rough.rest)
+    states = path.through([0.5, 3.0, 6.0])
+    measures = Measures(path)
+    half = 0.5 * (measures.centre(states[1]) + measures.centre(states[2]))
+    side = measures.centre(states[1]) > half
+    event = locate("half way", path, [3.0, 6.0], Happening(lambda s: (measures.centre(s) > half) != side, "made up"))
+    assert 3.0 < event.low < event.high < 6.0
+    assert event.high - event.low <= NARROW * event.high
+    passed = [e.load_factor for e in states[2].reached.events]
+    assert not any(event.low < load < event.high for load in passed)
+    centres = [measures.centre(path.at(force)) for force in (event.low, event.high)]
+    assert min(centres) <= half <= max(centres)
+
+
+def test_an_event_in_a_lost_equilibrium_has_the_bracket_of_the_loss(rough):
+    """There is no state of the path between."""
+    path = LoadPath(rough.scene, rough.problem, rough.rest)
+    states = path.through([3.0, 6.0])
+    jump = PathEvent(4.0, "jump", 7, until=4.5, displacement=0.1, reason="unstable")
+    path.through([3.9999, 4.0, 4.5])
+    for force in (4.5, 6.0):
+        path.known[force] = replace(path.known[force], reached=replace(path.known[force].reached, events=(jump,)))
+    states[1] = path.known[6.0]
+    for of_contacts in (False, True):
+        what = Happening(lambda state: state.load_factor > 4.2, "made up", of_contacts)
+        event = locate("event", path, [3.0, 6.0], what)
+        assert (event.low, event.high) == (4.0, 4.5)
+    assert lost(states) == [jump] and [by_motion(state) for state in states] == [False, True]
+    table = lost_dataset([(0.2, jump)])
+    assert [table[name].item() for name in ("friction", "kind", "start", "until", "displacement")] == [
+        0.2, "jump", 4.0, 4.5, 0.1,
+    ]  # fmt: skip
+    assert lost_dataset([]).sizes["lost"] == 0
 
 
 def test_events_become_a_table():
-    table = events_dataset([Event("a", 0.2, 1.0, float("nan"), 0.1, 0, "never"), Event("b", 0.5, 1, 2, 1, 3, "x")])
+    table = events_dataset([Event("a", 0.2, 1.0, float("nan"), "never"), Event("b", 0.5, 1, 2, "x")])
     assert table["name"].values.tolist() == ["a", "b"]
     assert table["definition"].values.tolist() == ["never", "x"]
     assert np.isnan(table["high"].values[0])
-    assert table["evaluations"].values.tolist() == [0.0, 3.0]
+    assert table["low"].values.tolist() == [1.0, 1.0]
     for name in table.variables:
         assert table[name].attrs["long_name"]
         assert table[name].attrs["units"] == "1"

@@ -20,12 +20,11 @@ from granular_response.sweeps.resources import using
 ROOT = Path(__file__).parents[2]
 
 SMALL = {
-    "method": "stages",
+    "method": "auto",
     "scene": {
         "packing": {"layers": 4, "disks_per_row": 9, "lattice_constant": "touching-largest"},
         "protocol": {"integrator": "verlet", "stop_kinetic_energy": 1e-9, "maximum_steps": 200_000},
     },
-    "loading": {"ramp_time": 5.0, "largest_rate": 5.0, "stop_kinetic_energy": 1e-8},
     "time_step_part": 0.9,
     "longest_time_step": 1e-3,
     "collapse_depth": 2.0,
@@ -78,7 +77,7 @@ def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file, monkeypatch)
         np.testing.assert_equal(packing[name].values, np.float32(again.packing[name]))
     assert packing["processor_time"] > 0.0
     marks = store.read_attributes(path)
-    assert marks["block"] == "small" and marks["seed"] == "0" and "loading" in marks["parameters"]
+    assert marks["block"] == "small" and marks["seed"] == "0" and "collapse_depth" in marks["parameters"]
     assert survey.sources(*survey.SOURCES) in marks["sources"]
 
 
@@ -96,7 +95,7 @@ def test_the_survey_extends_the_ensembles_of_the_pipeline():
     """Scene, protocol and seeds are those of polydisperse_averages, so its realizations are among the survey's."""
     pipeline = yaml.safe_load((ROOT / "params.yaml").read_text())["polydisperse_averages"]
     own = yaml.safe_load((ROOT / "survey" / "params.yaml").read_text())
-    for key in ("method", "scene", "time_step_part", "longest_time_step", "loading", "collapse_depth"):
+    for key in ("scene", "time_step_part", "longest_time_step", "collapse_depth"):
         assert own[key] == pipeline[key]
 
 

@@ -7,7 +7,7 @@ import pytest
 from small_scenes import free_disks, scene
 
 from granular_response.solve import Dynamics, DynamicsError, Problem, Stop, UnstableTimeStep, relax, solve_scene
-from granular_response.solve.timestep import oscillator_limit, resolve_time_step, stability_limit, stage_time_step
+from granular_response.solve.timestep import oscillator_limit, resolve_time_step, stability_limit
 
 
 def test_unstable_time_step_is_one_clear_line():
@@ -63,64 +63,6 @@ def test_leapfrog_bears_twice_the_step_and_its_tangential_springs_follow_positio
         )
     slab = Problem.from_scene(scene(packing__polydispersity=0.25))
     assert stability_limit(slab, "leapfrog") > 1.9 * stability_limit(slab, "verlet")
-
-
-@pytest.mark.parametrize(
-    ("inertia", "damping", "gain"), [("rings", 1.0, 1.5), ("disks", 0.25, 2.0), ("rings", 0.25, 4.0)]
-)
-def test_stages_take_the_same_part_of_a_limit_that_is_further(inertia, damping, gain):
-    scenes = scene(
-        packing__polydispersity=0.25, protocol__integrator="leapfrog",
-        protocol__inertia=inertia, protocol__stage_damping=damping,
-    )  # fmt: skip
-    disks = Problem.from_scene(scenes)
-    staged = disks.in_stages()
-    assert np.array_equal(staged.weight, disks.weight)
-    if inertia == "rings":
-        assert staged.inverse_mass == pytest.approx(
-            np.concatenate([np.ones(2 * staged.n), staged.packing.radius**-2.0])
-        )
-    else:
-        assert np.array_equal(staged.inverse_mass, disks.inverse_mass)
-    for one, other in ((staged.pair_law, disks.pair_law), (staged.wall_law, disks.wall_law)):
-        assert one == other._replace(
-            normal_damping=damping * other.normal_damping, tangential_damping=damping * other.tangential_damping
-        )
-    longer = stability_limit(staged, smallest=True) / stability_limit(disks, smallest=True)
-    assert longer > gain
-    for step in ("auto", 2e-4):
-        problem = replace(disks, scene=disks.scene.updated({"protocol.time_step": step}))
-        assert stage_time_step(problem) == pytest.approx(longer * resolve_time_step(problem))
-
-
-def test_stages_move_as_the_scene_says_unless_asked():
-    problem = Problem.from_scene(scene(packing__polydispersity=0.25))
-    staged = problem.in_stages()
-    assert (staged.pair_law, staged.wall_law, staged.rings) == (problem.pair_law, problem.wall_law, False)
-    assert stage_time_step(problem) == resolve_time_step(problem)
-
-
-@pytest.mark.parametrize("damping", [1.0, 0.25])
-def test_the_limit_of_stages_separates_steps_that_settle_from_steps_that_do_not(damping):
-    problem = Problem.from_scene(
-        scene(
-            protocol__integrator="leapfrog",
-            packing__polydispersity=0.1,
-            protocol__inertia="rings",
-            protocol__stage_damping=damping,
-        )
-    ).in_stages()
-    limit = stability_limit(problem)
-
-    def settles(step: float) -> bool:
-        dynamics = Dynamics(problem, problem.bare_state(), "leapfrog", step)
-        try:
-            return relax(dynamics, Stop(1e-9, maximum_steps=40_000)).reached.settled
-        except DynamicsError:
-            return False
-
-    assert settles(0.95 * limit)
-    assert not settles(2.5 * limit)
 
 
 def twisted(integrator: str, part: float) -> float:

@@ -50,7 +50,7 @@ def by_hand(solution: Solution) -> None:
 @pytest.mark.parametrize(("friction", "limit"), [(0.0, 1e-9), (0.4, 2e-3)])
 def test_every_method_finds_the_same_equilibrium(friction, limit):
     """With friction the path is the limit of a slow ramp."""
-    methods = ("dynamics", "path", "stages", "auto") if friction else ("dynamics", "path", "auto")
+    methods = ("dynamics", "path", "auto")
     solutions = [solved(friction, method) for method in methods]
     for solution in solutions:
         by_hand(solution)

@@ -1,6 +1,6 @@
-"""Quasi-static load paths against slow dynamics, and through loads that are hard to pass."""
+"""Quasi-static load paths against slow dynamics and small increments, through lost equilibria, cut and continued."""
 
-from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,26 +11,22 @@ import granular_response as gr
 from granular_response.observe.floor import floor_force
 from granular_response.solve import (
     Dynamics,
-    NotSettled,
     PathError,
     PathRecord,
     Problem,
     Stop,
+    continue_solution,
     finish,
     follow,
     loaded_states,
-    path,
+    minimise,
     relax,
     rest_state,
     solve_scene,
 )  # fmt: skip
-from granular_response.solve.equilibrium import external_force
-from granular_response.solve.increment import HASTY, PATIENT, Work, minimise_with_limits, solve_increment
-from granular_response.solve.path import LOOSE
-from granular_response.solve.settle import settle
-from granular_response.solve.system import StaticSystem
-from granular_response.solve.timestep import stability_limit
-from granular_response.state import OPEN
+from granular_response.state import OPEN, SLIDING, STICKING, State
+from granular_response.store import files as store
+from granular_response.store.result import solution_from, to_dataset
 
 FLOOR = np.arange(13)
 
@@ -91,7 +87,6 @@ def test_an_equilibrium_that_is_left_slowly_is_not_called_stable(factor):
     record = PathRecord()
     with pytest.raises(PathError, match="no equilibrium beyond load factor 0"):
         follow(problem, balanced, [factor], record=record)
-    assert record.stability_trials >= 1
 
 
 def test_every_state_is_certified(settled):
@@ -108,53 +103,42 @@ def test_every_state_is_certified(settled):
 def test_passes_the_load_where_contacts_begin_to_slide_together():
     """Near 29.3 at friction 0.2 plain Newton iterations chatter; the branch goes on and needs no dynamics."""
     state = slab(0.2, 31.0, "path").loaded[-1]
-    assert state.reached.crossings == ()
+    assert not any(event.lost for event in state.reached.events)
     assert state.certificate.force_residual < 1e-9
     assert (state.pairs.status == 2).any()
 
 
-def test_default_increments_are_within_the_aim_of_accuracy(settled):
-    """Largest error of the normalised response against a path in far smaller steps."""
+def test_a_path_is_within_the_aim_of_accuracy(settled):
+    """Largest error of the normalised response against a path in small increments."""
     problem, rest = settled
     force = 4.0
-    fine = floor_force(follow(problem, rest, [force], longest_step=0.02)[0], FLOOR)
+    fine = floor_force(follow(problem, rest, [force], together=0.02)[0], FLOOR)
     assert np.abs(floor_force(follow(problem, rest, [force])[0], FLOOR) - fine).max() / force < 1e-4
 
 
 @pytest.mark.parametrize("friction", [0.05, 0.2, 1.0])
-def test_increments_keep_the_tolerance(friction):
-    """Responses and open contacts are those of a path in increments of two fifths of the first.
-
-    The estimate is no bound: the tolerance is kept within a factor of two.
-    """
+def test_responses_and_open_contacts_are_those_of_small_increments(friction):
     load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
     problem = Problem.from_scene(scene(8, 21, contact__friction=friction, loads=load))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
-    forces = [4.0, 15.0, 50.0]
-    record, short = PathRecord(), PathRecord()
-    states = follow(problem, rest, forces, tolerance=1e-5, record=record)
-    fine = follow(problem, rest, forces, longest_step=0.4 * path.FIRST_STEP * problem.n**0.5, record=short)
+    forces = [4.0] if friction < 0.1 else [4.0, 15.0, 50.0]  # increments are dear with little friction
+    states, fine = follow(problem, rest, forces), follow(problem, rest, forces, together=0.04)
     bottom = np.arange(21)
     for state, other in zip(states, fine, strict=True):
         error = np.abs(floor_force(state, bottom) - floor_force(other, bottom)).max()
         assert error <= 2e-5 * state.load_factor
         assert np.array_equal(state.pairs.status == OPEN, other.pairs.status == OPEN)
         assert state.certificate.stable and state.certificate.force_residual < 1e-10
-    assert record.crossings == short.crossings == []
-    assert record.comparisons > 0 and record.work.increments < 0.5 * short.work.increments
+        assert not any(event.lost for event in (*state.reached.events, *other.reached.events))
 
 
 def _walls(state):
     return np.concatenate([state.walls.normal_force, state.walls.tangential_force])
 
 
-@pytest.mark.parametrize("tolerance", [1e-5, 3e-6])
-def test_a_contact_that_slides_and_stops_within_an_increment_is_seen(tolerance):
-    """From 0.843 to 0.864 of the load: one and two increments beyond agree that it never slid, or that it still does.
-
-    Their difference was the estimate, and the error 12 to 14 times the tolerance.
-    """
+def test_a_contact_that_slides_for_a_moment_is_seen():
+    """From 0.843 to 0.864 of the load."""
     loads = [{"disk": "top-centre", "force": [0.0134, -0.1184]}]
     rubs = {"normal_stiffness": 1042.1, "stiffness_ratio": 0.8, "friction": 0.011985, "damping_ratio": 0.156}
     slab = {"kind": "slab", "layers": 5, "disks_per_row": 9, "polydispersity": 0.25, "seed": 986}
@@ -163,8 +147,8 @@ def test_a_contact_that_slides_and_stops_within_an_increment_is_seen(tolerance):
     problem = Problem.from_scene(gr.Scene.from_dict({"packing": slab, "contact": rubs, "wall": wall, "loads": loads}))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
-    fine, state = (follow(problem, rest, [1.0], **how)[0] for how in ({"longest_step": 5e-4}, {"tolerance": tolerance}))
-    assert np.abs(_walls(state) - _walls(fine)).max() <= tolerance * problem.load_size
+    (fine,), (state,) = follow(problem, rest, [1.0], together=5e-4 * problem.load_size), follow(problem, rest, [1.0])
+    assert np.abs(_walls(state) - _walls(fine)).max() <= 3e-6 * problem.load_size
 
 
 def test_a_small_load_is_not_crossed_in_one_increment():
@@ -178,61 +162,9 @@ def test_a_small_load_is_not_crossed_in_one_increment():
     problem = Problem.from_scene(gr.Scene.from_dict(described))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
-    fine = follow(problem, rest, [0.5, 1.5], longest_step=1e-5)
+    fine = follow(problem, rest, [0.5, 1.5], together=1e-4 * problem.load_size)
     for state, other in zip(follow(problem, rest, [0.5, 1.5]), fine, strict=True):
         assert np.abs(_walls(state) - _walls(other)).max() <= 2e-3 * problem.load_size * state.load_factor
-
-
-def test_a_looser_tolerance_takes_longer_increments_and_is_kept():
-    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
-    problem = Problem.from_scene(scene(8, 21, contact__friction=1.0, loads=load))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
-    strict, loose = PathRecord(), PathRecord()
-    bottom = np.arange(21)
-    near = floor_force(follow(problem, rest, [30.0], tolerance=1e-5, record=strict)[0], bottom)
-    state = follow(problem, rest, [30.0], tolerance=1e-4, record=loose)[0]
-    assert np.abs(floor_force(state, bottom) - near).max() < 1e-4 * 30.0
-    assert state.certificate.stable
-    assert loose.work.increments < 0.8 * strict.work.increments
-
-
-def test_a_smaller_tolerance_takes_shorter_increments_and_leaves_less(settled):
-    problem, rest = settled
-    fine = floor_force(follow(problem, rest, [4.0], longest_step=0.002)[0], FLOOR)
-    errors, increments = [], []
-    for tolerance in (1e-5, 1e-6):
-        record = PathRecord()
-        state = follow(problem, rest, [4.0], tolerance=tolerance, record=record)[0]
-        errors.append(np.abs(floor_force(state, FLOOR) - fine).max() / 4.0)
-        increments.append(record.work.increments)
-    assert errors[0] < 2e-5 and errors[1] < 2e-6
-    assert increments[1] > increments[0]
-
-
-def test_a_stretch_that_costs_too_much_is_left_to_dynamics(settled, monkeypatch):
-    problem, rest = settled
-    monkeypatch.setattr(path, "MOST_WORK", 2)
-    record = PathRecord()
-    state = follow(problem, rest, [2.0], record=record)[0]
-    assert {c.reason for c in record.crossings} == {"too much work"}
-    assert record.crossings[-1].end <= 2.0 and state.load_factor == 2.0
-    assert state.certificate.force_residual < 1e-9
-
-
-def test_only_the_shortest_increment_has_patience_before_dynamics_takes_over(settled, monkeypatch):
-    problem, rest = settled
-    asked = []
-
-    def fails(*args, patience, **options):
-        asked.append(patience)
-        return None if len(asked) <= 3 else solve_increment(*args, patience=patience, **options)
-
-    monkeypatch.setattr(path, "solve_increment", fails)
-    record = PathRecord()
-    follow(problem, rest, [1.0], longest_step=0.2, record=record)
-    assert asked[:4] == [HASTY, HASTY, PATIENT, HASTY]
-    assert record.crossings[0].reason == "no equilibrium" and record.crossings[0].start == 0.0
 
 
 def test_a_state_that_leaves_in_one_sense_alone_is_left_in_its_mirror_image_too():
@@ -248,109 +180,185 @@ def test_a_state_that_leaves_in_one_sense_alone_is_left_in_its_mirror_image_too(
             load_factors=[0.594866],
         )  # fmt: skip
         (state,) = solution.loaded
-        assert [crossing.reason for crossing in state.reached.crossings] == ["unstable"]
+        assert [event.kind for event in state.reached.events if event.lost] == ["jump"]
         assert state.certificate.stable
         added = floor_force(state, np.arange(6)) - floor_force(solution.rest, np.arange(6))
         peaks.append(added if sense > 0 else added[::-1])
     np.testing.assert_allclose(peaks[0], peaks[1], atol=1e-6)
 
 
-@pytest.fixture(scope="module")
-def slippery():
-    """A slab with so little friction that increments are dear, at rest, ready to be loaded with unit force."""
-    load = [{"disk": "top-centre", "force": [0.0, -1.0]}]
-    problem = Problem.from_scene(scene(10, 25, contact__friction=0.05, loads=load))
+def loaded(changes) -> tuple[Problem, State]:
+    """A small scene at rest, its loads on their disks."""
+    problem = Problem.from_scene(scene(**{"contact__friction": 0.2, "wall__friction": 0.2, **changes}))
     rest = rest_state(problem)
     return problem.with_loads(rest.position), rest
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
-def test_dynamics_takes_the_rest_of_the_way_where_it_is_cheaper_at_the_tolerance(slippery, tolerance):
-    problem, rest = slippery
-    force, bottom, record = 40.0, np.arange(25), PathRecord()
-    state = follow(problem, rest, [force], tolerance=tolerance, record=record)[0]
-    fine = follow(problem, rest, [force], tolerance=1e-5)[0]
-    assert [(crossing.reason, crossing.end) for crossing in record.crossings] == [("too much work", force)]
-    assert np.abs(floor_force(state, bottom) - floor_force(fine, bottom)).max() < tolerance * force
-    assert state.certificate.stable and state.certificate.force_residual < 1e-10
+def pushed(x, z, torque=0.0):
+    return [{"disk": "top-centre", "force": [x, z], "torque": torque}]
 
 
-def test_at_a_tight_tolerance_the_path_keeps_to_statics(slippery):
-    """However dear: a ramp may leave a symmetric branch, for another one some hundredths of the load away."""
-    problem, rest = slippery
-    for part, leaves in ((1.0, True), (0.99, False)):
-        record = PathRecord()
-        follow(problem, rest, [15.0], tolerance=part * LOOSE, record=record)
-        assert ("too much work" in {crossing.reason for crossing in record.crossings}) == leaves
+KINDS = {
+    "ordered": {"layers": 5, "disks_per_row": 9, "loads": pushed(0.3, -6.0)},
+    "symmetric": {"layers": 5, "disks_per_row": 9, "loads": pushed(0.0, -6.0)},
+    "torque": {"layers": 4, "disks_per_row": 8, "loads": pushed(0.0, -1.0, 0.5)},
+    "disordered": {
+        "layers": 4, "disks_per_row": 11, "packing__polydispersity": 0.1, "protocol__time_step": "auto",
+        "packing__lattice_constant": "touching-largest", "packing__seed": 3, "loads": pushed(0.0, -1.0),
+    },
+    "periodic": {
+        "layers": 4, "disks_per_row": 10, "packing__sides": "periodic", "packing__lattice_constant": 1.9995,
+        "loads": pushed(0.4, -3.0),
+    },
+    "displaced": {"layers": 4, "disks_per_row": 9, "loads": [{"disk": "top-centre", "displacement": [None, -2e-3]}]},
+    "3/2 law": {"layers": 4, "disks_per_row": 8, "contact__law": "hertz", "loads": pushed(0.05, -0.4)},
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(("ratio", "left"), [(0.5, 0.125), (0.125, 0.125), (0.05, 0.05)])
-def test_where_dynamics_takes_the_rest_disks_move_like_rings_with_few_dashpots(slippery, monkeypatch, ratio, left):
-    """Neither matters to where a slow ramp ends, and the step is longer; what is at rest is at rest for both."""
-    seen = []
-
-    def recorded(problem, *arguments, **options):
-        seen.append((problem, options["time_step"]))
-        return settle(problem, *arguments, **options)
-
-    monkeypatch.setattr(path, "settle", recorded)
-    problem, rest = slippery
-    problem = replace(problem, scene=problem.scene.updated({"contact.damping_ratio": ratio}))
-    follow(problem, rest, [40.0], tolerance=1e-2)
-    (moving, step), *_ = seen
-    dashpots = [2.0 * left * np.sqrt(k) for k in (problem.stiffness, problem.pair_law.tangential_stiffness)]
-    assert moving.rings and np.array_equal(moving.weight, problem.weight)
-    assert [moving.pair_law.normal_damping, moving.pair_law.tangential_damping] == pytest.approx(dashpots)
-    assert moving.pair_law.friction == problem.pair_law.friction and moving.stiffness == problem.stiffness
-    assert step == pytest.approx(0.9 * stability_limit(moving, "leapfrog"))
+@pytest.mark.parametrize("changes", KINDS.values(), ids=KINDS)
+def test_a_path_is_that_of_small_increments_but_for_their_error(changes):
+    """What increments leave out falls with their length; what is left at the shortest one bounds the difference."""
+    problem, rest = loaded(changes)
+    (state,) = follow(problem, rest, [1.0])
+    size = problem.load_size if not len(problem.held) else 1.0
+    fine, finer = (follow(problem, rest, [1.0], together=part * problem.load_size)[0] for part in (1e-3, 2e-4))
+    assert not any(event.lost for one in (state, fine, finer) for event in one.reached.events)
+    left = np.abs(_walls(fine) - _walls(finer)).max()
+    assert np.abs(_walls(state) - _walls(finer)).max() <= max(left, 1e-8 * size)
 
 
-def test_a_path_that_left_the_rest_to_dynamics_goes_on_as_if_it_had_not_been_cut(slippery):
-    problem, rest = slippery
-    whole = follow(problem, rest, [40.0, 30.0, 45.0], tolerance=1e-2)
-    assert all(state.reached.crossings for state in whole)
-    cut = follow(problem, whole[0], [30.0, 45.0], tolerance=1e-2)
-    for state, other in zip(cut, whole[1:], strict=True):
-        assert np.array_equal(state.position, other.position)
+#: Statuses from which and to which each event leads; a contact that closes may slide at once.
+BEFORE = {
+    "opens": {STICKING, SLIDING},
+    "closes": {OPEN},
+    "slides": {STICKING},
+    "sticks": {SLIDING},
+    "reverses": {SLIDING},
+}
+AFTER = {
+    "opens": {OPEN},
+    "closes": {STICKING, SLIDING},
+    "slides": {SLIDING},
+    "sticks": {STICKING},
+    "reverses": {SLIDING},
+}
 
 
-def test_statics_goes_on_where_dynamics_that_is_cheaper_does_not_settle(slippery, monkeypatch):
-    problem, rest = slippery
-    asked = []
+@pytest.mark.parametrize("changes", KINDS.values(), ids=KINDS)
+def test_events_lead_from_the_statuses_of_one_kept_state_to_those_of_the_next(changes):
+    problem, rest = loaded(changes)
+    states = [rest, *follow(problem, rest, [0.3, 0.9, 0.5, 1.0])]
+    kinds = set()
+    for before, after in pairwise(states):
+        events = after.reached.events
+        factors = [event.load_factor for event in events]
+        assert factors == sorted(factors, reverse=after.load_factor < before.load_factor)
+        low, high = sorted((before.load_factor, after.load_factor))
+        assert all(low <= factor <= high for factor in factors)
+        now = {contact: {status} for contact, status in statuses(before).items()}
+        for event in events:
+            kinds.add(event.kind)
+            contact = (event.at_wall, event.first, event.second)
+            was = now.get(contact, {OPEN})
+            assert was & BEFORE[event.kind]
+            now[contact] = AFTER[event.kind]
+        for contact, status in statuses(after).items():
+            assert status in now.get(contact, {OPEN}), contact
+    assert kinds
 
-    def never(*arguments, **options):
-        asked.append(options["what"])
-        raise NotSettled("the packing did not come to rest")
 
-    monkeypatch.setattr(path, "settle", never)
-    record = PathRecord()
-    state = follow(problem, rest, [8.0], tolerance=1e-2, record=record)[0]
-    assert asked == ["load factor 8"] and record.crossings == []
-    fine = follow(problem, rest, [8.0], tolerance=1e-5)[0]
-    assert np.abs(_walls(state) - _walls(fine)).max() < 1e-2 * 8.0 and state.certificate.stable
+def statuses(state) -> dict[tuple[bool, int, int], int]:
+    """Status of every contact that is listed."""
+    return {
+        (at_wall, int(i), int(j)): int(status)
+        for at_wall, part in ((False, state.pairs), (True, state.walls))
+        for i, j, status in zip(part.first, part.second, part.status, strict=True)
+    }
 
 
-def test_small_packings_are_not_left_to_dynamics(settled):
-    """Single disks swing more slowly than a wave crosses them, so the ramp would be too short."""
-    small, _ = settled
-    problem = Problem.from_scene(scene(6, 13, contact__friction=0.05, loads=[{"disk": "top-centre", "force": [0, -1]}]))
-    assert problem.n < path.MANY and small.n == problem.n
+def test_a_mirror_pair_changes_at_one_event():
+    problem, rest = loaded(KINDS["symmetric"])
+    (state,) = follow(problem, rest, [1.0])
+    width, position = problem.packing.width, rest.position
+    mirror = {i: int(np.argmin(np.hypot(*(position - [width - x, z]).T))) for i, (x, z) in enumerate(position)}
+    turned = {0: 0, 1: 2, 2: 1}
+    found = [(e.load_factor, e.kind, e.at_wall, e.first, e.second) for e in state.reached.events]
+    assert len(found) > 4
+    as_set = {(f, kind, wall, frozenset((i, j)) if not wall else (i, j)) for f, kind, wall, i, j in found}
+    for f, kind, wall, i, j in found:
+        other = (mirror[i], turned[j]) if wall else frozenset((mirror[i], mirror[j]))
+        assert (f, kind, wall, other) in as_set
+
+
+@pytest.mark.parametrize("changes", KINDS.values(), ids=KINDS)
+def test_a_path_cut_anywhere_has_the_bits_of_one_that_is_not(changes, tmp_path):
+    base = scene(**{"contact__friction": 0.2, "wall__friction": 0.2, **changes})
+    programme = [0.2, 0.5, 1.0, 0.4]
+    base = base.updated({"protocol.method": "path"})
+    whole = solve_scene(base, load_factors=programme)
+    for cut in (1, 2, 3):
+        part = solve_scene(base, load_factors=programme[:cut])
+        store.write(tmp_path / "part.nc", to_dataset(part))
+        read = solution_from(gr.open_result(tmp_path / "part.nc").to_dataset())
+        again = continue_solution(read, programme[cut:])
+        for one, other in zip(whole.loaded, again.loaded, strict=True):
+            for a, b in ((one.pairs, other.pairs), (one.walls, other.walls)):
+                assert all(np.array_equal(getattr(a, name), getattr(b, name)) for name in vars(a))
+            assert np.array_equal(one.position, other.position) and np.array_equal(one.angle, other.angle)
+            assert one.reached.events == other.reached.events
+
+
+def test_without_friction_a_path_leads_back_and_to_the_minimum_of_the_energy():
+    changes = {**KINDS["ordered"], "contact__friction": 0.0, "wall__friction": 0.0}
+    problem, rest = loaded({**changes, "packing__lattice_constant": 1.9995})
+    there, back = follow(problem, rest, [1.0, 0.0])
+    assert there.reached.events and not any(e.lost for s in (there, back) for e in s.reached.events)
+    assert back.position == pytest.approx(rest.position, abs=1e-12)
+    lowest = minimise(problem, rest, load_factor=1.0)
+    assert _walls(there) == pytest.approx(_walls(lowest), abs=1e-9)
+    opened = {frozenset((e.first, e.second)) for e in there.reached.events if e.kind == "opens"}
+    closed = {frozenset((e.first, e.second)) for e in back.reached.events if e.kind == "closes"}
+    assert opened and opened == closed
+
+
+def test_a_lost_equilibrium_is_an_event_with_its_displacement():
+    changes = {**KINDS["disordered"], "contact__friction": 0.05, "loads": pushed(0.0, -8.0)}
+    problem, rest = loaded(changes)
+    (state,) = follow(problem, rest, [1.0])
+    lost = [event for event in state.reached.events if event.lost]
+    assert lost and state.certificate.stable
+    for event in lost:
+        assert event.second == -1 and event.reason and event.displacement > 0.0
+        assert event.load_factor <= event.until <= 1.0
+
+
+@pytest.mark.xfail(reason="stability is looked at where contacts change, and at targets alone", strict=True)
+def test_an_equilibrium_that_is_lost_between_two_events_is_lost_there():
+    """At 0.904 of the load, wherever states are kept; the packing moves by 5e-3 radii."""
+    packing = {"kind": "slab", "layers": 3, "disks_per_row": 10, "sides": "periodic", "polydispersity": 0.02}
+    packing |= {"lattice_constant": "touching-largest", "seed": 74}
+    described = {"packing": packing, "contact": {"friction": 0.5}, "wall": {"friction": 0.5}}
+    described |= {"loads": pushed(-0.868857798426316, -0.379878289386005), "protocol": {"time_step": "auto"}}
+    problem = Problem.from_scene(gr.Scene.from_dict(described))
     rest = rest_state(problem)
-    assert follow(problem.with_loads(rest.position), rest, [40.0], tolerance=1e-2)[0].reached.crossings == ()
+    problem = problem.with_loads(rest.position)
+    ends = []
+    for programme in ([1.0], [0.92, 1.0]):
+        record = PathRecord()
+        ends.append(follow(problem, rest, programme, record=record)[-1])
+        assert [event.load_factor for event in record.events if event.lost] == [pytest.approx(0.904, abs=1e-3)]
+    assert _walls(ends[0]) == pytest.approx(_walls(ends[1]), abs=1e-6)
 
 
-def test_fixed_limits_have_the_same_minimum_by_factorisations_brought_up_to_date(slippery):
-    problem, rest = slippery
-    ends, made = [], []
-    for updated in (False, True):
-        system = StaticSystem(problem, rest, updated=updated)
-        known, work = system.start(rest), Work()
-        here = system.trial(known, known.q)
-        limits = (0.05 * here.pair_normal, 0.0 * here.wall_normal)
-        force = external_force(problem, 3.0)
-        found = minimise_with_limits(system, known, force, known.q, limits, work, PATIENT.steps)
-        assert np.abs(found.contact_force + force).max() < 1e-5
-        ends.append(found.configuration.q)
-        made.append(work.factorisations)
-    assert np.abs(ends[0] - ends[1]).max() < 1e-7 * np.abs(ends[0]).max() + 1e-9
-    assert made[1] <= made[0]
+@pytest.mark.xfail(reason="slip that turns round within an increment is not seen", strict=True)
+def test_slip_that_turns_round_between_two_events_is_seen():
+    """With the 3/2 law rates change on the way: the contact of disks 14 and 15 sticks at 0.1039, not at 0.1185."""
+    described = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 4}, "protocol": {"time_step": "auto"}}
+    described |= {"contact": {"law": "hertz", "friction": 0.2}, "wall": {"friction": 0.2}}
+    described |= {"loads": pushed(-0.6549511091414716, -11.063131298210278)}
+    problem = Problem.from_scene(gr.Scene.from_dict(described))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    (state,) = follow(problem, rest, [0.15])
+    sticks = [e.load_factor for e in state.reached.events if (e.kind, e.first, e.second) == ("sticks", 14, 15)]
+    assert sticks == [pytest.approx(0.1039, abs=2e-4)]

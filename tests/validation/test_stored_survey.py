@@ -44,7 +44,7 @@ def stored():
 def test_a_realization_is_found_again(stored, block, polydispersity, friction, start, realization):
     cases = PARAMETERS.cases(block)
     at = [(c.polydispersity, c.friction, c.lattice_constant) for c in cases].index((polydispersity, friction, start))
-    task = survey.task_of(PARAMETERS, cases[at], realization)
+    task = survey.ensemble_task(PARAMETERS, cases[at], realization)
     again = survey.realize(replace(task, forces=task.forces[:3]))
     one = {name: data.isel(case=at, realization=realization) for name, data in stored[block].items()}
     assert (again.outcome == AT_REST).all() and (one["ensembles"]["outcome"].values[:3] == AT_REST).all()
@@ -73,7 +73,7 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
         assert (outcome[count:] == NOT_REACHED).all()
     marks = store.read_attributes(FOLDER / "data" / f"{block}.nc")
     assert marks["block"] == block
-    assert yaml.safe_load(marks["parameters"])["loading"] == PARAMETERS.loading.model_dump()
+    assert yaml.safe_load(marks["parameters"])["collapse_depth"] == PARAMETERS.collapse_depth
 
 
 @pytest.mark.parametrize(

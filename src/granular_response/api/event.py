@@ -1,93 +1,222 @@
-"""Where something happens for the first time: bisection along the load or along a key of the scene."""
+"""Where something happens for the first time: read from the events of a load path, or narrowed down by bisection."""
 
 from __future__ import annotations
 
 import contextlib
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
-from ..observe.events import Bracket, bisect_event
+from ..observe.events import Bracket, EventNotBracketed, bisect_event
+from ..observe.positive import check_positive
 from ..scene import Scene, SceneError
+from ..solve.solution import Solution
+from ..state import Event
 from ..sweeps.tasks import Progress
+from .event_table import check_kind
 from .result import Result, described, solve
 from .terminal import TerminalProgress
+
+#: Load (mean disk weights) before and beyond an event at which its contact has its status before and after: a thousand
+#: times what a path leaves of the event.
+BESIDE = 1e-6
+#: Part by which a path that takes events together may exceed the load within which it does.
+LONGER = 1.1
 
 
 def find_event(
     scene: Scene | Mapping[str, Any] | str | os.PathLike[str],
-    happened: Callable[[Result], bool],
+    happened: Callable[[Result], bool] | str,
     low: float,
     high: float,
     *,
+    where: Callable[[Event], bool] | None = None,
     key: str = "load",
     tolerance: float | None = None,
     progress: Progress | bool = True,
 ) -> Bracket:
-    """Narrow down where an event happens between two loads, or two values of a key.
+    """Find where something happens between two loads, or two values of a key.
 
     Parameters
     ----------
     scene : a scene, nested mappings, or the path of a scene file.
-    happened : called with a :class:`Result`, says whether it has happened in its last state, such as
-        ``lambda result: (result.loaded[-1].pairs.touching != result.rest.pairs.touching).any()``.
-    low, high : between these, and different at both: factors of the scene's loads, ``low`` above 0, or values of the
-        key.
-    key : the load, which grows from ``low``, each state reached from the nearest one below it; or the path of a key
-        with real values, such as contact.friction, where each value is a packing of its own.
+    happened : a kind of :class:`granular_response.state.Event`, such as ``"opens"``, for the first one on the path; or
+        what is called with a :class:`Result` and says whether it has happened in its last state, such as
+        ``lambda result: result.floor_response.max() > 0.2``.
+    low, high : between these, and different at both: factors of the scene's loads, ``low`` above 0 (or 0 for a kind of
+        event), or values of the key.
+    where : of the kind of event, only those of which this is true: ``lambda event: event.at_wall``.
+    key : the load, which grows, each state reached from the nearest one below it; or the path of a key with real
+        values, such as contact.friction, where each value is a packing of its own, under the loads of its programme.
     tolerance : width of the bracket at which to stop; a thousandth of the whole range if left out.
     progress : as of :func:`sweep`.
 
     Returns
     -------
     A bracket ``low``, ``high`` with ``at_low``, what ``happened`` says at its lower end; at the upper one it says the
-    opposite. If it changes several times in between, this is one of the changes.
+    opposite.
+
+    A kind of event along the load is read from one path: ``low`` and ``high`` are both its load factor, whatever the
+    tolerance. Where an equilibrium is lost they are that and the one at which the path goes on; where the path took
+    events together, the ends of the increment.
+
+    Where a function of the result changes is searched for, along a path among its events first: the bracket either
+    holds a load at which contacts change, and is no wider than needed for the states at both sides (2e-6 mean disk
+    weights), or holds none, so that the response is smooth in it. If the function changes several times between ``low``
+    and ``high``, this is one of the changes.
 
     Raises
     ------
     granular_response.observe.events.EventNotBracketed
-        If it says the same at both ends.
+        If it says the same at both ends, or there is no such event between them.
     ValueError
-        For an empty range, or a tolerance or a smallest load that is not positive.
+        For an empty range, a tolerance or a smallest load that is not positive, a kind that there is not, and for
+        ``where`` with a function of the result.
     granular_response.scene.SceneError, granular_response.solve.SOLVE_ERRORS
-        For a key or a value that is not allowed, for a scene without loads where these grow, and where there is no
-        equilibrium.
+        For a key or a value that is not allowed, for a scene without loads where these grow, for a kind of event where
+        no path is followed, and where there is no equilibrium.
+
+    Examples
+    --------
+    >>> gr.find_event(scene, "opens", 0.0, 1.0).low  # load factor of the first contact that opens
+    >>> gr.find_event(scene, "slides", 0.0, 1.0, where=lambda event: event.at_wall)
+    >>> gr.find_event(scene, lambda result: result.floor_response.max() > 0.2, 0.1, 1.0, tolerance=1e-6)
     """
     base = described(scene)
+    kind = happened if isinstance(happened, str) else None
+    if kind is not None:
+        check_kind(kind)
+    elif where is not None:
+        raise ValueError("where: is asked of events, must be left out with a function of the result")
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise ValueError(f"low = {low}, high = {high}: must be finite, and low below high")
+    low, high = float(low), float(high)
     if key == "load" and not base.loads:
         raise SceneError("loads: none in this scene, must be one or more to look along the load; or name a key")
-    if key == "load" and low <= 0.0:
-        raise ValueError(f"low = {low}: must be greater than 0, a factor of the scene's loads")
+    if key == "load" and (low < 0.0 or (kind is None and low == 0.0)):
+        least = "greater than 0" if kind is None else "0 or greater"
+        raise ValueError(f"low = {low}: must be {least}, a factor of the scene's loads")
     tolerance = 1e-3 * (high - low) if tolerance is None else tolerance
-    states: dict[float, Result] = {}
-    total = 2 + max(math.ceil(math.log2(high - low) - math.log2(tolerance)), 0) if tolerance > 0 else 2
-
-    def at(value: float) -> Result:
-        if key != "load":
-            return solve(base.updated({key: value}))
-        below = [factor for factor in states if factor < value]
-        if not below:
-            return solve(base, load_factors=[value])
-        return states[max(below)].continued([value])
-
+    check_positive(tolerance=tolerance)
     with contextlib.ExitStack() as stack:
         report = stack.enter_context(TerminalProgress()) if progress is True else progress or None
-        done = 0
-
-        def predicate(value: float) -> bool:
-            nonlocal done
+        if kind is not None and key == "load":
             if report:
-                report(done, total, "event")
-            result = at(value)
-            if key == "load":
-                states[value] = result
-            done += 1
-            return bool(happened(result))
-
-        bracket = bisect_event(predicate, float(low), float(high), tolerance)
+                report(0, 1, "event")
+            bracket = _first(solve(base, load_factors=[high]), kind, where, low)
+        elif kind is not None:
+            search = _Search(base, lambda result: bool(_events(result, kind, where)), key, report)
+            bracket = search.along(low, high, tolerance)
+        else:
+            assert callable(happened)
+            bracket = _Search(base, happened, key, report).along(low, high, tolerance)
         if report:
-            report(total, total, "event")
+            report(bracket.evaluations, bracket.evaluations, "event")
     return bracket
+
+
+def _events(result: Result, kind: str, where: Callable[[Event], bool] | None) -> list[Event]:
+    """The events of a kind on the way to the last state. Raises SceneError where no path was followed."""
+    method = _method(result)
+    if method != "path":
+        raise SceneError(
+            f"protocol.method = {result.scene.protocol.method}: must be path where events are asked for, "
+            f"this scene's loads are followed by {method}"
+        )
+    return [event for event in result.events.of(kind) if where is None or where(event)]
+
+
+def _method(result: Result) -> str:
+    choice = _solution(result).load_choice
+    return "none" if choice is None else choice.method
+
+
+def _solution(result: Result) -> Solution:
+    assert result._solution is not None  # solved here, not read
+    return result._solution
+
+
+def _first(result: Result, kind: str, where: Callable[[Event], bool] | None, low: float) -> Bracket:
+    """The load of the first event of a kind from the load factor ``low`` on."""
+    event = next((event for event in _events(result, kind, where) if event.load_factor >= low), None)
+    if event is None:
+        (high,) = result.load_factors
+        asked = "" if where is None else " of those asked for"
+        raise EventNotBracketed(f"no event {kind!r}{asked} between load factors {low:g} and {high:g}")
+    begin, end = float(event.load_factor), max(float(event.load_factor), float(event.until))
+    within = result.loaded[-1].reached.events_within
+    if within is not None and begin == end:
+        begin = max(end - LONGER * within / _solution(result).problem.load_size, 0.0)
+    return Bracket(low=begin, high=end, at_low=False, evaluations=1)
+
+
+class _Search:
+    """Bisection with a function of the result along the load or a key."""
+
+    def __init__(self, base: Scene, happened: Callable[[Result], bool], key: str, report: Progress | None) -> None:
+        self.base, self.happened, self.key, self.report = base, happened, key, report
+        self.done, self.total = 0, 2
+        self.states: dict[float, Result] = {}  #: by load factor
+
+    def along(self, low: float, high: float, tolerance: float) -> Bracket:
+        self.total = 2 + _halvings(high - low, tolerance)
+        at_low, at_high = self.says(low), self.says(high)
+        if at_low != at_high and self.key == "load" and self._followed(high):
+            beside = BESIDE / _solution(self.states[high]).problem.load_size
+            knots = _knots(low, high, self.states[high].loaded[-1].reached.events, beside)
+            longest = max(after - before for before, after in pairwise(knots))
+            self.total = 2 + _halvings(len(knots) - 1, 1) + _halvings(longest, tolerance)
+            low, high = self._neighbours(knots, at_low)
+        bracket = bisect_event(self.says, low, high, tolerance, at_low=at_low, at_high=at_high)
+        return replace(bracket, evaluations=self.done)
+
+    def says(self, value: float) -> bool:
+        if self.report:
+            self.report(self.done, self.total, "event")
+        result = self._at(value)
+        self.done += 1
+        return bool(self.happened(result))
+
+    def _at(self, value: float) -> Result:
+        if self.key != "load":
+            return solve(self.base.updated({self.key: value}))
+        below = [factor for factor in self.states if factor < value]
+        found = self.states[max(below)].continued([value]) if below else solve(self.base, load_factors=[value])
+        self.states[value] = found
+        return found
+
+    def _followed(self, factor: float) -> bool:
+        """Whether every event on the way to a state is known with its load."""
+        result = self.states[factor]
+        return _method(result) == "path" and result.loaded[-1].reached.events_within is None
+
+    def _neighbours(self, knots: list[float], at_low: bool) -> tuple[float, float]:
+        """Two neighbouring knots between which the answer changes, as it does between the first and the last."""
+        first, last = 0, len(knots) - 1
+        while last - first > 1:
+            middle = (first + last) // 2
+            if self.says(knots[middle]) == at_low:
+                first = middle
+            else:
+                last = middle
+        return knots[first], knots[last]
+
+
+def _knots(low: float, high: float, events: Iterable[Event], beside: float) -> list[float]:
+    """``low``, ``high``, and the loads just before and just beyond each event between them."""
+    knots = [low]
+    factors = {float(factor) for event in events for factor in (event.load_factor, event.until)}
+    for factor in sorted(factor for factor in factors if low < factor - beside and factor + beside < high):
+        if factor - beside > knots[-1]:
+            knots += [factor - beside, factor + beside]
+        else:
+            knots[-1] = factor + beside
+    return [*knots, high]
+
+
+def _halvings(width: float, least: float) -> int:
+    """How often a width is halved until it is at most the least one."""
+    return max(math.ceil(math.log2(width) - math.log2(least)), 0)

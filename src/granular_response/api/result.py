@@ -24,6 +24,7 @@ from ..state import Certificate, State
 from ..store import files
 from ..store.checked import read_result
 from ..store.result import scene_of, solution_from, state_from, to_dataset
+from .event_table import Events
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -80,6 +81,19 @@ class Result:
     def certificate(self) -> Certificate | None:
         """That of the last state."""
         return self.certificates[-1]
+
+    @property
+    def events(self) -> Events:
+        """What happened on the load path, in order: contacts that change, and equilibria that are lost.
+
+        ``result.events.of("opens")`` has one kind of them, ``result.events.lost`` the lost equilibria,
+        ``result.events.to_dataframe()`` a table. Without a path, by dynamics or by minimisation, no contact events are
+        known. Where events were taken together, as in packings of many thousand disks, ``reached.events_within`` of a
+        state is the load within which they were (mean disk weights), and ``reached.events_error`` what that leaves out
+        of a force of the floor or a wall, per load.
+        """
+        found = [(k, event) for k, state in enumerate((self.rest, *self.loaded)) for event in state.reached.events]
+        return Events((event for _, event in found), (k for k, _ in found))
 
     @property
     def floor_response(self) -> xr.DataArray:

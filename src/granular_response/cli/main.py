@@ -135,7 +135,7 @@ def run(
     output: ResultFile,
     method: Annotated[
         str | None,
-        typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path, stages or minimise."),
+        typer.Option(help="Solve by this method in place of the scene's: auto, dynamics, path or minimise."),
     ] = None,
     threads: Threads = None,
     allow_unsettled: AllowUnsettled = False,
@@ -376,7 +376,7 @@ def keys(
         scene_reference.renew(page)
 
 
-@_command("export slab.nc -o slab.gsd", "export slab.nc -o rest.vtu --state 0")
+@_command("export slab.nc -o slab.gsd", "export slab.nc -o rest.vtu --state 0", "export slab.nc -o slab.events.csv")
 def export(
     result: StoredResult,
     output: Annotated[Path, typer.Option("--output", "-o", help="File to make; its ending is the format.")],
@@ -388,7 +388,10 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write a result for OVITO (.gsd, .xyz), ParaView (.pvd, .vtu), LAMMPS (.data, .dump), YADE (.txt) or as .csv."""
+    """Write a result for OVITO (.gsd, .xyz), ParaView (.pvd, .vtu), LAMMPS (.data, .dump), YADE (.txt) or as .csv.
+
+    Events of the load path: .events.csv.
+    """
     from ..store import export as exporting
 
     typer.echo(str(exporting.export(result, output, state=state)))

@@ -33,8 +33,6 @@ UNITS = {
     "time_step": "sqrt(R/g)",
     "ramp_time": "sqrt(R/g)",
     "load_factors": "",
-    "path_tolerance": "",
-    "stage_damping": "",
     "stop_kinetic_energy": "disk weight × mean radius",
 }
 #: No key accepts this.

@@ -62,13 +62,12 @@ class Response(NamedTuple):
     tangential: Floats
     spring: Floats
     status: NDArray[Any]
-    tangent: Floats  #: (m, 3, 3)
 
     @classmethod
     def empty(cls, size: int) -> Response:
         """Room for ``size`` contacts."""
         overlap, normal, tangential, spring = np.zeros((4, size))
-        return cls(overlap, normal, tangential, spring, np.zeros(size, np.int8), np.empty((size, 3, 3)))
+        return cls(overlap, normal, tangential, spring, np.zeros(size, np.int8))
 
 
 @kernel
@@ -141,71 +140,97 @@ def _wall_at(q, n, walls, c):
 
 
 @kernel(forceinline=True)
-def _open(c, rubs, out):
+def _open(c, rubs, out, tangent):
     out.status[c] = OPEN
     out.normal[c] = 0.0
     if rubs is not None:
         out.tangential[c] = 0.0
         out.spring[c] = 0.0
-    out.tangent[c, :, :] = 0.0
+    if tangent is not None:
+        tangent[c, :, :] = 0.0
 
 
 @kernel(forceinline=True)
-def _press(c, xi, nx, nz, inverse, shape, law, out):
+def _press(c, xi, nx, nz, inverse, shape, law, out, tangent):
     """Closed contact without friction; returns the normal force."""
     form = _shape_at(shape, c)
     fn = elastic_force(law, xi, form)
     out.normal[c] = fn
     out.status[c] = STICKING
-    _fill_tangent(out.tangent[c], nx, nz, fn, 0.0, inverse, stiffness(law, xi, form), 0.0, 0.0, 0.0, 0.0)
+    if tangent is not None:
+        _fill_tangent(tangent[c], nx, nz, fn, 0.0, inverse, stiffness(law, xi, form), 0.0, 0.0, 0.0, 0.0)
     return fn
 
 
 @kernel(forceinline=True)
-def _rub(c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overlap0, spring0, limits, out):
+def _rub(
+    c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overlap0, spring0, limits, fixed, out, tangent
+):
     """Closed contact with friction; returns normal and tangential force.
 
     ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal.
     """
     form = _shape_at(shape, c)
     fn = elastic_force(law, xi, form)
-    k = stiffness(law, xi, form)
-    share = 1.0 if overlap0[c] >= 0.0 else xi / (xi - overlap0[c])
+    share = 1.0 if overlap0[c] >= 0.0 or xi <= 0.0 else xi / (xi - overlap0[c])
     limit = law.friction * fn if limits is None else limits[c]
-    ft, s, sense = return_map(spring0[c] + share * slip, limit, law)
-    if sense != 0.0:
-        out.status[c] = SLIDING
-        slides = sense * law.friction if limits is None else 0.0
-        _fill_tangent(out.tangent[c], nx, nz, fn, ft, inverse, k, 0.0, 0.0, 0.0, slides)
+    if fixed is None:
+        ft, s, sense = return_map(spring0[c] + share * slip, limit, law)
     else:
-        out.status[c] = STICKING
-        stiff = law.tangential_stiffness * share
-        _fill_tangent(out.tangent[c], nx, nz, fn, ft, inverse, k, stiff * mean / distance, stiff * slip_n, stiff, 0.0)
+        ft, s, sense = _as_it_is(fixed[c], spring0[c] + share * slip, limit, law)
+    out.status[c] = SLIDING if sense != 0.0 else STICKING
+    if tangent is not None:
+        k = stiffness(law, xi, form)
+        if sense != 0.0:
+            slides = sense * law.friction if limits is None else 0.0
+            _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, 0.0, 0.0, 0.0, slides)
+        else:
+            stiff = law.tangential_stiffness * share
+            by_t = stiff * mean / distance
+            _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, by_t, stiff * slip_n, stiff, 0.0)
     out.normal[c] = fn
     out.tangential[c] = ft
     out.spring[c] = s
     return fn, ft
 
 
+@kernel(forceinline=True)
+def _as_it_is(status, spring, limit, law):
+    """Tangential force, spring and direction of sliding of a contact that keeps its status."""
+    if abs(status) == SLIDING:
+        sense = 1.0 if status > 0 else -1.0
+        return sense * limit, -sense * limit / law.tangential_stiffness, sense
+    return -law.tangential_stiffness * spring, spring, 0.0
+
+
+@kernel(forceinline=True)
+def _is_open(fixed, c, xi):
+    if fixed is None:
+        return xi <= 0.0
+    return fixed[c] == OPEN
+
+
 @kernel
-def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out, force):
+def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, fixed, out, tangent, force):
     """Forces of disk-disk contacts at ``q``, one increment after ``q0``, and their local tangents.
 
     ``pairs`` : :class:`Pairs`, and its ``shape``; ``overlap0``, ``spring0`` (m,) : at ``q0``, no springs (None) without
-    friction; ``limits`` (m,) : fixed Coulomb limits, None for ``mu f_n``; ``out`` : :class:`Response`, filled; the
-    generalised contact force ``force`` (dof,) is added to.
+    friction; ``limits`` (m,) : fixed Coulomb limits, None for ``mu f_n``; ``fixed`` (m,) : statuses that contacts keep
+    whatever happens, negative where they slide under a negative force, None for the return map; ``out`` :
+    :class:`Response`, filled, and ``tangent`` (m, 3, 3), if not None; the generalised contact force ``force`` (dof,) is
+    added to.
     """
     law = pairs.law
     for c in range(pairs.first.size):
         i, j, ux, uz, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         out.overlap[c] = xi
-        if xi <= 0.0:
-            _open(c, spring0, out)
+        if _is_open(fixed, c, xi):
+            _open(c, spring0, out, tangent)
             continue
         nx = dx / d
         nz = dz / d
         if spring0 is None:
-            fn = _press(c, xi, nx, nz, 1.0 / d, shape, law, out)
+            fn = _press(c, xi, nx, nz, 1.0 / d, shape, law, out, tangent)
             force[i] += fn * nx
             force[n + i] += fn * nz
             force[j] -= fn * nx
@@ -221,7 +246,7 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out,
             roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
             fn, ft = _rub(
                 c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean, d, 0.5 * turn,
-                shape, law, overlap0, spring0, limits, out,
+                shape, law, overlap0, spring0, limits, fixed, out, tangent,
             )  # fmt: skip
             fx = fn * nx - ft * nz
             fz = fn * nz + ft * nx
@@ -234,22 +259,24 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, out,
 
 
 @kernel
-def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, out, force):
+def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, fixed, out, tangent, force):
     """As :func:`pair_statics` for disk-wall contacts; ``walls`` : :class:`Walls`."""
     law = walls.law
     for c in range(walls.disk.size):
         i, nx, nz, xi = _wall_at(q, n, walls, c)
         out.overlap[c] = xi
-        if xi <= 0.0:
-            _open(c, spring0, out)
+        if _is_open(fixed, c, xi):
+            _open(c, spring0, out, tangent)
             continue
         if spring0 is None:
-            fn = _press(c, xi, nx, nz, 0.0, shape, law, out)
+            fn = _press(c, xi, nx, nz, 0.0, shape, law, out, tangent)
             ft = 0.0
         else:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
-            fn, ft = _rub(c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, shape, law, overlap0, spring0, limits, out)
+            fn, ft = _rub(
+                c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, shape, law, overlap0, spring0, limits, fixed, out, tangent
+            )
             force[2 * n + i] -= radius[i] * ft
         force[i] += fn * nx - ft * nz
         force[n + i] += fn * nz + ft * nx
@@ -276,7 +303,7 @@ def normal_forces(q, n, pairs, pair_shape, walls, wall_shape, force):
 
 @kernel
 def spring_forces(overlap, spring, shape, law, out):
-    """Fill ``out`` (:class:`Response`, its tangents aside) with forces from overlaps and springs (m,) as they are.
+    """Fill ``out`` (:class:`Response`) with forces from overlaps and springs (m,) as they are.
 
     A touching contact slides when its spring force has reached the Coulomb limit (to 1e-9 of it).
     """

@@ -15,7 +15,7 @@ class EventNotBracketed(GranularError, ValueError):
 
 @dataclass(frozen=True)
 class Bracket:
-    """Two parameter values between which a predicate changes."""
+    """Two parameter values between which a predicate changes; the same one twice where it is known exactly."""
 
     low: float
     high: float
@@ -24,10 +24,12 @@ class Bracket:
 
     @property
     def middle(self) -> float:
+        """Halfway between them."""
         return self.low + 0.5 * (self.high - self.low)
 
     @property
     def width(self) -> float:
+        """Their difference."""
         return self.high - self.low
 
 

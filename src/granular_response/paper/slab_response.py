@@ -1,12 +1,16 @@
 """A slab under a growing force on one disk: its states along the force, what is measured on them, and events.
 
 What the studies of Sec. V share. Forces are in mean disk weights, lengths in mean radii.
+
+A path goes from one contact event to the next. What the contacts alone decide (a first opening) changes at one of
+them, whose force is exact. What the forces decide (two peaks) changes between two of them, where states are smooth in
+the force, and is looked for in that piece alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,8 +22,10 @@ from granular_response.observe import events, network, peaks
 from granular_response.observe.floor import floor_disks, floor_response, interior_mask
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, loaded_states
-from granular_response.state import Crossing, FloatArray, State
+from granular_response.solve import Problem, follow, loaded_states
+from granular_response.solve.choice import load_method
+from granular_response.state import OPEN, STICKING, FloatArray, State
+from granular_response.state import Event as PathEvent
 from granular_response.store.result import (
     FORCE,
     LENGTH,
@@ -36,6 +42,12 @@ MARGINS = (0.01, 0.05)
 
 #: The linear range ends where the response at x = 0 differs by this fraction from that to the smallest force.
 LINEARITY = 0.01
+
+#: What a path leaves of the force of an event, as a part of it.
+EXACT = 1e-8
+
+#: Width of the bracket of what changes between two events, as a part of the force.
+NARROW = 1e-6
 
 #: What :meth:`Measures.scalars` gives, with long names.
 SCALARS = {
@@ -84,14 +96,15 @@ class LoadPath:
     """States of one scene under a growing load, each found from the one below it.
 
     With dynamics as the protocol (``method: dynamics``) every state starts at rest instead, as in the paper.
+    A path stops (``solve.path.Collapsed``) where the load has pushed its disk below ``lowest``.
     """
 
     scene: Scene  #: with one load, of unit force
     problem: Problem  #: with the loaded disk chosen
     rest: State
     known: dict[float, State] = field(default_factory=dict)  #: by force
+    lowest: float = -np.inf
     method: str = ""
-    crossings: list[Crossing] = field(default_factory=list)  #: stretches of force that dynamics crossed
 
     @classmethod
     def of(cls, scene: Scene, rest: State | None = None, packing: Packing | None = None) -> LoadPath:
@@ -110,22 +123,83 @@ class LoadPath:
     def through(self, forces: Iterable[float]) -> list[State]:
         """States at increasing ``forces``; known ones are not computed again.
 
-        Raises what ``loaded_states`` raises.
+        Raises what ``loaded_states`` and ``follow`` raise.
         """
         forces = [float(force) for force in forces]
         wanted = [force for force in forces if force not in self.known]
-        literal = self.scene.protocol.method == "dynamics"
+        self.method = load_method(self.problem).method
+        literal = self.method == "dynamics"
         while wanted:
             below = max((f for f in self.known if f < wanted[0] and not literal), default=0.0)
             above = min((f for f in self.known if f > wanted[0]), default=np.inf)
             run = [force for force in wanted if force < above]
             start = self.known[below] if below else self.rest
-            choice, states = loaded_states(self.problem, start, run)
-            self.method = choice.method
-            self.crossings += states[-1].reached.crossings
+            if self.method == "path":
+                states = follow(self.problem, start, run, lowest=self.lowest)
+            else:
+                states = loaded_states(self.problem, start, run)[1]
             self.known.update(zip(run, states, strict=True))
             wanted = wanted[len(run) :]
         return [self.known[force] for force in forces]
+
+    def first(self, forces: Sequence[float], happening: Happening, width: float = NARROW) -> tuple[float, float]:
+        """Where something happens first: after the one force and not after the other.
+
+        ``forces`` are neighbours on the path, with known states. The first of them at which it has happened is narrowed
+        to the event of the path between it and the one before, or to ``width`` (per force) within a piece between two
+        events; see :class:`Event` for the ends.
+        """
+        low, high = first_change(forces, [happening.happened(self.known[force]) for force in forces])
+        if not np.isfinite(high):
+            return low, high
+        passed = self.known[high].reached.events
+        if happening.of_contacts:
+            at = self._change(self.known.get(low, self.rest), passed, happening)
+            if at is not None:
+                within = max(EXACT * at, self.known[high].reached.events_within or 0.0)
+                return max(at - within, low), min(at * (1.0 + EXACT), high)
+        ends = [low]
+        for force in sorted({end for event in passed for end in (event.load_factor, event.until)}):
+            if ends[-1] + width * high < force < high - width * high:
+                ends.append(force)
+        states = self.through([*ends[1:], high])
+        low, high = first_change([*ends[1:], high], [happening.happened(state) for state in states])
+        low = low or ends[0]
+        if gone := lost([self.known[high]]):  # and no equilibrium from there on
+            before = gone[0].load_factor - width * high
+            if before <= low or not happening.happened(self.at(before)):
+                return max(before, low), high
+            high = before
+        if high - low > width * high:
+            found = events.bisect_event(
+                lambda force: happening.happened(self.at(force)), low, high, width * high, at_low=False, at_high=True
+            )
+            low, high = found.low, found.high
+        return low, high
+
+    def _change(self, state: State, passed: Iterable[PathEvent], happening: Happening) -> float | None:
+        """The force of the event by which the contacts of ``state`` come to what has happened; None if by no event."""
+        pairs = state.pairs
+        place = {pair: k for k, pair in enumerate(zip(pairs.first.tolist(), pairs.second.tolist(), strict=True))}
+        for event in passed:
+            k = None if event.at_wall else place.get((event.first, event.second))
+            if k is None or event.kind not in ("opens", "closes"):
+                continue
+            status = pairs.status.copy()
+            status[k] = OPEN if event.kind == "opens" else STICKING
+            pairs = replace(pairs, status=status)
+            if happening.happened(replace(state, pairs=pairs)):
+                return event.load_factor
+        return None
+
+
+@dataclass(frozen=True)
+class Happening:
+    """Something that happens along a load path."""
+
+    happened: Callable[[State], bool]
+    definition: str
+    of_contacts: bool = False  #: whether which disks touch decides it
 
 
 class Measures:
@@ -256,8 +330,6 @@ class Event:
     friction: float  #: nan for an event on the axis of friction
     low: float
     high: float
-    tolerance: float  #: asked width of the bracket
-    evaluations: int  #: states that the bisection took
     definition: str
 
 
@@ -269,57 +341,74 @@ def first_change(values: Sequence[float] | FloatArray, happened: Sequence[bool])
     return float(values[-1]), float("nan")
 
 
-def locate(
-    name: str,
-    path: LoadPath,
-    forces: Sequence[float],
-    happened: Callable[[State], bool],
-    tolerance: float,
-    definition: str,
-) -> Event:
-    """The first of ``forces`` (known on ``path``) at which something has happened, narrowed by bisection."""
-    low, high = first_change(forces, [happened(path.known[force]) for force in forces])
-    evaluations = 0
-    if np.isfinite(high) and high - low > tolerance:
-        bracket = events.bisect_event(
-            lambda force: happened(path.at(force)), low, high, tolerance, at_low=False, at_high=True
-        )
-        low, high, evaluations = bracket.low, bracket.high, bracket.evaluations
-    return Event(name, path.scene.contact.friction, low, high, tolerance, evaluations, definition)
+def locate(name: str, path: LoadPath, forces: Sequence[float], what: Happening, width: float = NARROW) -> Event:
+    """Where on a path something happens first; see :meth:`LoadPath.first`."""
+    return Event(name, path.scene.contact.friction, *path.first(forces, what, width), what.definition)
 
 
-def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, tuple[Callable[[State], bool], str]]:
-    """What is looked for along a load path, by name: whether it has happened in a state, and its definition.
+def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, Happening]:
+    """What is looked for along a load path, by name.
 
     ``smallest`` is the state under the smallest force; ``asymmetry`` is that from which symmetry is lost.
     """
     linear, force = measures.centre(smallest), abs(smallest.load_factor)
     return {
-        "first_opening": (
+        "first_opening": Happening(
             lambda state: measures.opened(state) > 0,
             "a contact of disks in the central third of the slab is open that touches at rest",
+            of_contacts=True,
         ),
-        "linear_range": (
+        "linear_range": Happening(
             lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY,
             f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}",
         ),
-        "crossover": (
+        "crossover": Happening(
             measures.double_peaked,
             "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
         ),
-        "reaches_floor": (
+        "reaches_floor": Happening(
             lambda state: measures.region(state).reaches_floor,
             "the region of opened contacts below the load contains a contact of the bottom row",
+            of_contacts=True,
         ),
-        "third_peak": (
+        "third_peak": Happening(
             lambda state: measures.third_peak(state) > 0.0,
             "the double-peaked floor response has a further peak at x = 0",
         ),
-        "loss_of_symmetry_path": (
+        "loss_of_symmetry_path": Happening(
             lambda state: measures.asymmetry(state) > asymmetry,
             f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}",
         ),
     }
+
+
+def lost(states: Iterable[State]) -> list[PathEvent]:
+    """Equilibria that a path through ``states``, in turn, has lost on its way."""
+    return [event for state in states for event in state.reached.events if event.lost]
+
+
+def by_motion(state: State) -> bool:
+    """Whether the motion of the disks had a part in what led from the state before to this one."""
+    return state.reached.method == "dynamics" or any(event.kind != "stepped over" for event in lost([state]))
+
+
+def lost_dataset(found: Sequence[tuple[float, PathEvent]]) -> xr.Dataset:
+    """Lost equilibria as a table along ``lost``, each with the coefficient of friction of its path."""
+
+    def column(values: list, long_name: str, kind: type = float) -> xr.Variable:
+        return variable("lost", np.array(values, dtype=kind), long_name)
+
+    return xr.Dataset(
+        {
+            "friction": column([friction for friction, _ in found], "coefficient of friction of the path"),
+            "kind": column([event.kind for _, event in found], "how the path goes on", str),
+            "start": column([event.load_factor for _, event in found], f"force at which the equilibrium ends {FORCE}"),
+            "until": column([event.until for _, event in found], f"force at which the path goes on {FORCE}"),
+            "displacement": column(
+                [event.displacement for _, event in found], f"largest of a disk on the way {LENGTH}"
+            ),
+        }
+    )
 
 
 def events_dataset(found: Sequence[Event]) -> xr.Dataset:
@@ -336,8 +425,6 @@ def events_dataset(found: Sequence[Event]) -> xr.Dataset:
             "friction": column("friction", "coefficient of friction, nan if it is the axis"),
             "low": column("low", f"value before the event: force {FORCE}, or coefficient of friction"),
             "high": column("high", "value at which it has happened; nan if not up to the lower one"),
-            "tolerance": column("tolerance", "width asked of the bracket"),
-            "evaluations": column("evaluations", "states computed for the bracket"),
             "definition": column("definition", "what counts as the event"),
         }
     )

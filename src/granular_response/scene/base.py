@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
@@ -17,6 +17,9 @@ class Description(BaseModel):
     """Frozen, validated data; a value that is not allowed or a key that does not exist is a SceneError."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    #: Keys that are gone, and what took their place.
+    replaced: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, /, **data: Any) -> None:
         try:
@@ -36,6 +39,8 @@ class Description(BaseModel):
         if not isinstance(data, Mapping):
             raise Problem(f"must be a mapping with keys among {keys}")
         for key, value in data.items():
+            if isinstance(key, str) and key in cls.replaced:
+                raise Problem(cls.replaced[key], key=(key,), value=value)
             if key not in cls.model_fields:
                 raise Problem(
                     f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys})",

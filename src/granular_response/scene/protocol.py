@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
-from .base import Count, Description, Flag, NonNegative, Part, Positive, allowed
+from .base import Count, Description, Flag, NonNegative, Positive, allowed
+from .errors import Problem
 
 TimeStep = Annotated[
     Annotated[float, Field(strict=True, gt=0)] | Literal["auto"],
@@ -21,7 +23,17 @@ LoadFactors = Annotated[
     Field(min_length=1),
     allowed("must be a list of one or more finite numbers"),
 ]
-Method = Literal["auto", "dynamics", "path", "stages", "minimise"]
+#: Methods that are gone, each with the one that took its place.
+REPLACED_METHODS = {"stages": "path"}
+
+
+def _check_method(value: Any) -> Any:
+    if isinstance(value, str) and value in REPLACED_METHODS:
+        raise Problem(f"is gone, must be {REPLACED_METHODS[value]}, which follows disordered packings too")
+    return value
+
+
+Method = Annotated[Literal["auto", "dynamics", "path", "minimise"], BeforeValidator(_check_method)]
 Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
@@ -44,13 +56,17 @@ class Preparation(Description):
 class Protocol(Description):
     """How equilibrium is reached. Sec. III of the paper, with its values as defaults."""
 
+    replaced: ClassVar[Mapping[str, str]] = {
+        "path_tolerance": "is gone, must be left out: a path is exact from one contact event to the next",
+        "inertia": "is gone, must be left out: it was for method stages, now path",
+        "stage_damping": "is gone, must be left out: it was for method stages, now path",
+    }
+
     method: Method = Field(
         default="auto",
         description="auto: the cheapest method that is valid for the scene; dynamics: equations of motion "
-        "until rest, as in the paper; path: a sequence of equilibria under a slowly growing "
-        "load; stages: from each load factor to the next by plain static increments, and by dynamics over ramp_time "
-        "where these fail, which is cheaper than a path in disordered packings with friction; "
-        "minimise: the nearest minimum of the energy, for scenes without friction, where stages minimise too.",
+        "until rest, as in the paper; path: equilibria under a slowly growing load, "
+        "from one contact event to the next; minimise: the nearest minimum of the energy, for scenes without friction.",
     )
     load_factors: LoadFactors = Field(
         default=(1.0,),
@@ -63,24 +79,6 @@ class Protocol(Description):
         description="Integrator of the equations of motion: Beeman, velocity Verlet, leapfrog (Verlet whose dashpots "
         "see the velocity half a step earlier, stable for twice the step), or the Gear predictor-corrector with five "
         "values.",
-    )
-    inertia: Literal["disks", "rings"] = Field(
-        default="disks",
-        description="Inertia in the dynamics of stages, which only tends to the quasi-static limit. disks: that of the "
-        "disks; rings: mean mass, and moment of inertia of a ring of the disk's radius, for every disk, while weights "
-        "stay as they are. Turning limits the time step less then, and the step grows with the limit.",
-    )
-    stage_damping: Part = Field(
-        default=1.0,
-        description="Part of all dashpots that is left in the dynamics of stages, which only tends to the quasi-static "
-        "limit. The time step grows with its limit: with a quarter of the dashpots it is more than twice as long. "
-        "Swings last longer, so small loads ask for longer ramps.",
-    )
-    path_tolerance: Positive | None = Field(
-        default=None,
-        description="Error of a floor or wall force, as a part of the load, that the increments of a path may leave by "
-        "their own estimate. Their lengths follow from it, and with 1e-5 there are fewer. With a loose one dynamics "
-        "takes the rest of the way where that costs less. Left out, they are short throughout.",
     )
     time_step: TimeStep | None = Field(
         default=None,
@@ -119,3 +117,18 @@ class Protocol(Description):
         default=5_000_000,
         description="Most time steps that one stage, gravity or load, may take to reach rest.",
     )
+
+
+def without_replaced(scene: Any) -> Any:
+    """The data of a scene as versions before wrote it, without the keys and methods of its protocol that are gone.
+
+    They said how equilibrium was to be reached, not what was simulated, so that a stored result is read without them.
+    """
+    protocol = scene.get("protocol") if isinstance(scene, Mapping) else None
+    if not isinstance(protocol, Mapping):
+        return scene
+    kept = {key: value for key, value in protocol.items() if key not in Protocol.replaced}
+    method = kept.get("method")
+    if isinstance(method, str):
+        kept["method"] = REPLACED_METHODS.get(method, method)
+    return {**scene, "protocol": kept}

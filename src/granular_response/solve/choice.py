@@ -14,7 +14,7 @@ from .problem import Problem
 class Choice:
     """A method for one stage and the reason for it."""
 
-    method: str  #: dynamics, minimise, path or stages
+    method: str  #: dynamics, minimise or path
     reason: str
 
 
@@ -46,8 +46,7 @@ def rest_method(problem: Problem) -> Choice:
     asked = problem.scene.protocol.method
     if asked == "minimise" and problem.rotations:
         raise SceneError(
-            "protocol.method = minimise: must be path, stages, dynamics or auto in a scene with friction "
-            "(contact or wall)"
+            "protocol.method = minimise: must be path, dynamics or auto in a scene with friction (contact or wall)"
         )
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
@@ -70,19 +69,17 @@ def load_method(problem: Problem) -> Choice:
     Raises
     ------
     SceneError
-        When ``path`` or ``stages`` is asked for a scene with a friction law that statics does not have.
+        When ``path`` is asked for a scene with a friction law that statics does not have.
     """
     asked = problem.scene.protocol.method
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
     if _of_motion(problem):
-        if asked in ("path", "stages"):
-            raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {_why(problem)}")
+        if asked == "path":
+            raise SceneError(f"protocol.method = path: must be dynamics or auto, {_why(problem)}")
         return Choice("dynamics", _why(problem))
     if asked == "path":
         return Choice("path", "protocol.method is path")
-    if problem.rotations and asked == "stages":
-        return Choice("stages", "protocol.method is stages")
     if problem.rotations:
         return Choice("path", "friction: a path of equilibria through every load between")
     return Choice("minimise", "no friction: equilibrium is a minimum of the energy")
@@ -116,9 +113,6 @@ def idle_settings(problem: Problem) -> list[str]:
         "preparation.gravity": rest.reason if slow and not falls else "",
         "preparation.ramp_time": "" if slow and falls else rest.reason if slow else "preparation.gravity is not slow",
         "protocol.load_factors": "" if scene.loads else load.reason,
-        "protocol.inertia": "" if load.method == "stages" else load.reason,
-        "protocol.stage_damping": "" if load.method == "stages" else load.reason,
-        "protocol.path_tolerance": "" if load.method == "path" else load.reason,
         "protocol.friction_law": "" if problem.rotations else "no friction",
         "protocol.stop_kinetic_energy": ""
         if hand_over == protocol.stop_kinetic_energy

@@ -296,9 +296,11 @@ class Dynamics:
         held[part[problem.held.disk[problem.held.axis == 1]]] = True
         if held.all():
             return False
-        force = -self._now(self.gravity) * problem.weight
+        weight = self._now(self.gravity) * problem.weight
+        force = -weight
         np.add.at(force, problem.load_disk, self._now(self.load) * problem.load[:, 1])
-        return bool((np.abs(np.bincount(part, force, parts)[~held]) > BALANCED).any())
+        borne = np.bincount(part, weight, parts)
+        return bool((np.abs(np.bincount(part, force, parts)) > BALANCED * borne)[~held].any())
 
     def lifted_disk(self) -> int | None:
         """A disk that its load has torn off the packing and carries up for good; None without one."""

@@ -17,6 +17,7 @@ from .equilibrium import TOLERANCE, EquilibriumError, Rearranged, attainable, ce
 from .line_search import shortened
 from .problem import Problem
 from .relaxation import relaxed
+from .stability import negative_modes, unstable_direction
 from .system import REGULARISATION, StaticSystem, Trial
 
 #: Most iterations of one minimisation.
@@ -111,7 +112,7 @@ class _Descent:
         settled = self._settled()
         if (settled or self.iterations % LOOK_EVERY == LOOK_EVERY - 1) and self.system.meets_unlisted(self.q):
             raise Rearranged("the packing rearranges on its way to a minimum of the energy; use method dynamics")
-        return settled and self.system.negative_modes(self.trial) == 0
+        return settled and negative_modes(self.system, self.trial) == 0
 
     def go_on(self) -> None:
         """One iteration: away from a saddle, or a damped step, or more damping where a step would be no good."""
@@ -149,7 +150,7 @@ class _Descent:
         if self._large:
             self._go_down_from_saddle()
         else:
-            q = self.q + 1e-4 * self.system.unstable_direction(self.trial)
+            q = self.q + 1e-4 * unstable_direction(self.system, self.trial)
             self._move(q, self.system.trial(self.known, q))
             self.damping = 1e-4 * self.stiffness
 
@@ -203,7 +204,7 @@ class _Descent:
 
 def _down_from_saddle(system: StaticSystem, known, external, q, trial: Trial) -> tuple[FloatArray, Trial]:
     """Go from near a saddle along its unstable direction, in doubled lengths as long as energy falls."""
-    direction = system.unstable_direction(trial, rough=True)
+    direction = unstable_direction(system, trial, rough=True)
     best = (q, trial)
     for sense in (1.0, -1.0):
         length = SHORTEST_ESCAPE / system.problem.stiffness * sense

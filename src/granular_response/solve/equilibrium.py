@@ -12,9 +12,8 @@ import numpy as np
 
 from ..errors import SolveError
 from ..state import OPEN, Certificate, FloatArray, State
-from .line_search import shortened
-from .linear import Factor
 from .problem import Problem
+from .stability import negative_modes
 from .system import Configuration, StaticSystem, Trial
 
 #: Largest force or torque left on any disk, in units of a mean disk weight.
@@ -29,6 +28,8 @@ NEWTON_ITERATIONS = 30
 FLAT = 0.1
 #: A step moves no disk farther than this (mean radii).
 LONGEST_STEP = 0.05
+#: Nor does the static finish of a motion: what is that far away is another equilibrium than the one it was ending in.
+FARTHEST = 0.1
 
 
 class EquilibriumError(SolveError, RuntimeError):
@@ -70,16 +71,13 @@ def newton(
     tolerance: float = TOLERANCE,
     enough: float = ENOUGH,
     maximum_iterations: int = NEWTON_ITERATIONS,
-    runaway: float = np.inf,
 ) -> tuple[Trial, NewtonReport]:
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
     Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
     for a moment). A factorisation serves as long as no contact changes its status and the residual falls
-    tenfold with it. Where contacts go to and fro between two states (they touch with so little force that they slide
-    one way, then the other), a system that brings its factorisation up to date stops between the two.
-    The end is a residual below ``enough``, or below ``tolerance`` where it falls no further, or a step that would move
-    or turn a disk by more than ``runaway`` (mean radii, radians).
+    tenfold with it.
+    The end is a residual below ``enough``, or below ``tolerance`` where it falls no further.
     Returns the last trial and a report; ``report.converged`` says whether it is a solution,
     ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
     """
@@ -91,22 +89,12 @@ def newton(
     best = size
     stalled = iterations = 0
     slow = False
-    sense = trial.sense
-    before = sense  # the statuses of two trials ago
     while True:
         if size < enough or (size < tolerance and stalled):
             return trial, NewtonReport(True, iterations, size)
-        factor: Factor | None
         try:
-            if system.updated:
-                if iterations == maximum_iterations:
-                    break
-                factor, made = system.updated_factor(trial, anew=slow)
-                iterations += made
-                reused = not made
-            else:
-                factor = None if slow else system.kept_factor(trial)
-                reused = factor is not None
+            factor = None if slow else system.kept_factor(trial)
+            reused = factor is not None
             if factor is not None:
                 step = system.deinterleave(factor.solve(system.interleave(r)))
             else:
@@ -118,8 +106,6 @@ def newton(
             break
         if not np.isfinite(step).all():
             break
-        if float(np.abs(step).max()) > runaway:
-            break
         length = float(np.abs(step[: 2 * n]).max())
         scale = min(1.0, LONGEST_STEP / length) if length > 0 else 1.0
         for _ in range(6):
@@ -129,17 +115,9 @@ def newton(
             if size_new < 10.0 * size or size_new < tolerance:
                 break
             scale *= 0.5
-        if system.updated:
-            there_and_back = np.array_equal(new.sense, before) and not np.array_equal(new.sense, sense)
-            if there_and_back and scale == 1.0 and (slope := float(r @ step)) > 0.0:
-                step, new = shortened(system, known, external, q, step, slope, full=new, until=FLAT)
-                r_new = new.contact_force + external
-                size_new = float(np.abs(r_new).max())
-            before, sense = sense, new.sense
         slow = reused and size_new > 0.1 * size
         if slow and size_new > size:
-            sense = before = trial.sense  # this step is not taken
-            continue
+            continue  # this step is not taken
         q, trial, r, size = q + scale * step, new, r_new, size_new
         stalled = stalled + 1 if size > 0.5 * best else 0
         best = min(best, size)
@@ -196,6 +174,13 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         ]
     )
     closed = np.concatenate([state.pairs.status, state.walls.status]) != OPEN
+    bears = problem.weight.copy()
+    for disks, forces in (
+        (state.pairs.first, state.pairs.normal_force),
+        (state.pairs.second, state.pairs.normal_force),
+        (state.walls.first, state.walls.normal_force),
+    ):
+        np.maximum.at(bears, disks, forces)
     energy = 0.5 * (problem.weight * (state.velocity**2).sum(axis=1)).sum()
     energy += 0.5 * (problem.packing.inertia * state.angular_velocity**2).sum()
     return Certificate(
@@ -206,6 +191,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         kinetic_energy=float(energy) / n,
         negative_modes=modes,
         loose_disks=int((state.contact_count() < 2).sum()),
+        unbalanced_part=float((np.abs(force).max(axis=1) / bears).max()),
     )
 
 
@@ -251,7 +237,8 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_I
     Raises
     ------
     EquilibriumError
-        When the state is too far from rest for Newton's method: relax it further first.
+        When the state is too far from rest for Newton's method, or what that finds is far away or no equilibrium of
+        each disk: relax it further first.
     """
     factor = state.load_factor
     system = StaticSystem(problem, state)
@@ -263,6 +250,17 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_I
             f"(largest unbalanced force {report.residual:.1e}); {_cure(problem)}"
         )
     solved = system.state(trial, factor)
-    certificate = certify(problem, solved, modes=system.negative_modes(trial))
-    reached = replace(state.reached, newton_iterations=report.iterations, certificate=certificate)
+    moved = float(np.hypot(*(solved.position - state.position).T).max())
+    if moved > FARTHEST or system.meets_unlisted(trial.configuration.q):
+        raise EquilibriumError(
+            f"the equilibrium that Newton's method finds is {moved:.2g} mean radii away; {_cure(problem)}"
+        )
+    certificate = certify(problem, solved, modes=negative_modes(system, trial))
+    if not certificate.balanced:
+        raise EquilibriumError(
+            f"a disk is out of balance by {certificate.unbalanced_part:.1g} of what it bears; {_cure(problem)}"
+        )
+    reached = replace(
+        state.reached, newton_iterations=report.iterations, certificate=certificate, finish_displacement=moved
+    )
     return replace(solved, reached=reached)

@@ -12,12 +12,11 @@ point on the limits is the one of Panagiotopoulos for contact with friction.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from ..state import FloatArray
-from .equilibrium import ENOUGH, FLAT, LONGEST_STEP, newton
+from .equilibrium import FLAT, LONGEST_STEP, newton
 from .line_search import shortened
 from .system import Configuration, StaticSystem, Trial
 
@@ -29,28 +28,12 @@ ROUNDS, FIRST_TRY = 24, 2
 SETTLED_BY, SLOW = 6, 0.05
 #: Levenberg shift of the minimisation, in units of the normal stiffness.
 SHIFT = 1e-7
-#: Unbalanced force (mean disk weights) up to which a state is left that is only passed: the next increment takes it up.
-PASSED = 1e-8
 #: Residual at which a minimisation with fixed limits ends; they change anyway.
 ROUGH = 1e-7
 #: Residual below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
 STILL, STALLED = 1e-5, 3
-
-
-@dataclass(frozen=True)
-class Patience:
-    """When an increment fails."""
-
-    factorisations: int  #: of all minimisations with fixed limits together
-    steps: int  #: of one of them
-    runaway: float  #: step of Newton's method (mean radii, radians) that the tangent of nearly a mechanism asks for
-
-
-#: Where a shorter increment is cheaper: those that succeeded took 67 factorisations at most, minimisations of any use
-#: end before, and after such a step next to nothing converges (docs/physics.md has the counts).
-HASTY = Patience(75, 25, 50.0)
-#: Where no shorter one is left, before dynamics has to take over.
-PATIENT = Patience(150, 150, np.inf)
+#: Factorisations after which an increment, or one minimisation, is given up.
+MOST = 60
 
 
 @dataclass
@@ -68,45 +51,37 @@ def solve_increment(
     external: FloatArray,
     guess: FloatArray,
     work: Work,
-    *,
-    passing: bool = False,
-    stubborn: bool = True,
-    patience: Patience = PATIENT,
 ) -> Trial | None:
     """Equilibrium under ``external``, one increment after ``known``; None where none is found.
 
-    ``guess`` (dof,) is a prediction of the displacements. ``passing`` : whether the state is only passed on the way, so
-    that an unbalanced force of ``PASSED`` will do. ``stubborn`` : whether limits are held fixed where Newton's method
-    fails, which costs more than a shorter increment. ``patience`` : when they are given up.
+    ``guess`` (dof,) is a prediction of the displacements.
     """
-    enough = PASSED if passing else ENOUGH
-    solve = partial(newton, system, known, external, enough=enough, runaway=patience.runaway)
-    trial, report = solve(guess, maximum_iterations=DIRECT_ITERATIONS)
+    trial, report = newton(system, known, external, guess, maximum_iterations=DIRECT_ITERATIONS)
     work.factorisations += report.iterations
     if report.converged:
         work.increments += 1
         return trial
-    pair_mu, wall_mu = system.problem.pair_law.friction, system.problem.wall_law.friction
-    if not system.problem.rotations or not stubborn:
+    if not system.problem.rotations:
         return None
-    here = system.trial(known, known.q)
-    limits = (pair_mu * here.pair_normal, wall_mu * here.wall_normal)
+    pair_mu, wall_mu = system.problem.pair_law.friction, system.problem.wall_law.friction
+    friction = np.repeat([pair_mu, wall_mu], [len(system.first), len(system.wall_disk)])
+    limits = friction * system.trial(known, known.q).normal
     q = system.held_as_in(guess, known.q)
     before_rounds = work.factorisations
     for done in range(1, ROUNDS + 1):
-        if work.factorisations - before_rounds > patience.factorisations:
+        if work.factorisations - before_rounds > MOST:
             return None
         work.rounds += 1
-        held = minimise_with_limits(system, known, external, q, limits, work, patience.steps)
+        held = minimise_with_limits(system, known, external, q, limits, work)
         if held is None:
             return None
         q = held.configuration.q
-        before, limits = limits, (pair_mu * held.pair_normal, wall_mu * held.wall_normal)
-        change = max(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(before, limits, strict=True))
+        before, limits = limits, friction * held.normal
+        change = float(np.abs(limits - before).max(initial=0.0))
         if done >= SETTLED_BY and change > SLOW:
             return None
         if done > FIRST_TRY:
-            true, report = solve(q, maximum_iterations=DIRECT_ITERATIONS - 2)
+            true, report = newton(system, known, external, q, maximum_iterations=DIRECT_ITERATIONS)
             work.factorisations += report.iterations
             if report.converged:
                 work.increments += 1
@@ -119,17 +94,15 @@ def minimise_with_limits(
     known: Configuration,
     external: FloatArray,
     start: FloatArray,
-    limits: tuple[FloatArray, FloatArray],
+    limits: FloatArray,
     work: Work,
-    most_steps: int,
 ) -> Trial | None:
     """The minimum of an increment's energy with fixed Coulomb limits, as near as steps come; None where they go on."""
     q = start
-    trial = system.trial(known, q, limits)
+    trial = system.trial(known, q, limits=limits)
     shift = SHIFT * system.problem.stiffness
     best, stalled = np.inf, 0
-    made, before = True, np.inf
-    for left in range(most_steps, -1, -1):
+    for left in range(MOST, -1, -1):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
         stalled = stalled + 1 if size > 0.5 * best else 0
@@ -139,12 +112,11 @@ def minimise_with_limits(
         if left == 0:
             break
         try:
-            step, made = system.limited_step(trial, r, shift, anew=not made and size > 0.1 * before)
+            step = system.step(trial, r, shift)
         except RuntimeError:  # exactly singular
-            work.factorisations += 1
             return trial
-        work.factorisations += made
-        before = size
+        finally:
+            work.factorisations += 1
         length = float(np.abs(step).max())
         if not np.isfinite(length):
             return trial

@@ -17,7 +17,7 @@ def shortened(
     step: FloatArray,
     slope: float,
     *,
-    limits: tuple[FloatArray, FloatArray] | None = None,
+    limits: FloatArray | None = None,
     full: Trial | None = None,
     until: float,
     beyond: float = 0.0,
@@ -32,7 +32,7 @@ def shortened(
     until : part of ``slope`` to which the force along the step must have fallen.
     beyond : part of ``slope`` with which the full step may lead uphill again.
     """
-    trial = system.trial(known, q + step, limits) if full is None else full
+    trial = system.trial(known, q + step, limits=limits) if full is None else full
     low, at_low = 0.0, slope
     high, at_high = 1.0, float((trial.contact_force + external) @ step)
     if at_high >= -beyond * slope:
@@ -42,7 +42,7 @@ def shortened(
         secant = low + (high - low) * at_low / (at_low - at_high)
         part = secant if k % 2 == 0 else 0.5 * (low + high)
         part = min(max(part, low + MARGIN * (high - low)), high - MARGIN * (high - low))
-        trial = system.trial(known, q + part * step, limits)
+        trial = system.trial(known, q + part * step, limits=limits)
         here = float((trial.contact_force + external) @ step)
         if abs(here) < until * slope:
             break

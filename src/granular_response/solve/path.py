@@ -1,122 +1,128 @@
-"""Quasi-static loading: a sequence of equilibria under a growing or falling load (the limit of infinitely slow ramps).
+"""Quasi-static loading: from one contact event to the next (the limit of infinitely slow ramps).
 
-Each increment is solved with the return map of ``kernels.statics`` (see :mod:`.increment`). Where a contact goes on
-opening, sliding or sticking throughout an increment the return map is exact for any length of the increment. With a
-tolerance, increments grow as long as their errors (see :mod:`.increment_error`) stay within it.
-Where no equilibrium is found on the shortest increment, or the equilibrium has lost its stability, the branch has
-ended: explicit dynamics carries the packing to the next equilibrium and statics goes on from there. So it does where
-an increment, or a stretch of load, has cost more factorisations than the limits below. With a loose tolerance it takes
-all that is left of the way where that costs less than increments like the last ones: the error of a linear ramp falls
-as one over its duration, so the tolerance says how long it must be. Every such crossing is recorded with its load and
-its reason.
+Between two events no contact changes its status, so the equations of equilibrium are smooth and their solution under
+any increment of the load is exact. The path goes (Oron and Herrmann, Phys. Rev. E 58, 2079, 1998, do the same for
+frictionless arrays):
 
-Stability is looked at about once per mean disk weight of load; with a tolerance less often, and only if any contact
-has changed since. With sliding contacts a negative eigenvalue of the tangent is only a suspicion (the tangent belongs
-to one direction of sliding), so it is tried: dynamics starts from the state displaced a little along the suspicious
-direction, and either comes back or leaves.
+1. :class:`.rates.RateProblem` gives the statuses with which the equilibrium goes on, and the rates of displacements;
+2. the load at which the next contact changes follows from the rates; Newton's method with the statuses as they are
+   finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``;
+3. contacts that are at their change change, a mirror pair together, and so on from 1.
+
+Where no statuses are found for the rates the equilibrium under a slightly larger load is looked for with the limits of
+friction held fixed (:func:`.increment.solve_increment`): mostly the path goes on. An equilibrium is lost where there is
+none nearby (a snap-through), or where the tangent has an unstable direction along which the contacts that slide go on
+sliding (divergence; at a bifurcation of a symmetric branch). The motion of the disks then leads to the next one
+(:mod:`.settle`). Both are events of the result.
+
+In packings too large for a banded factorisation events are taken together within an increment of the load; what that
+leaves out is measured by a path in increments of twice the length.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
 from ..errors import SolveError
-from ..state import Crossing, FloatArray, Reached, State
-from .dynamics import Dynamics, DynamicsError, Stop, relax
-from .equilibrium import certify, external_force
-from .increment import HASTY, PATIENT, Work, solve_increment
-from .increment_error import Place, error_of_two
+from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
+from .dynamics import Dynamics, Stop
+from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
+from .increment import Work, solve_increment
 from .problem import Problem
-from .settle import CROSSING as CROSSING_OVER
-from .settle import CROSSING_STOP, STAGE, STAGE_STOP, HandOver, NotSettled, nudged, settle
+from .rates import Changes, RateProblem, Rates, changed
+from .settle import CROSSING, CROSSING_STOP, NotSettled, nudged, settle
+from .stability import divergence, negative_modes
 from .system import Configuration, StaticSystem, Trial
-from .timestep import stability_limit
 
-#: First load increment in mean disk weights, or as a part of a load below that, times the square root of the number of
-#: disks: the deeper a packing, the more load it takes to change as many contacts. But under the load they change at the
-#: same one however deep it is.
-FIRST_STEP, LONGEST_FIRST = 0.0033, 1.6
-#: First increment of a large load, as a part of it.
-LARGE_LOAD = 0.005
-#: Longest increment as a part of the first for the tolerance, and shortest as a part of the first for none.
-LONGEST, SHORTEST = 5.0, 0.25
-#: Tolerance for which first increments are short enough without a look at their error, if they are such a part of the
-#: load between two states that are kept: where that is less, one contact makes more of it.
-TRUSTED_FOR, TRUSTED_PART = 1e-5, 0.006
-#: Factorisations that an easy increment takes at most.
-EASY = 3
-#: By which an increment is longer than easy ones before, and shorter than one that needed fixed limits; and so many
-#: increments in turn must need none before one is longer than the first.
-GROWTH, SHRINK, CALM = 1.4, 0.9, 5
-#: Load that dynamics crosses at first, in mean disk weights; doubled while statics does not go on after it.
-CROSSING = 0.1
-#: Load between two looks at the stability, without a tolerance and with that of first increments; with a looser one it
-#: is longer in proportion, up to the last.
-STABILITY_STEP, WITH_TOLERANCE, FARTHEST = 1.0, 3.0, 10.0
-#: Factorisations that statics may spend on ``STABILITY_STEP`` of load; after that dynamics is the cheaper way.
-MOST_WORK = 1000
-#: Ramp by which dynamics takes all that is left of the way within a tolerance: this many crossing times of a
-#: compression wave, over the tolerance, for the whole way; and at least so many (docs/physics.md has the errors).
-RAMP, SHORTEST_RAMP = 0.3, 4.0
-#: Dashpots of that ramp over critical ones, if the scene has more; its disks move like rings. In the limit that it
-#: approaches neither matters, and the step is four times as long.
-RAMP_DAMPING = 0.125
-#: Time steps that cost as much as a factorisation with all that an increment does beside it, for slabs of any size.
-STEPS_AS_DEAR = 100
-#: Tightest tolerance for that: a ramp may leave a symmetric branch for another one, some hundredths of the load away.
-LOOSE = 1e-3
-#: Fewest disks for that: in smaller packings increments cost next to nothing, and single disks swing more slowly than a
-#: wave crosses.
-MANY = 200
-#: Times its ramp in which it must settle.
-SETTLES_WITHIN = 10.0
-#: Part of what dynamics would cost that statics has to show what it costs itself.
-SAMPLE = 0.1
-#: Weight of earlier increments, from one to the next, in what the last ones have cost.
-FADING = 0.8
-#: Unbalanced force (mean disk weights), beside so many units of rounding of an overlap, up to which a start is at rest.
-BALANCED, ROUNDING = 1e-8, 16.0
-#: Displacement after which candidate contacts are listed again (mean radii), below half of the largest gap listed.
-LISTED_AGAIN = 0.25
-#: Displacement after which an equilibrium that was displaced a little counts as left.
-LEFT = 2e-5
-#: Least time of such a trial, in sqrt(R/g): it starts at rest, so that nothing moves at first on any slope.
-TRIAL_TIME = 20.0
-#: Its integrator and part of the longest stable step: nothing is asked but whether the packing leaves; and those of
-#: dynamics that takes the rest of the way.
-TRIAL_INTEGRATOR, TRIAL_STEP = "leapfrog", 0.9
+
+@dataclass(frozen=True)
+class PathOptions:
+    """Numbers that a path goes by. Forces and loads in mean weights, lengths in mean radii."""
+
+    #: Force by which a contact may be away from its event when it changes its status: what a path of a thousand events
+    #: leaves of them is 1e-8 of a load of some weights.
+    event: float = 1e-9
+    #: Rate of a contact force, per load, below which the contact has no part in the load: rattlers, whose contacts open
+    #: and close at the rounding of a force, make no events.
+    negligible: float = 1e-9
+    #: Newton steps with one factorisation, and part of the residual that a step may leave; two or three are usual.
+    same_tangent: int = 6
+    slow: float = 0.3
+    #: Unbalanced force that is left at an event: the next increment takes it up.
+    passing: float = 1e-10
+    #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
+    newton: int = 40
+    #: Times that an increment is shortened to an event that came before the one expected.
+    landings: int = 12
+    #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
+    still: int = 30
+    #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
+    #: for the rates. In lattices the path mostly goes on there, only with other statuses.
+    beyond: float = 1e-4
+    #: Times by which disks may be faster than before there, or the equilibrium before was lost.
+    faster: float = 10.0
+    #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
+    nearby: float = 1e-3
+    #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
+    jump: float = 0.01
+    #: Displacement after which candidates are listed again, below half of the largest gap listed.
+    listed_again: float = 0.25
+    #: Increment of a large packing that takes events together: this times the square root of the number of disks, since
+    #: a deeper packing takes more load to change as many contacts; and at most ``longest``.
+    together: float = 0.0066
+    longest: float = 3.2
+
+
+#: As measured in docs/benchmarks.md.
+OPTIONS = PathOptions()
 
 
 class PathError(SolveError, RuntimeError):
     """The load path could not be continued."""
 
 
+class Collapsed(SolveError, RuntimeError):
+    """The load has pushed its disk down farther than allowed, to ``height``."""
+
+    def __init__(self, load: float, height: float) -> None:
+        super().__init__(f"the loaded disk sinks to height {height:.3g} on the way to load {load:g}")
+        self.height = height
+
+
 @dataclass
 class PathRecord:
-    """What happened on a load path."""
+    """What a load path has cost, and its events so far."""
 
     work: Work = field(default_factory=Work)
-    crossings: list[Crossing] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
     stability_checks: int = 0
-    stability_trials: int = 0
-    comparisons: int = 0  #: of two increments with a single one
+
+
+@dataclass(frozen=True)
+class Point:
+    """An equilibrium on a path."""
+
+    factor: float
+    trial: Trial
+    sense: np.ndarray  #: (m + w,) signed statuses of the increment that ends here
+    due: np.ndarray  #: (m + w,) those with which the rate problem begins
+
+    @property
+    def known(self) -> Configuration:
+        return self.trial.configuration
 
 
 def follow(
     problem: Problem,
-    rest: State,
+    start: State,
     factors: Sequence[float],
     *,
-    integrator: str = "beeman",
-    time_step: float | None = None,
-    longest_step: float | None = None,
-    tolerance: float | None = None,
-    crossing_ramp: float = 20.0,
-    maximum_steps: int = 2_000_000,
+    together: float | None = None,
+    lowest: float = -np.inf,
+    options: PathOptions = OPTIONS,
     progress: Callable[[float], None] | None = None,
     record: PathRecord | None = None,
 ) -> list[State]:
@@ -125,438 +131,354 @@ def follow(
     Parameters
     ----------
     problem : with its loads chosen.
-    rest : certified state at load factor ``rest.load_factor``; a path may start from any of the states it returned,
-        also from a file, and then goes on to the last bit as if it had not been cut.
+    start : certified state; a path may start from any of the states it returned, also from a file, and then goes on to
+        the last bit as if it had not been cut.
     factors : multipliers of the loads, in turn.
-    time_step : where dynamics takes over, in sqrt(R/g); that of the protocol if not given, looked at only when needed.
-    longest_step : bound on an increment, in mean disk weights, in place of increments by their error.
-    tolerance : error of a floor or wall force that increments may leave, per load; that of the protocol if not given.
-        Increments are short throughout where neither says one.
-    crossing_ramp : duration of the load ramp where dynamics takes over, in sqrt(R/g).
-    maximum_steps : most time steps in which dynamics must come to rest there.
+    together : load (mean weights) within which events are taken together, with the return map of whole increments;
+        by default none, but in large packings.
+    lowest : height below which the first loaded disk must not sink.
 
     Raises
     ------
+    Collapsed
+        When the first loaded disk sinks below ``lowest``.
     PathError
-        When dynamics does not settle either: the packing collapses or cycles under this load.
+        When the motion does not settle either: the packing collapses or cycles under this load.
     """
-    dynamics = _DynamicsOptions(integrator, time_step, crossing_ramp, maximum_steps)
-    if tolerance is None:
-        tolerance = problem.scene.protocol.path_tolerance
-    return _Path(problem, rest, factors, dynamics, longest_step, tolerance, progress, record).states()
-
-
-@dataclass(frozen=True)
-class _DynamicsOptions:
-    """How dynamics goes where it takes over."""
-
-    integrator: str
-    time_step: float | None
-    ramp: float
-    maximum_steps: int
-    over: HandOver = CROSSING_OVER
-    energy: float = CROSSING_STOP  #: kinetic energy per disk at which statics is tried first
-
-
-def _towards(here: float, target: float, step: float) -> float:
-    """A load factor one ``step`` nearer to ``target``, or the target."""
-    return min(here + step, target) if target > here else max(here - step, target)
+    path = _Path(problem, together, lowest, options, PathRecord() if record is None else record, progress)
+    states: list[State] = []
+    for factor in factors:
+        states.append(path.to(states[-1] if states else start, float(factor)))
+    return states
 
 
 class _Path:
-    """The present end of a load path."""
+    """One load path; nothing is remembered from one kept state to the next but what it has cost."""
 
-    def __init__(self, problem, rest, factors, dynamics: _DynamicsOptions, longest_step, tolerance, progress, record):
+    def __init__(self, problem, together, lowest, options, record, progress):
         self.problem: Problem = problem
-        self.record: PathRecord = PathRecord() if record is None else record
-        self.progress = progress
-        self.dynamics = dynamics
+        self.options: PathOptions = options
+        self.record: PathRecord = record
+        self.progress: Callable[[float], None] | None = progress
+        self.asked, self.lowest = together, lowest
         self.unit = problem.load_size
-        self.factors: Sequence[float] = factors
-        self.longest_step = longest_step
-        #: None where increments keep to the first length
-        self.tolerance: float | None = tolerance if longest_step is None else None
-        self.stretch = 1.0 if self.tolerance is None else LONGEST
-        #: whether errors are looked at: without friction increments of any length are exact
-        self.looks = self.tolerance is not None and problem.rotations
-        self.looseness = tolerance / TRUSTED_FOR if self.looks else np.inf
-        self.loose = self.looks and tolerance >= LOOSE
-        loose = 1.0 if self.tolerance is None else max(self.tolerance / TRUSTED_FOR, 1.0)
-        #: by which increments are longer than for the tolerance of first ones: their errors grow faster than they do
-        self.coarser = loose**0.5
-        #: load factor between two looks at the stability
-        apart = STABILITY_STEP if self.tolerance is None else min(WITH_TOLERANCE * loose, FARTHEST)
-        self.apart = apart / self.unit
-        self.factor = rest.load_factor
-        self.start_is_stable = rest.reached.certificate is not None and rest.reached.certificate.stable is True
-        self.middle: Place | None = None
-        #: a state ahead that is known, but was too far away for the tolerance
-        self.beyond: Place | None = None
-        self._restart(rest, factors[0] if len(factors) else rest.load_factor)
+        self.weight = external_force(problem, 0.0)
+        self.load = external_force(problem, 1.0) - self.weight
+        self.jump = options.jump / self.unit
 
-    def _restart(self, state: State, target: float) -> None:
-        """Go on to ``target`` from a state that is kept as from one read from a file: nothing else is remembered.
+    def to(self, start: State, target: float) -> State:
+        """The state at load factor ``target`` on the way from ``start``."""
+        self.begun = len(self.record.events)
+        self.target, self.direction = target, 1.0 if target >= start.load_factor else -1.0
+        self.jump = self.options.jump / self.unit
+        self.together = self.asked or None
+        point = self._at(start)
+        if self.asked is None and self.system.dissected:
+            self.together = min(self.options.together * self.problem.n**0.5, self.options.longest)
+        if self.together is None or point.factor == target:
+            return self._followed(point)
+        # what increments leave out, from those of twice the length
+        once, self.together = self.together, 2.0 * self.together
+        coarse = self._followed(point).wall_force()
+        del self.record.events[self.begun :]
+        self.together = once
+        state = self._followed(self._at(start))
+        off = np.abs(state.wall_force() - coarse).max(initial=0.0) if len(coarse) == len(state.wall_force()) else np.inf
+        error = float(off) / (self.unit * abs(target - start.load_factor))
+        return replace(state, reached=replace(state.reached, events_within=once, events_error=error))
 
-        So a path may be cut at any of its states and taken up again without a change to the last bit.
-        """
-        #: load factors of the last state that was kept and of the next one, and error of wall forces since
-        self.kept_at, self.target, self.spent = self.factor, target, 0.0
-        self.step = self.usual
-        #: increments in turn that Newton's method alone has found
-        self.calm = CALM
-        self.crossing = CROSSING / self.unit
-        #: load and work at which the work limit begins to count
-        self.mark = (self.factor, self.record.work.factorisations)
-        #: load factor that the last increments have gained and factorisations that they took, and work before them
-        self.gained, self.cost, self.begun = 0.0, 0.0, self.record.work.factorisations
-        #: whether dynamics may take the rest of the way, tried once; how long a ramp must be was measured for forces
-        self.may_leave = self.loose and self.problem.n >= MANY and not len(self.problem.held)
-        self._begin(state)
+    def _followed(self, point: Point) -> State:
+        """The certified state at the target, from a point on the way there."""
+        point = self._balanced(point)
+        while True:
+            still = 0  #: points in turn at one load
+            while point.factor != self.target:
+                before = point.factor
+                point = self._advance(point, still > self.options.still)
+                still = still + 1 if abs(point.factor - before) * self.unit < self.event else 0
+                self._look_down(point)
+                if self.progress is not None:
+                    self.progress(point.factor)
+            state = self._state(point)
+            if state.certificate.stable is not False:
+                return replace(state, reached=replace(state.reached, events=tuple(self.record.events[self.begun :])))
+            point = self._by_motion(point, "bifurcation", "unstable", None)
 
-    def _begin(self, state: State) -> None:
-        """Go on from a state, with nothing known of how displacements grow with the load."""
-        self.system = StaticSystem(self.problem, state, updated=self.tolerance is not None)
-        self.known: Configuration = self.system.start(state)
-        self.trial: Trial = self.system.trial(self.known, self.known.q)
-        self.rate: FloatArray | None = None
-        self.modes = 0
-        self._begin_pair()
-        #: the last state whose stability was looked at
-        self.stable_at = self.factor
-        self.stable_known, self.stable_trial = self.known, self.trial
+    def _external(self, factor: float) -> FloatArray:
+        """(dof,) gravity and loads; nothing on what is held."""
+        return self.weight + factor * self.load
 
-    def states(self) -> list[State]:
-        self._balance()
-        results: list[State] = []
-        for target in self.factors:
-            if results:
-                self._restart(results[-1], target)
-            elif target == self.factor and not self.start_is_stable:
-                self._look_at_stability()
-            left = abs(target - self.factor)
-            while self.factor != target:
-                self._advance(target)
-                if self.progress is not None and abs(target - self.factor) < left:  # not where it went back
-                    left = abs(target - self.factor)
-                    self.progress(self.factor)
-            results.append(self._state())
-        return results
+    def _at(self, state: State) -> Point:
+        """A point of a new system around the positions and candidates of a state."""
+        self.system = StaticSystem(self.problem, state)
+        trial = self.system.at(state)
+        force = max(self.options.event, 10.0 * attainable(self.system, trial.configuration.q))
+        self.rates = RateProblem(self.system, self.direction, force=force, negligible=self.options.negligible)
+        self.event = force
+        self.velocity: FloatArray | None = None
+        self.suspect = 0  #: negative pivots at the last stability check
+        return Point(state.load_factor, trial, trial.sense, trial.sense)
 
-    def _balance(self) -> None:
-        """A start that dynamics alone has left nearly at rest: go to the equilibrium beside it."""
-        external = external_force(self.problem, self.factor)
-        rounding = ROUNDING * float(np.finfo(float).eps) * self.problem.stiffness
-        if float(np.abs(self.trial.contact_force + external).max(initial=0.0)) < BALANCED + rounding:
-            return
-        found = solve_increment(self.system, self.known, external, self.known.q, self.record.work)
+    def _balanced(self, point: Point) -> Point:
+        """A start that dynamics alone has left nearly at rest: the equilibrium beside it."""
+        external = self._external(point.factor)
+        if float(np.abs(point.trial.contact_force + external).max(initial=0.0)) < 10.0 * self.event:
+            return point
+        found = solve_increment(self.system, point.known, external, point.known.q, self.record.work)
         if found is None:
             raise PathError(
-                f"no equilibrium beside the start at load factor {self.factor:g}: it is not at rest; "
+                f"no equilibrium beside the start at load factor {point.factor:g}: it is not at rest; "
                 "take a smaller protocol.stop_kinetic_energy, or protocol.static_finish: true"
             )
-        self.known, self.trial = found.configuration, found
-        self.stable_known, self.stable_trial = self.known, self.trial
-        self._begin_pair()
-        self._look_at_stability()
+        return Point(point.factor, found, found.sense, found.sense)
 
-    def _advance(self, target: float) -> None:
-        """One increment towards ``target``, by statics or across the end of a branch by dynamics."""
-        if self._worked_too_much():
-            self._cross(_towards(self.mark[0], target, STABILITY_STEP / self.unit), "too much work")
-            return
-        if self.may_leave and self._dynamics_is_cheaper(target):
-            self._leave_to_dynamics(target)
-            return
-        left, before, crossings = abs(target - self.factor), self.record.work.factorisations, len(self.record.crossings)
-        self._increase(target)
-        # less than nothing where it went back
-        gained = left - abs(target - self.factor) if len(self.record.crossings) == crossings else 0.0
-        fading = FADING if gained > 0.0 else 1.0
-        self.gained = fading * self.gained + gained
-        self.cost = fading * self.cost + self.record.work.factorisations - before
+    def _advance(self, point: Point, stuck: bool) -> Point:
+        """The next point: where a contact changes, the target, or beyond an equilibrium that is lost.
 
-    def _increase(self, target: float) -> None:
-        """One increment towards ``target`` by statics, and what its outcome asks for."""
-        new = self._next(target)
-        increment = abs(new - self.factor)
-        work = self.record.work
-        rounds, factorisations = work.rounds, work.factorisations
-        shorter = increment > 1.2 * self.shortest  # the last one before a target is up to 1.1 steps long
-        # rounds with fixed limits may take so many that dynamics would cost less
-        leaves = shorter and self.may_leave and self._dynamics_cost(target) < HASTY.factorisations
-        found = solve_increment(
-            self.system, self.known, external_force(self.problem, new), self._guess(new), work,
-            passing=new != target and self.tolerance is not None,
-            stubborn=self.tolerance is None or (increment < 1.2 * self.usual and not leaves),
-            patience=HASTY if shorter else PATIENT,
-        )  # fmt: skip
-        if found is None:
-            if shorter:
-                self.step = min(max(0.5 * increment, self.shortest), self.usual)
-                self.rate = None
-                self.calm = 0
-            else:
-                self._cross(_towards(self.factor, target, self.crossing), "no equilibrium")
-                self.crossing *= 2.0
-            return
-        self.crossing = max(0.5 * self.crossing, CROSSING / self.unit)
-        self.rate = (found.configuration.q - self.known.q) / (new - self.factor)
-        self.factor, self.known, self.trial = new, found.configuration, found
-        before = self.start if self.middle is None else self.middle
-        here = Place(new, found.configuration, found, before if self.looks else None)
-        if work.rounds > rounds:
-            self.growth, self.calm = SHRINK, 0
-        elif self.tolerance is not None and work.factorisations - factorisations > EASY:
-            self.growth = min(self.growth, 1.0)
-        if self.middle is not None:
-            if not self._keeps_tolerance(here, target):
-                return
-        elif new != target and increment > 1.2 * self.trusted:
-            self.middle = here
-            return
-        self._go_on(here)
-        if new == target and self.system.meets_unlisted(self.known.q):
-            self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
-            self._cross(target, "rearrangement")
-            return
-        far = new != target and np.abs(self.known.q[: 2 * self.problem.n]).max() > LISTED_AGAIN
-        if new == target or far or self._may_have_become_unstable():
-            self._look_at_stability()
-        if far and self.factor == new:
-            self._list_again(target)
-
-    def _list_again(self, target: float) -> None:
-        """Disks have moved so far that others may be near: list candidates anew, and go on from there."""
-        if self.system.meets_unlisted(self.known.q):
-            self._cross(_towards(self.factor, target, self.crossing), "rearrangement")
-            return
-        self._begin(self.problem.relisted(self.system.state(self.trial, self.factor)))
-
-    def _next(self, target: float) -> float:
-        """Load factor at the end of the next increment; an increment whose error must be known is not the last one."""
-        left = abs(target - self.factor)
-        if self.middle is None and self.trusted < self.step and 1.1 * self.trusted < left < 2.1 * self.step:
-            self.step = 0.5 * left
-        new = _towards(self.factor, target, self.step)
-        return target if abs(target - new) < 0.1 * self.step else new
-
-    def _guess(self, new: float) -> FloatArray:
-        """(dof,) displacements expected at load factor ``new``."""
-        if self.beyond is not None and self.beyond.factor == new:
-            return self.beyond.known.q
-        guess = self.known.q if self.rate is None else self.known.q + (new - self.factor) * self.rate
-        return self.system.displaced(guess, new)
-
-    def _keeps_tolerance(self, end: Place, target: float) -> bool:
-        """Whether the last two increments, up to ``end``, are as good as they must be; if not, back to their beginning.
-
-        Errors of all increments between two states that are kept add up to less than the tolerance times the load
-        between them; where one takes much of that, the next ones are no longer.
+        ``stuck`` : whether contacts have changed again and again at one load.
         """
-        start, middle = self.start, self.middle
-        assert middle is not None and self.tolerance is not None
-        error = error_of_two(self.system, start, middle, end, self.record.work)
-        self.record.comparisons += 1
-        share = self.tolerance * self.unit * abs(end.factor - start.factor)
-        first = abs(middle.factor - start.factor)
-        left = self.tolerance * self.unit * abs(target - self.kept_at) - self.spent
-        if error > left and first > 1.2 * self.trusted:
-            self.factor, self.known, self.trial = start.factor, start.known, start.trial
-            self.beyond, self.middle, self.growth = middle, None, 1.0
-            self.rate = (middle.known.q - start.known.q) / (middle.factor - start.factor)
-            self.step = max(0.5 * first, self.trusted)
-            return False
-        self.spent += min(error, max(left, 0.0))
-        if error > share:
-            self.growth = min(self.growth, 1.0)
-        return True
+        if self.together is not None:
+            return self._relisted(self._increment(point, self._towards(point.factor, self.together / self.unit)))
+        rates = None if stuck else self.rates.solve(point.trial, point.due)
+        if rates is None:
+            return self._relisted(self._lost(point, "no statuses of the contacts go on"))
+        self._record(point, rates.sense)
+        self.velocity = rates.velocity
+        direction = self._unstable(point, rates)
+        if direction is not None:
+            return self._by_motion(point, "bifurcation", "unstable", direction)
+        landed = self._landed(point, rates)
+        return self._relisted(self._lost(point, "no equilibrium with these statuses") if landed is None else landed)
 
-    def _go_on(self, here: Place) -> None:
-        """Go on from here, the end of an increment."""
-        self.calm += 1
-        self.step = min(self.step * self.growth, self.usual * (self.stretch if self.calm > CALM else 1.0))
-        if here.before is not None:
-            here.before.before = None  # no longer asked for
-        self._begin_pair(here)
+    def _look_down(self, point: Point) -> None:
+        """Raise where the first loaded disk has sunk too far."""
+        if self.lowest > -np.inf:
+            disk = int(self.problem.load_disk[0])
+            height = float(self.system.reference[disk, 1] + point.known.q[self.problem.n + disk])
+            if height < self.lowest:
+                raise Collapsed(point.factor, height)
 
-    def _begin_pair(self, here: Place | None = None) -> None:
-        """The error of the next two increments is that against a single one from here."""
-        self.start = Place(self.factor, self.known, self.trial) if here is None else here
-        self.middle = self.beyond = None
-        self.growth = GROWTH
+    def _towards(self, factor: float, step: float) -> float:
+        """A load factor one ``step`` on, or the target where that is no more than a tenth of a step away."""
+        return factor + self.direction * step if abs(self.target - factor) > 1.1 * step else self.target
 
-    @property
-    def least_first(self) -> float:
-        """Length of a first increment on the way to the next state that is kept, under small loads."""
-        if self.longest_step is not None:  # nothing is added to what the caller asks for
-            return self.longest_step / self.unit
-        load = self.unit * max(abs(self.kept_at), abs(self.target))
-        return min(FIRST_STEP * self.problem.n**0.5, LONGEST_FIRST) * min(load, 1.0) / self.unit
-
-    @property
-    def shortest(self) -> float:
-        """Length of the shortest."""
-        return SHORTEST * self.least_first
-
-    @property
-    def first(self) -> float:
-        """Length of a first increment here."""
-        part = LARGE_LOAD if self.longest_step is None else 0.0
-        return max(self.least_first, part * abs(self.factor))
-
-    @property
-    def usual(self) -> float:
-        """Length of a first increment here with the tolerance."""
-        return self.first * self.coarser
-
-    @property
-    def trusted(self) -> float:
-        """Length of increments whose error is not looked at."""
-        if not self.looks:
-            return np.inf
-        part = self.looseness * TRUSTED_PART * abs(self.target - self.kept_at)
-        return min(self.looseness * self.first, self.usual, part)
-
-    def _worked_too_much(self) -> bool:
-        """Whether the last stretch of load has cost more than it may."""
-        work = self.record.work.factorisations
-        if abs(self.factor - self.mark[0]) >= STABILITY_STEP / self.unit:
-            self.mark = (self.factor, work)
-        return work - self.mark[1] > MOST_WORK
-
-    @cached_property
-    def ramped(self) -> Problem:
-        """The packing as it moves where dynamics takes the rest of the way."""
-        ratio = self.problem.scene.contact.damping_ratio
-        return self.problem.moving(rings=True, dashpots=RAMP_DAMPING / max(ratio, RAMP_DAMPING))
-
-    @cached_property
-    def ramp_step(self) -> float:
-        """Time step there."""
-        return TRIAL_STEP * stability_limit(self.ramped, TRIAL_INTEGRATOR, smallest=True)
-
-    def _ramp(self, target: float) -> float:
-        """Duration of a ramp of dynamics to ``target`` for what is left of the tolerance, in sqrt(R/g)."""
-        assert self.tolerance is not None
-        left = self.tolerance * abs(target - self.kept_at) - self.spent / self.unit
-        if left <= 0.0:
-            return np.inf
-        return max(RAMP * abs(target - self.start.factor) / left, SHORTEST_RAMP) * self.problem.crossing_time
-
-    def _dynamics_cost(self, target: float) -> float:
-        """Factorisations as dear as dynamics to ``target`` within the tolerance; infinite beyond its steps."""
-        steps = (self._ramp(target) + STAGE.hold) / self.ramp_step
-        return steps / STEPS_AS_DEAR if steps <= self.dynamics.maximum_steps else np.inf
-
-    def _dynamics_is_cheaper(self, target: float) -> bool:
-        """Whether what is left of the way would cost less by dynamics, by what the last increments have cost."""
-        dynamics = self._dynamics_cost(target)
-        if self.record.work.factorisations - self.begun < SAMPLE * dynamics:
-            return False
-        return self.cost * abs(target - self.factor) > dynamics * max(self.gained, self.shortest)
-
-    def _leave_to_dynamics(self, target: float) -> None:
-        """Dynamics to ``target``, from the last state of known error; where it does not settle statics goes on."""
-        self.factor, self.known, self.trial = self.start.factor, self.start.known, self.start.trial
-        self.may_leave = False
-        here = self._state()
-        ramp = self._ramp(target)
-        most = min(self.dynamics.maximum_steps, round(SETTLES_WITHIN * (ramp + STAGE.hold) / self.ramp_step))
-        quick = _DynamicsOptions(TRIAL_INTEGRATOR, self.ramp_step, ramp, most, STAGE, STAGE_STOP)
-        try:
-            self._cross(target, "too much work", quick)
-        except (PathError, DynamicsError):
-            self.factor = here.load_factor
-            self._begin(self.problem.relisted(here))
-            self._look_at_stability()
-
-    def _may_have_become_unstable(self) -> bool:
-        """Whether enough has happened since the last look; without a change of any contact the tangent is the same."""
-        if abs(self.factor - self.stable_at) < self.apart:
-            return False
-        return self.tolerance is None or not np.array_equal(self.trial.sense, self.stable_trial.sense)
-
-    def _look_at_stability(self) -> None:
-        self.modes = self.system.negative_modes(self.trial)
-        self.record.stability_checks += 1
-        if self.modes and self._leaves():
-            self._go_back_and_cross()
-            return
-        self.modes = 0
-        self.stable_at, self.stable_known, self.stable_trial = self.factor, self.known, self.trial
-
-    def _leaves(self) -> bool:
-        """Whether the present equilibrium, slightly displaced, moves away for good.
-
-        With sliding contacts the tangent is that of one direction of sliding, so a state may leave in one sense alone.
-        """
-        state, direction = self._state(), self.system.unstable_direction(self.trial)
-        return self._leaves_towards(state, direction) or self._leaves_towards(state, -direction)
-
-    @cached_property
-    def quick_step(self) -> float:
-        """Time step of dynamics of which nothing is asked but whether it leaves."""
-        return TRIAL_STEP * stability_limit(self.problem, TRIAL_INTEGRATOR, smallest=True)
-
-    def _leaves_towards(self, state: State, direction: FloatArray) -> bool:
-        beside = nudged(self.problem, state, direction)
-        dynamics = Dynamics(self.problem, beside, TRIAL_INTEGRATOR, self.quick_step)
-        self.record.stability_trials += 1
-        stop = Stop(1e-11, maximum_steps=min(200_000, self.dynamics.maximum_steps), least_time=TRIAL_TIME)
-        settled = relax(dynamics, stop, load=(self.factor, self.factor, 0.0))
-        return bool(np.abs(settled.position - state.position).max() > LEFT)
-
-    def _go_back_and_cross(self) -> None:
-        """The branch lost its stability since the last look: narrow down where, then cross by dynamics."""
-        unstable = self.factor
-        self.factor, self.known, self.trial = self.stable_at, self.stable_known, self.stable_trial
-        self.rate = None
-        while abs(unstable - self.factor) > CROSSING / self.unit:
-            middle = 0.5 * (self.factor + unstable)
-            external = external_force(self.problem, middle)
-            guess = self.system.displaced(self.known.q, middle)
-            found = solve_increment(self.system, self.known, external, guess, self.record.work)
+    def _landed(self, point: Point, rates: Rates) -> Point | None:
+        """Where the next contact changes, or the target if that comes first."""
+        changes, left = rates.changes, abs(self.target - point.factor)
+        contact, length = changes.first()
+        what = int(changes.what[contact])
+        for _ in range(self.options.landings):
+            event = (contact, what) if length < left else None
+            found = self._smooth(point, rates, min(length, left), event)
             if found is None:
-                break
-            before = (self.factor, self.known, self.trial)
-            self.factor, self.known, self.trial = middle, found.configuration, found
-            if self.system.negative_modes(found) and self._leaves():
-                unstable = middle
-                self.factor, self.known, self.trial = before
-        self._cross(unstable, "unstable")
+                return None
+            factor, trial, then = found
+            passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.event))
+            if not len(passed):
+                self.record.work.increments += 1
+                self.jump = self.options.jump / self.unit
+                due = then.due(self.event)
+                # rates are those of the start: what they say of contacts that bear nothing is the turn on the way
+                due = due[(changes.rate[due] > 0.0) | (due == contact)]
+                return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
+            # another contact came first
+            back = -then.left[passed] / then.rate[passed]
+            contact = int(passed[np.argmax(back)])
+            what, length = int(then.what[contact]), max(abs(factor - point.factor) - float(back.max()), 0.0)
+        return None
 
-    def _cross(self, new: float, reason: str, ramp: _DynamicsOptions | None = None) -> None:
-        """Dynamics from the last equilibrium to one at load factor ``new``; ``ramp`` : over the rest of the way."""
-        problem, options = (self.problem, self.dynamics) if ramp is None else (self.ramped, ramp)
-        here = self._state()
-        start = self.factor
+    def _smooth(
+        self, point: Point, rates: Rates, length: float, event: tuple[int, int] | None
+    ) -> tuple[float, Trial, Changes] | None:
+        """Equilibrium with the statuses of ``rates`` a ``length`` of the load factor on, and what changes then.
 
-        def accept(found: State) -> bool:
-            self.factor = new
-            self._begin(found)
-            return found.certificate.stable is True or not self._leaves()
+        With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
+        it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
+        """
+        options, known = self.options, point.known
+        factor = self._towards(point.factor, length) if event is None else point.factor + self.direction * length
+        by, velocity, system = rates.factor, rates.velocity, self.system
+        q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
+        before, enough = np.inf, ENOUGH if event is None else options.passing
+        for done in range(options.newton):
+            trial = system.trial(known, q, fixed=rates.sense, tangent=False)
+            force = trial.contact_force + self._external(factor)
+            size = float(np.abs(force).max(initial=0.0))
+            left = 0.0 if event is None else self.rates.left(trial, *event)
+            if not np.isfinite(size):
+                return None
+            balanced = size <= enough or (size > 0.5 * before and size <= attainable(system, q))
+            if balanced and abs(left) <= 0.5 * self.event:
+                return factor, trial, self.rates.changes(trial, velocity, rates.sense)
+            if size > options.slow * before or done % options.same_tangent == options.same_tangent - 1:
+                try:
+                    by = system.renewed_factor(trial.configuration, rates.sense)
+                    velocity = self.rates.velocity(trial.configuration, rates.sense, by)
+                except RuntimeError:  # exactly singular
+                    return None
+            before = size
+            step = system.deinterleave(by.solve(system.interleave(force)))
+            longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))
+            if longest > LONGEST_STEP:  # a contact of the 3/2 law that has just closed has no stiffness yet
+                step *= LONGEST_STEP / longest
+            if event is not None:
+                rate = self.rates.fall(q, *event, velocity)
+                if rate <= 0.0:  # it does not come nearer: on with new rates from here
+                    event = None
+                else:
+                    further = (left - self.rates.fall(q, *event, step)) / rate
+                    factor += self.direction * further
+                    step += further * velocity
+            q = system.displaced(q + step, factor)
+        return None
 
-        stop = Stop(options.energy, maximum_steps=options.maximum_steps)
+    def _unstable(self, point: Point, rates: Rates) -> FloatArray | None:
+        """(dof,) direction in which the equilibrium diverges with these statuses, or None.
+
+        Looked for where the number of negative pivots of the tangent has changed: real eigenvalues pass zero there.
+        """
+        negative = rates.factor.negative_pivots
+        before, self.suspect = self.suspect, negative
+        if negative in (0, before):
+            return None
+        self.record.stability_checks += 1
+        trial = self.system.trial(point.known, point.known.q, fixed=rates.sense)
+        return divergence(self.system, trial)
+
+    def _relisted(self, point: Point) -> Point:
+        """Where disks have moved so far that others may be near: candidates listed anew."""
+        moved = np.abs(point.known.q[: 2 * self.problem.n]).max(initial=0.0)
+        if moved <= self.options.listed_again and point.factor != self.target:
+            return point
+        if self.system.meets_unlisted(point.known.q):
+            return self._by_motion(point, "jump", "disks meet that were not neighbours", None)
+        if moved <= self.options.listed_again:
+            return point
+        return self._at(self.problem.relisted(self.system.state(point.trial, point.factor)))
+
+    def _lost(self, point: Point, reason: str) -> Point:
+        """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
+        new = self._towards(point.factor, self.options.beyond / self.unit)
+        guess = self.system.displaced(point.known.q, new)
+        found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+        if found is not None:
+            n = 2 * self.problem.n
+            moved = found.configuration.q - point.known.q
+            far = float(np.abs(moved[:n]).max(initial=0.0))
+            if far <= self.options.nearby:
+                usual = 0.0 if self.velocity is None else float(np.abs(self.velocity[:n]).max(initial=0.0))
+                if far > self.options.faster * usual * abs(new - point.factor):
+                    self._record_lost("stepped over", point, new, moved, reason)
+                self._record(point, found.sense)
+                return Point(new, found, found.sense, found.sense)
+        return self._by_motion(point, "jump", reason, None)
+
+    def _by_motion(self, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
+        """The equilibrium that the disks move to from a lost one, displaced a little along ``direction``.
+
+        The load goes on growing as fast as the protocol says.
+        """
+        here = self._state(point)
+        start = here if direction is None else nudged(self.problem, here, direction)
+        new = self._towards(point.factor, self.jump)
+        found: list[Point] = []
+
+        def accept(state: State) -> bool:
+            found[:] = [self._at(state)]
+            return state.certificate.stable is True or divergence(self.system, found[0].trial) is None
+
+        protocol = self.problem.scene.protocol
+
+        def watch(dynamics: Dynamics) -> None:
+            if self.lowest > -np.inf and (height := dynamics.height(int(self.problem.load_disk[0]))) < self.lowest:
+                raise Collapsed(new, height)
+
         try:
             settled = settle(
-                problem, here, options.over, stop, what=f"load factor {new:g}", load=(start, new, options.ramp),
-                accept=accept, integrator=options.integrator, time_step=options.time_step,
+                self.problem, start, CROSSING, Stop(CROSSING_STOP, maximum_steps=protocol.maximum_steps),
+                what=f"load factor {new:g}", accept=accept,
+                load=(point.factor, new, protocol.ramp_time * abs(new - point.factor)),
+                watch=watch,
             )  # fmt: skip
         except NotSettled as error:
-            raise PathError(f"no equilibrium beyond load factor {start:g}: {error}") from error
-        moved = float(np.abs(settled.position - here.position).max())
-        self.record.crossings.append(Crossing(float(start), float(new), reason, moved))
-        self.mark = (new, self.record.work.factorisations)
-        self.step = self.usual
+            raise PathError(f"no equilibrium beyond load factor {point.factor:g}: {error}") from error
+        moved = (settled.position - here.position).T.ravel()
+        self._record_lost(kind, point, new, moved, reason)
+        self.jump *= 2.0
+        return replace(found[0], factor=new)
 
-    def _state(self) -> State:
-        state = self.system.state(self.trial, self.factor)
+    def _increment(self, point: Point, new: float) -> Point:
+        """One increment with the return map, whatever changes within it."""
+        found = self._increased(point, new)
+        if found is None:
+            return self._lost(point, "no equilibrium with the return map")
+        self.velocity = (found.configuration.q - point.known.q) / abs(new - point.factor)
+        self._record(replace(point, factor=new), found.sense)
+        return Point(new, found, found.sense, found.sense)
+
+    def _increased(self, point: Point, new: float) -> Trial | None:
+        guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
+        guess = self.system.displaced(guess, new)
+        return solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+
+    def _state(self, point: Point) -> State:
+        """The certified state of a point."""
+        trial = point.trial
+        # what is within rounding of opening or closing is as its overlap says
+        overlap = trial.configuration.overlap
+        sense = np.where(overlap <= 0.0, OPEN, np.where(trial.sense == OPEN, STICKING, trial.sense))
+        trial = self.system.trial(point.known, point.known.q, fixed=sense)
+        state = self.system.state(trial, point.factor)
+        modes = negative_modes(self.system, trial)
+        if modes and divergence(self.system, trial) is None:
+            modes = 0
         work = self.record.work
         reached = Reached(
             method="path",
-            certificate=certify(self.problem, state, modes=self.modes),
+            certificate=certify(self.problem, state, modes=modes),
             increments=work.increments,
             factorisations=work.factorisations,
-            crossings=tuple(self.record.crossings),
         )
         return replace(state, reached=reached)
+
+    def _record(self, point: Point, after: np.ndarray) -> None:
+        """The events in which contacts get the signed statuses ``after`` (m + w,)."""
+        contacts = np.flatnonzero(point.sense != after)
+        if not len(contacts):
+            return
+        system, n, m = self.system, self.problem.n, len(self.system.first)
+        position = system.reference + point.known.q[: 2 * n].reshape(2, n).T
+        at_wall = contacts >= m
+        pair, wall = contacts[~at_wall], contacts[at_wall] - m
+        first = np.concatenate([system.first[pair], system.wall_disk[wall]])
+        second = np.concatenate([system.second[pair], system.wall[wall]])
+        apart = self.problem.packing.box.separation(position[system.second[pair]], position[system.first[pair]])
+        towards = np.concatenate([apart, -system.wall_normals[wall]])
+        place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
+        kinds = map(_kind, point.sense[contacts].tolist(), after[contacts].tolist())
+        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), place[:, 0], place[:, 1], strict=True)
+        self.record.events += [
+            Event(point.factor, kind, i, j, wall_contact, float(x), float(z), point.factor)
+            for kind, i, j, wall_contact, x, z in rows
+        ]
+
+    def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
+        """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""
+        n = self.problem.n
+        far = np.hypot(moved[:n], moved[n : 2 * n])
+        i = int(np.argmax(far))
+        x, z = self.system.reference[i]
+        self.record.events.append(
+            Event(point.factor, kind, i, -1, False, float(x), float(z), until, float(far[i]), reason)
+        )
+
+
+def _kind(before: int, after: int) -> str:
+    """What a contact does between two signed statuses."""
+    if after == OPEN:
+        return "opens"
+    if before == OPEN:
+        return "closes"
+    if after == STICKING:
+        return "sticks"
+    return "reverses" if abs(before) == SLIDING else "slides"

@@ -99,13 +99,13 @@ def _check_overlaps(packing: Packing) -> None:
     )
 
 
-def _laws(scene: Scene, dashpots: float = 1.0) -> tuple[Law, Law]:
-    """The laws of a scene between disks and at walls; ``dashpots`` multiplies both parts of their dashpots."""
+def _laws(scene: Scene) -> tuple[Law, Law]:
+    """The laws of a scene between disks and at walls."""
     least = -np.inf if scene.protocol.tensile_dashpot else 0.0
 
     def law(m: Contact, reduced_radius: float) -> Law:
         whole = LAWS[scene.contact.law].of(
-            m.normal_stiffness, dashpots * m.normal_damping, m.tangential_stiffness, dashpots * m.tangential_damping,
+            m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping,
             m.friction, least, reduced_radius,
         )  # fmt: skip
         return whole if m.rubs else whole.without_friction()
@@ -129,7 +129,6 @@ class Problem:
     load_disk: NDArray[np.int64]
     load: FloatArray
     held: Held = NOTHING
-    rings: bool = False  #: whether disks move like rings of the mean mass; their weights stay
 
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
@@ -151,16 +150,6 @@ class Problem:
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
         )
-
-    def moving(self, *, rings: bool, dashpots: float) -> Problem:
-        """The same problem with inertia of rings or disks and a part of its ``dashpots``; its statics is the same."""
-        pair_law, wall_law = _laws(self.scene, dashpots)
-        return replace(self, rings=rings, pair_law=pair_law, wall_law=wall_law)
-
-    def in_stages(self) -> Problem:
-        """The same problem with the inertia and the dashpots of the dynamics of stages."""
-        protocol = self.scene.protocol
-        return self.moving(rings=protocol.inertia == "rings", dashpots=protocol.stage_damping)
 
     @property
     def n(self) -> int:
@@ -200,9 +189,9 @@ class Problem:
     def inverse_mass(self) -> FloatArray:
         """(2 n,) or (3 n,) inverse masses and moments of inertia, in the order of ``q``."""
         packing = self.packing
-        parts = [np.ones(self.n) if self.rings else 1.0 / packing.mass] * 2
+        parts = [1.0 / packing.mass] * 2
         if self.rotations:
-            parts.append(1.0 / (packing.radius**2 if self.rings else packing.inertia))
+            parts.append(1.0 / packing.inertia)
         return np.concatenate(parts)
 
     @cached_property

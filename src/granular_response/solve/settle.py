@@ -1,7 +1,7 @@
 """From motion to equilibrium: dynamics until a packing is nearly at rest, then statics.
 
 The one hand-over there is. When it happens, how often it is tried and what lies between two tries depends on what
-the dynamics is for; the three ways below are all that differ.
+the dynamics is for; the two ways below are all that differ.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
 from .equilibrium import NEWTON_ITERATIONS, EquilibriumError, finish
 from .problem import Problem
+from .stability import unstable_direction
 from .system import StaticSystem
 from .timestep import resolve_time_step
 
@@ -32,9 +33,7 @@ class HandOver:
 
     tries: int  #: how often statics is tried
     iterations: int = NEWTON_ITERATIONS  #: of Newton's method in a try
-    hold: float = 0.0  #: time after the ramps before the kinetic energy is looked at
     wait: float = 0.0  #: time of dynamics after the first try
-    growth: float = 1.0  #: of the wait from try to try
     cooling: float = 1.0  #: below 1: in place of a wait, dynamics to this part of the kinetic energy before
     nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
     nudged: bool = False  #: from the third unstable equilibrium on, dynamics starts from it, displaced a little
@@ -46,11 +45,6 @@ PROTOCOL = HandOver(tries=8, wait=20.0, nudged=True)
 CROSSING = HandOver(tries=4, cooling=1e-2)
 #: Kinetic energy per disk at the first try of a crossing.
 CROSSING_STOP = 1e-9
-#: Stages of ensembles, of which there are thousands, and the rest of the way of a path that dynamics takes to save
-#: time: the first try is early and cheap.
-STAGE = HandOver(tries=8, iterations=8, hold=1.5, wait=2.5, growth=2.0, nearly=float("inf"))
-#: Kinetic energy per disk at the first try of such a stage of a path.
-STAGE_STOP = 1e-7
 
 
 def settle(
@@ -93,10 +87,6 @@ def settle(
     time_step = resolve_time_step(problem) if time_step is None else time_step
     dynamics = Dynamics(problem, start, integrator, time_step)
     held = (load[1], load[1], 0.0)
-    if how.hold:
-        dynamics.set_ramps(gravity, load)
-        dynamics.advance(round((max(gravity[2], load[2]) + how.hold) / time_step))
-        gravity, load = (gravity[1], gravity[1], 0.0), held
 
     def look(steps: int, energy: float) -> None:
         if progress is not None:
@@ -104,13 +94,18 @@ def settle(
         if watch is not None:
             watch(dynamics)
 
+    def left() -> Stop:
+        """The stop with what is left of the steps."""
+        return replace(stop, maximum_steps=max(stop.maximum_steps - spent - dynamics.steps, 0))
+
+    spent = 0  #: steps of motions that have been started again
     settled = relax(dynamics, stop, gravity=gravity, load=load, progress=look)
-    energy, wait = stop.kinetic_energy, how.wait
+    energy = stop.kinetic_energy
     why = ""
     for attempt in range(1, how.tries + 1):
-        left = settled.reached.kinetic_energy or 0.0
+        kinetic = settled.reached.kinetic_energy or 0.0
         # steps that run out within a ramp leave another load than the one that is asked for
-        if not settled.reached.settled and (left > how.nearly * energy or settled.load_factor != load[1]):
+        if not settled.reached.settled and (kinetic > how.nearly * energy or settled.load_factor != load[1]):
             break
         try:
             found = _statics(problem, settled, how)
@@ -118,20 +113,20 @@ def settle(
                 return found
             why = ": the equilibrium found is unstable"
             if how.nudged and attempt > 2:
+                spent += dynamics.steps
                 dynamics = Dynamics(problem, _displaced(problem, found), integrator, time_step)
         except EquilibriumError as error:
             why = f": {error}"
-        if not settled.reached.settled or attempt == how.tries:
+        if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
             break
         if how.cooling < 1.0:
             energy *= how.cooling
-            settled = relax(dynamics, replace(stop, kinetic_energy=energy), load=held)
+            settled = relax(dynamics, replace(left(), kinetic_energy=energy), load=held)
         else:
             dynamics.set_ramps(load=held)
-            dynamics.advance(round(wait / time_step))
-            wait *= how.growth
+            dynamics.advance(min(round(how.wait / time_step), left().maximum_steps))
             settled = replace(dynamics.state(), reached=replace(settled.reached, more_relaxations=attempt))
-    if settled.reached.settled and why:
+    if settled.reached.settled and why and left().maximum_steps > 0:
         raise NotSettled(f"the packing is nearly at rest under {what}, but finds no stable equilibrium{why}")
     raise NotSettled(not_settled(problem, settled, what) + why)
 
@@ -161,5 +156,4 @@ def nudged(problem: Problem, state: State, direction: FloatArray) -> State:
 
 def _displaced(problem: Problem, state: State) -> State:
     system = StaticSystem(problem, state)
-    known = system.start(state)
-    return nudged(problem, state, system.unstable_direction(system.trial(known, known.q)))
+    return nudged(problem, state, unstable_direction(system, system.at(state)))

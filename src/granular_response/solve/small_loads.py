@@ -58,7 +58,7 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
     for row, disk in enumerate(disks):
         here = np.flatnonzero((system.wall_disk == disk) & (system.wall == FLOOR))
         force = np.zeros((freedoms, n))
-        force[:, disk] = trial.wall_tangent[here, 1, :freedoms].sum(axis=0)
+        force[:, disk] = system.split(trial.tangent)[1][here, 1, :freedoms].sum(axis=0)
         right = system.interleave(np.where(held, 0.0, force.ravel()))
         y = factor.solve(right)
         y += factor.solve(right - transposed @ y)  # the tangent was held by a tiny stiffness
@@ -105,8 +105,8 @@ def contact_answers(
         i, j, k = system.first, system.second, system.wall_disk
         pairs = np.stack([moved[0, i] - moved[0, j], moved[1, i] - moved[1, j], rim[i] + rim[j]])
         walls = np.stack([moved[0, k], moved[1, k], rim[k]])
-        on_pairs[row] = np.einsum("cab,bc->ca", trial.pair_tangent[:, :2], pairs)
-        on_walls[row] = np.einsum("cab,bc->ca", trial.wall_tangent[:, :2], walls)
+        on_pairs[row] = np.einsum("cab,bc->ca", system.split(trial.tangent)[0][:, :2], pairs)
+        on_walls[row] = np.einsum("cab,bc->ca", system.split(trial.tangent)[1][:, :2], walls)
     borne = state.contact_count()[disks] >= 2
     on_pairs[~borne] = on_walls[~borne] = np.nan
     return on_pairs, on_walls
@@ -126,5 +126,5 @@ def sticking(problem: Problem, state: State, sliding: str) -> tuple[StaticSystem
         )
     system = StaticSystem(problem, state)
     known = system.start(state)
-    never = np.full(len(system.first), np.inf), np.full(len(system.wall_disk), np.inf)
-    return system, system.trial(known, known.q, never)
+    never = np.full(len(known.spring), np.inf)
+    return system, system.trial(known, known.q, limits=never)

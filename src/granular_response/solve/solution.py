@@ -13,7 +13,7 @@ import numpy as np
 
 from ..contact import Linear
 from ..scene import Scene, SceneError
-from ..state import Crossing, FloatArray, State
+from ..state import Event, FloatArray, State
 from .choice import Choice, finishes_statically, idle_settings, load_method, rest_method, stop_energy
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
@@ -23,7 +23,6 @@ from .path import follow
 from .problem import Problem
 from .settle import PROTOCOL, NotSettled, not_settled, settle
 from .size import check_memory
-from .stages import climb
 from .timestep import resolve_time_step
 
 #: Load that the contacts of one disk bear at most without an overlap of a radius, over the stiffness of one.
@@ -250,8 +249,8 @@ def loaded_states(
 ) -> tuple[Choice, list[State]]:
     """States at ``load_factors`` in turn, growing or falling, and the method that found them.
 
-    ``before`` : states that the programme has reached already, from ``rest`` on. A path, stages and minimisation go
-    on from the last state through every load between. Dynamics ramps the load from rest to each factor anew, as the
+    ``before`` : states that the programme has reached already, from ``rest`` on. A path and minimisation go on
+    from the last state through every load between. Dynamics ramps the load from rest to each factor anew, as the
     paper does, as long as the programme has led away from the rest state's load all the time; from its first turn
     on, each ramp starts from the state before.
     """
@@ -266,10 +265,7 @@ def loaded_states(
             turned = len({after > here for here, after in pairwise(so_far) if after != here}) > 1
             states.append(_by_dynamics(problem, states[-1] if turned else rest, factor, progress))
             continue
-        if choice.method == "minimise":
-            states.append(_by_minimisation(problem, states[-1], factor, progress))
-        else:
-            states.append(climb(problem, states[-1], factor)[0])
+        states.append(_by_minimisation(problem, states[-1], factor, progress))
         if progress is not None:
             progress(done, len(factors), "load")
     return choice, states[1 + len(before) :]
@@ -285,13 +281,17 @@ def _by_minimisation(problem: Problem, before: State, factor: float, progress: P
     except EquilibriumError:
         # the packing collapses or rearranges here: its motion decides where it comes to rest
         state = _by_dynamics(problem, before, factor, progress)
-        moved = float(np.hypot(*(state.position - before.position).T).max())
-        crossing = Crossing(before.load_factor, factor, "no equilibrium nearby", moved)
-        return replace(state, reached=replace(state.reached, crossings=(crossing,)))
+        moved = np.hypot(*(state.position - before.position).T)
+        disk = int(np.argmax(moved))
+        x, z = before.position[disk]
+        jump = Event(
+            before.load_factor, "jump", disk, x=float(x), z=float(z), until=factor, displacement=float(moved[disk]),
+            reason="no minimum of the energy nearby",
+        )  # fmt: skip
+        return replace(state, reached=replace(state.reached, events=(jump,)))
 
 
 def _on_path(problem: Problem, start: State, factors: Sequence[float], progress: Progress | None) -> list[State]:
-    protocol = problem.scene.protocol
     turns = [start.load_factor, *factors]
     whole = sum(abs(after - here) for here, after in pairwise(turns))
     done = 0.0
@@ -303,10 +303,7 @@ def _on_path(problem: Problem, start: State, factors: Sequence[float], progress:
         if progress is not None:
             progress(done, whole, "load")
 
-    return follow(
-        problem, start, factors, integrator=protocol.integrator, crossing_ramp=protocol.ramp_time,
-        maximum_steps=protocol.maximum_steps, progress=report,
-    )  # fmt: skip
+    return follow(problem, start, factors, progress=report)
 
 
 def _by_dynamics(problem: Problem, start: State, factor: float, progress: Progress | None) -> State:

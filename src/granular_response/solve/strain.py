@@ -82,13 +82,13 @@ def strained(
     affine[:, :, :2] = np.einsum("kab,cb->kca", UNIT_STRAINS, separation)
     moved = np.zeros((3, 3, n))
     if following != "affine":
-        force = _on_disks(system, np.einsum("cab,kcb->kca", trial.pair_tangent, affine))
+        force = _on_disks(system, np.einsum("cab,kcb->kca", system.split(trial.tangent)[0], affine))
         moved[:, : problem.freedoms] = _relaxed(system, trial, force).reshape(3, problem.freedoms, n)
     first, second, radius = system.first, system.second, packing.radius
     relative = affine.copy()
     relative[:, :, :2] += np.swapaxes(moved[:, :2, first] - moved[:, :2, second], 1, 2)
     relative[:, :, 2] = radius[first] * moved[:, 2, first] + radius[second] * moved[:, 2, second]
-    added = np.einsum("cab,kcb->kca", trial.pair_tangent, relative)[:, :, :2]
+    added = np.einsum("cab,kcb->kca", system.split(trial.tangent)[0], relative)[:, :, :2]
     return _averaged(state, packing.row, separation, added, moved, margin)
 
 

@@ -15,11 +15,6 @@ moment of inertia 1/2 (radius 1), so that a tangential spring of stiffness k_T t
   square root of the moment of inertia;
 * *the smallest disk* alone among heavier ones of radius 1, as many as fit around it.
 
-With ``protocol.inertia: rings`` disks have mass 1 and the moment of inertia of rings, 1, in the stages between loads:
-all rates of turning are half as large, and no disk is lighter than others; neighbours then count as the mean of six and
-of as many as fit around the largest disk. ``protocol.stage_damping`` leaves a part of the dashpots there, which limit
-the step more than the springs do.
-
 The study ``stability`` measures the limit of kicked packings against this one: they settle at 0.95 of it, and cycle
 or blow up between 1.05 and 1.7 times the limit.
 """
@@ -75,8 +70,8 @@ def oscillator_limit(integrator: str, stiffness: float, damping: float, spring: 
     return float(step)
 
 
-#: Moment of inertia over mass times squared radius, of a homogeneous disk and of a ring.
-DISK, RING = 0.5, 1.0
+#: Moment of inertia over mass times squared radius, of a homogeneous disk.
+MOMENT = 0.5
 
 #: Stiffness that follows positions, stiffness of tangential springs, and damping rate, all over the mass.
 Motion = tuple[float, float, float]
@@ -107,14 +102,14 @@ def largest_force(problem: Problem) -> float:
     return force
 
 
-def _at_wall(pair: Constants, wall: Constants, neighbours: float, walls: int, moment: float) -> list[Motion]:
+def _at_wall(pair: Constants, wall: Constants, neighbours: float, walls: int) -> list[Motion]:
     """Stiffest motions of a disk at one wall or two: coordinates (x, z, rotation times sqrt(moment))."""
     kn, nun, kt, nut = pair
-    rim = 1.0 / np.sqrt(moment)
+    rim = 1.0 / np.sqrt(MOMENT)
     along = np.array([[1.0, 0.0, -rim], [0.0, 1.0, -rim]])[:walls]
     inward = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])[:walls]
     around = np.diag([1.0, 1.0, 0.0]) * neighbours
-    turning = np.diag([1.0, 1.0, 2.0 / moment]) * neighbours
+    turning = np.diag([1.0, 1.0, 2.0 / MOMENT]) * neighbours
     direct = kn * around + wall[0] * inward.T @ inward
     tangential = kt * turning + wall[2] * along.T @ along
     damping = nun * around + nut * turning + wall[1] * inward.T @ inward + wall[3] * along.T @ along
@@ -138,16 +133,10 @@ def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion
     force = largest_force(problem)
     pair, wall = _constants(problem.pair_law, force), _constants(problem.wall_law, force)
     kn, nun, kt, nut = pair
-    small, large = float(problem.packing.radius.min()), float(problem.packing.radius.max())
-    # no disk of many neighbours is heavier than others either: an edge counts with the mean of its ends
-    crowd = 0.5 + 0.5 * _around(small, large) / NEIGHBOURS if problem.rings else 1.0
-    z = crowd * NEIGHBOURS
-    moment = RING if problem.rings else DISK
-    turn = 2.0 * z / moment
-    motions: list[Motion] = [(z * kn, z * kt, z * (nun + nut)), (0.0, turn * kt, turn * nut)]
-    motions += _at_wall(pair, wall, crowd * ON_FLOOR, 1, moment) + _at_wall(pair, wall, crowd * IN_CORNER, 2, moment)
-    if problem.rings:  # none is lighter
-        return motions
+    small = float(problem.packing.radius.min())
+    turn = 2.0 * NEIGHBOURS / MOMENT
+    motions: list[Motion] = [(NEIGHBOURS * kn, NEIGHBOURS * kt, NEIGHBOURS * (nun + nut)), (0.0, turn * kt, turn * nut)]
+    motions += _at_wall(pair, wall, ON_FLOOR, 1) + _at_wall(pair, wall, IN_CORNER, 2)
     mass = float(problem.packing.mass.min())
     if smallest:
         return [(direct / mass, spring / mass, damping / mass) for direct, spring, damping in motions]
@@ -186,15 +175,6 @@ def resolve_time_step(problem: Problem) -> float:
             f"must be at most {limit:.3g} for this scene, or auto"
         )
     return float(step)
-
-
-def stage_time_step(problem: Problem) -> float:
-    """That of the dynamics of stages: the same part of its limit as the scene's time step is of the scene's own.
-
-    Raises what :func:`resolve_time_step` raises.
-    """
-    longer = stability_limit(problem.in_stages(), smallest=True) / stability_limit(problem, smallest=True)
-    return longer * resolve_time_step(problem)
 
 
 def time_step_reason(problem: Problem) -> str:

@@ -1,13 +1,16 @@
 """What a packing is at one moment: its state, its contacts and their status, its box."""
 
 from .box import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Box, FloatArray, foot_points, wall_normals
-from .reached import Certificate, Crossing, Reached
+from .events import CONTACT_EVENTS, LOST_EVENTS, Event
+from .reached import Certificate, Reached
 from .state import Contacts, State, contact_force
 from .status import OPEN, SLIDING, STICKING
 
 __all__ = [
+    "CONTACT_EVENTS",
     "FLOOR",
     "LEFT_WALL",
+    "LOST_EVENTS",
     "OPEN",
     "RIGHT_WALL",
     "SLIDING",
@@ -16,7 +19,7 @@ __all__ = [
     "Box",
     "Certificate",
     "Contacts",
-    "Crossing",
+    "Event",
     "FloatArray",
     "Reached",
     "State",

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
+from .events import Event
+
+#: Part of what a disk bears that may be out of balance.
+BALANCED = 1e-6
+
 
 @dataclass(frozen=True)
 class Certificate:
@@ -11,8 +16,9 @@ class Certificate:
 
     ``force_residual``, ``torque_residual``: largest on any disk (mean weights, mean radii). ``coulomb_excess``:
     largest ``|f_t| - friction f_n``. ``smallest_normal_force``: over closed contacts. ``kinetic_energy``: per
-    disk. ``negative_modes``: unstable directions of the tangent (None: not determined). ``loose_disks``: disks with
-    fewer than two contacts.
+    disk. ``negative_modes``: unstable directions of the tangent with the recorded statuses (None: not determined).
+    ``loose_disks``: disks with fewer than two contacts. ``unbalanced_part``: largest unbalanced force on a disk as a
+    part of what it bears, its weight or its largest contact force (nan: not measured, in files from before).
     """
 
     force_residual: float
@@ -22,21 +28,19 @@ class Certificate:
     kinetic_energy: float
     negative_modes: int | None
     loose_disks: int
+    unbalanced_part: float = float("nan")
+
+    @property
+    def balanced(self) -> bool:
+        """Whether forces on each disk cancel, as far as it bears any."""
+        return not self.unbalanced_part > BALANCED
 
     @property
     def stable(self) -> bool | None:
-        """Whether no direction is unstable; None where that was not determined."""
+        """Whether the packing is in balance and no direction is unstable; None where that was not determined."""
+        if not self.balanced:
+            return False
         return None if self.negative_modes is None else self.negative_modes == 0
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """A stretch of load that dynamics crossed: between these load factors the static branch ended."""
-
-    start: float
-    end: float
-    reason: str  #: unstable, no equilibrium, too much work, or rearrangement
-    displacement: float  #: largest displacement of a disk on the way (mean radii)
 
 
 @dataclass(frozen=True)
@@ -63,10 +67,13 @@ class Reached:
     loose_disks: int | None = None  #: disks with fewer than two contacts
     more_relaxations: int | None = None  #: stretches of dynamics between tries of the static finish
     newton_iterations: int | None = None
+    finish_displacement: float | None = None  #: largest of a disk in the static finish (mean radii)
     escapes: int | None = None  #: saddles of the energy that were left
     increments: int | None = None  #: of the path so far
     factorisations: int | None = None  #: of the path so far
-    crossings: tuple[Crossing, ...] = ()  #: of the path so far
+    events: tuple[Event, ...] = ()  #: of the path since the state before
+    events_within: float | None = None  #: load within which a path took events together (mean weights)
+    events_error: float | None = None  #: what that leaves out of a floor or wall force, per load, as measured
 
     def after(self, earlier: Reached) -> Reached:
         """This record, and what only the one ``earlier`` knows."""

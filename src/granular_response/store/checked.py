@@ -9,14 +9,24 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import fields
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..state import Certificate, status
+from ..state import Certificate, Event, status
 from ..state.box import FARTHEST, WALL_MEANINGS
 from . import files
-from .result import ResultError, described_forces, indexed, load_coordinates, state_from
+from .result import (
+    ADDED_LATER,
+    EVENT_KINDS,
+    ResultError,
+    described_events,
+    described_forces,
+    indexed,
+    load_coordinates,
+    state_from,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,7 +64,23 @@ _CODES = {
     "wall_status": len(status.MEANINGS),
 }
 _POSITIVE = ("radius", "mass")
-_CERTIFICATE = tuple(f"certificate_{field.name}" for field in fields(Certificate))
+_CERTIFICATE = {f"certificate_{field.name}" for field in fields(Certificate)}
+#: Variables of the events of a path; those with places are not known for events of versions before.
+_EVENTS = {
+    "event_load_factor": _REAL,
+    "event_kind": _WHOLE,
+    "event_first": _WHOLE,
+    "event_second": _WHOLE,
+    "event_at_wall": _WHOLE,
+    "event_x": _REAL,
+    "event_z": _REAL,
+    "event_until": _REAL,
+    "event_displacement": _REAL,
+    "event_reason": _TEXT,
+    "event_state": _WHOLE,
+}
+_UNKNOWN = ("event_x", "event_z")
+#: What versions before wrote of equilibria that were lost.
 _CROSSINGS = {"crossing_start": _REAL, "crossing_end": _REAL, "crossing_displacement": _REAL, "crossing_reason": _TEXT}
 
 
@@ -102,11 +128,8 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
     if np.any(dataset["contact_disk"].values == dataset["contact_partner"].values):
         _fail("variables contact_disk, contact_partner: a disk touches itself")
     if any(name in dataset for name in _CERTIFICATE):
-        for name in _CERTIFICATE:
+        for name in sorted(_CERTIFICATE - (ADDED_LATER - set(dataset.variables))):
             _check_variable(dataset, name, ("state",), _REAL, finite=False)
-    found = [name for name in _CROSSINGS if name in dataset]
-    for name in _CROSSINGS if found else ():
-        _check_variable(dataset, name, ("crossing",), _CROSSINGS[name])
     several = ("load",) if states > 2 else ()
     for name in ("floor_force", "floor_response"):  # nan under a load of nothing
         _check_variable(dataset, name, (*several, "floor_disk"), _REAL, finite=False)
@@ -116,6 +139,9 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
         _check_variable(dataset, "reaction", (*several, "load_point", "axis"), _REAL)
     if several and dataset.sizes["load"] != states - 1:
         _fail(f"dimension load: must have {states - 1} entries, one less than state")
+    dataset = _with_events(dataset)
+    if "event" in dataset.dims or any(name in dataset for name in _EVENTS):
+        _check_events(dataset)
     _check_attributes(dataset.attrs)
     return indexed(_renewed(dataset) if older else dataset)
 
@@ -127,6 +153,37 @@ def _renewed(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.assign_coords({name: tuple(value) for name, value in coordinates.items()}).assign(
         {name: tuple(value) for name, value in described_forces(states).items()}
     )
+
+
+def _with_events(dataset: xr.Dataset) -> xr.Dataset:
+    """Lost equilibria as versions before wrote them, of the whole programme together, as events of today."""
+    if not any(name in dataset for name in _CROSSINGS):
+        return dataset
+    for name, kinds in _CROSSINGS.items():
+        _check_variable(dataset, name, ("crossing",), kinds)
+    factors = dataset["state_load_factor"].values.tolist()
+    stretches = [sorted(ends) for ends in pairwise(factors)]
+    found, state = [], 1
+    for start, until, moved, reason in zip(*(dataset[name].values.tolist() for name in _CROSSINGS), strict=True):
+        # they are in order: each is on the first stretch, from that of the one before on, that holds its load
+        while state < len(stretches) and not stretches[state - 1][0] <= start < stretches[state - 1][1]:
+            state += 1
+        found.append((state, Event(start, "jump", until=until, displacement=moved, reason=str(reason))))
+    known = {name: tuple(value) for name, value in described_events(found).items()}
+    return dataset.drop_vars(_CROSSINGS).assign(known)
+
+
+def _check_events(dataset: xr.Dataset) -> None:
+    for name, kinds in _EVENTS.items():
+        _check_variable(dataset, name, ("event",), kinds, finite=name not in _UNKNOWN)
+    disks = dataset.sizes["disk"]
+    _check_range(dataset, "event_state", dataset.sizes["state"])
+    _check_range(dataset, "event_kind", len(EVENT_KINDS))
+    _check_range(dataset, "event_at_wall", 2)
+    _check_range(dataset, "event_first", disks, lowest=-1)
+    _check_range(dataset, "event_second", disks, lowest=-1)
+    at_wall = dataset["event_at_wall"].values == 1
+    _check_range(dataset.isel(event=at_wall), "event_second", len(WALL_MEANINGS))
 
 
 def _fail(problem: str) -> None:
@@ -148,11 +205,11 @@ def _check_variable(
         _fail(f"variable {name}: must be finite")
 
 
-def _check_range(dataset: xr.Dataset, name: str, count: int) -> None:
+def _check_range(dataset: xr.Dataset, name: str, count: int, *, lowest: int = 0) -> None:
     values = dataset[name].values
-    bad = values[(values < 0) | (values >= count)]
+    bad = values[(values < lowest) | (values >= count)]
     if bad.size:
-        _fail(f"variable {name}: holds {bad.flat[0]}, must be from 0 to {count - 1}")
+        _fail(f"variable {name}: holds {bad.flat[0]}, must be from {lowest} to {count - 1}")
 
 
 def _check_attributes(attributes: dict[Any, Any]) -> None:

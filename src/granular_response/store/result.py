@@ -19,11 +19,13 @@ from ..errors import GranularError
 from ..observe.difference import match_candidates, pair_force_difference, wall_force_difference
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
+from ..scene import text as scene_text
+from ..scene.protocol import without_replaced
 from ..solve.choice import load_method, rest_method
 from ..solve.problem import Problem
 from ..solve.solution import Solution
 from ..solve.timestep import time_step_reason
-from ..state import Box, Certificate, Contacts, Crossing, Reached, State, box, status
+from ..state import CONTACT_EVENTS, LOST_EVENTS, Box, Certificate, Contacts, Event, Reached, State, box, status
 from .labelled import Labelled, Values
 
 if TYPE_CHECKING:
@@ -60,6 +62,8 @@ _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 
 #: Number of unstable directions in files where it was not determined.
 NOT_DETERMINED = -1
+#: Parts of a certificate that older files do not have.
+ADDED_LATER = frozenset({"certificate_unbalanced_part"})
 
 
 class ResultError(GranularError, ValueError):
@@ -131,6 +135,7 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
         "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
         "negative_modes": f"unstable directions of the tangent stiffness ({NOT_DETERMINED}: not determined)",
         "loose_disks": "disks with fewer than two contacts",
+        "unbalanced_part": "largest unbalanced force on a disk, as a part of what it bears",
     }
     certificates: list[Certificate] = [s.certificate for s in states]
 
@@ -143,21 +148,64 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
     }
 
 
-def _crossings(loaded: Sequence[State]) -> dict[str, Values]:
-    """Stretches of load that dynamics crossed on the way, none where there were none."""
-    found = list(dict.fromkeys(crossing for state in loaded for crossing in state.reached.crossings))
+#: What is stored of the events of a path: the fields of each, in order.
+EVENTS = {
+    "load_factor": "load factor at which it happens",
+    "kind": "what happens",
+    "first": "disk that it happens to; the one that moves farthest where an equilibrium is lost",
+    "second": "the other disk, or the wall; -1 where an equilibrium is lost",
+    "at_wall": "whether the contact is with a wall",
+    "x": f"place of the contact, or of the disk {LENGTH}",
+    "z": f"height of the contact, or of the disk {LENGTH}",
+    "until": "load factor at which the path goes on",
+    "displacement": f"largest displacement of a disk from a lost equilibrium to the next {LENGTH}",
+    "reason": "why an equilibrium is lost",
+}
+EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS
+
+
+def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, Values]:
+    """Events with the index of the state that each leads to, along ``event``; no variables where there are none."""
     if not found:
         return {}
-    texts = {
-        "start": "load factor at which statics ended",
-        "end": "load factor at which statics went on",
-        "displacement": f"largest displacement of a disk on the way {LENGTH}",
-        "reason": "why dynamics crossed",
-    }
-    return {
-        f"crossing_{name}": described("crossing", [getattr(c, name) for c in found], text)
-        for name, text in texts.items()
-    }
+    data = {}
+    for name, text in EVENTS.items():
+        values: Any = [getattr(event, name) for _, event in found]
+        attributes: dict[str, Any] = {}
+        if name == "kind":
+            values = np.array([EVENT_KINDS.index(kind) for kind in values], np.int8)
+            attributes = flags([kind.replace(" ", "_") for kind in EVENT_KINDS])
+        elif name == "at_wall":
+            values, attributes = np.array(values, np.int8), flags(("no", "yes"))
+        elif name == "reason":
+            values = np.array(values, str)
+        data[f"event_{name}"] = described("event", values, text, **attributes)
+    return {**data, "event_state": described("event", [k for k, _ in found], "state that the event leads to")}
+
+
+def events_from(dataset: xr.Dataset, index: int | None = None) -> list[tuple[int, Event]]:
+    """Stored events with the index of the state that each leads to: of the state ``index``, or all."""
+    if "event_state" not in dataset:
+        return []
+    states = dataset["event_state"].values
+    here = slice(None) if index is None else states == range(dataset.sizes["state"])[index]
+    columns = {name: dataset[f"event_{name}"].values[here].tolist() for name in EVENTS}
+    columns["kind"] = [EVENT_KINDS[code] for code in columns["kind"]]
+    columns["at_wall"] = list(map(bool, columns["at_wall"]))
+    events = (Event(**dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True))
+    return list(zip(states[here].tolist(), events, strict=True))
+
+
+def chosen_states(dataset: xr.Dataset, indices: Sequence[int]) -> xr.Dataset:
+    """The states with these indices, in this order, and the events that lead to them."""
+    count = dataset.sizes["state"]
+    places = {index % count: place for place, index in enumerate(indices)}
+    chosen = dataset.isel(state=list(indices))
+    if "event_state" not in dataset:
+        return chosen
+    state = dataset["event_state"]
+    chosen = chosen.isel(event=np.isin(state.values, list(places)))
+    return chosen.assign(event_state=("event", [places[k] for k in chosen["event_state"].values], state.attrs))
 
 
 #: What is stored of the record of each state, where it is known for one of them.
@@ -176,9 +224,12 @@ _REACHED = {
     "loose_disks": "disks with fewer than two contacts, at that moment",
     "more_relaxations": "stretches of dynamics between tries of the static finish",
     "newton_iterations": "iterations of Newton's method",
+    "finish_displacement": f"largest displacement of a disk in the static finish {LENGTH}",
     "escapes": "saddles of the energy that were left",
     "increments": "increments of the path so far, in the command that made the state",
     "factorisations": "factorisations of the path so far, in the command that made the state",
+    "events_within": f"load within which the path took events together {FORCE}",
+    "events_error": "what that leaves out of a force of the floor or a wall, per load, as measured",
 }
 
 
@@ -335,7 +386,7 @@ def to_labelled(solution: Solution) -> Labelled:
         **_listed(own, states),
         **_certificates(states, "state"),
         **_reached(states),
-        **_crossings(loaded),
+        **described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events]),
         "floor_disk": described("floor_disk", disks, "index of the floor disk"),
         "x": described("floor_disk", x, f"rest position from the loaded disk {LENGTH}"),
         "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
@@ -438,8 +489,10 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     one = dataset.isel(state=index)
     stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
     certificate = None
-    if set(stored.values()) <= set(one.variables):
-        numbers: dict[str, Any] = {name: one[variable].values.item() for name, variable in stored.items()}
+    if set(stored.values()) - ADDED_LATER <= set(one.variables):
+        numbers: dict[str, Any] = {
+            name: one[variable].values.item() for name, variable in stored.items() if variable in one.variables
+        }
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
         certificate = Certificate(**numbers)
@@ -457,7 +510,11 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
         walls=contacts("wall", "wall_index"),
         box=Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic"),
         load_factor=float(one["state_load_factor" if "state_load_factor" in one else "load_factor"]),
-        reached=Reached(certificate=certificate, **_reached_from(one)),
+        reached=Reached(
+            certificate=certificate,
+            events=tuple(event for _, event in events_from(dataset, index)),
+            **_reached_from(one),
+        ),
     )
 
 
@@ -483,10 +540,6 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
     if rest.reached.certificate is None:
         raise ResultError("holds no certificates, from which a run goes on")
-    if loaded and "crossing_start" in dataset:
-        columns = [dataset[f"crossing_{field.name}"].values.tolist() for field in fields(Crossing)]
-        crossings = tuple(Crossing(*values) for values in zip(*columns, strict=True))
-        loaded[0] = replace(loaded[0], reached=replace(loaded[0].reached, crossings=crossings))
     return Solution(
         scene=scene,
         problem=problem,
@@ -498,5 +551,5 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
 
 
 def scene_of(dataset: xr.Dataset, *, folder=None) -> Scene:
-    """The scene that a dataset was made from."""
-    return Scene.from_text(dataset.attrs["scene"], folder=folder)
+    """The scene that a dataset was made from, also by a version that had other keys for how it was to be solved."""
+    return Scene.from_dict(without_replaced(scene_text.read(dataset.attrs["scene"])), folder=folder)

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from . import files as store
 from .checked import read_result
-from .result import NOT_DETERMINED
+from .result import EVENT_KINDS, NOT_DETERMINED, events_from
 
 #: Attributes that a summary shows elsewhere or not at all.
 _HIDDEN = {
@@ -70,9 +70,9 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
     if work := [name for name in _WORK if f"reached_{name}" in result]:
         yield Text("\nwork", style="bold")
         yield _work(result, work)
-    if "crossing_start" in result:
-        yield Text("\nstretches of load that dynamics crossed", style="bold")
-        yield _crossings(result)
+    if "event_state" in result:
+        yield Text("\nevents on the way to each state", style="bold")
+        yield from _events(result)
     yield Text("\ncertificate", style="bold")
     yield _certificate(result)
     if "reaction" in result:
@@ -97,14 +97,31 @@ def _factors(table: Table, result: xr.Dataset) -> None:
         table.add_column(f"{factor:g}", justify="right")
 
 
-def _crossings(result: xr.Dataset) -> Table:
+def _events(result: xr.Dataset) -> Iterator[RenderableType]:
+    """How many of each kind, the first opening, and each equilibrium that was lost."""
+    found = events_from(result)
     table = Table(box=None, pad_edge=False)
-    for title in ("from load factor", "to", "largest displacement", "why"):
-        table.add_column(title, justify="left" if title == "why" else "right")
-    for k in range(result.sizes["crossing"]):
-        start, end, moved = (float(result[f"crossing_{name}"][k]) for name in ("start", "end", "displacement"))
-        table.add_row(f"{start:.6g}", f"{end:.6g}", f"{moved:.3g}", _text(result["crossing_reason"].values[k]))
-    return table
+    _factors(table, result)
+    for kind in EVENT_KINDS:
+        counts = [sum(event.kind == kind for k, event in found if k == state) for state in range(result.sizes["state"])]
+        if any(counts):
+            table.add_row(kind, *map(str, counts))
+    yield table
+    opening = next((event for _, event in found if event.kind == "opens"), None)
+    if opening is not None:
+        yield _text(f"first opening at load factor {opening.load_factor:.9g}, {opening.where}")
+    if "reached_events_within" in result:
+        within, error = (float(np.nanmax(result[f"reached_events_{name}"].values)) for name in ("within", "error"))
+        yield _text(f"events taken together within {within:.3g} mg, measured error {error:.1e} of the load")
+    if lost := [event for _, event in found if event.lost]:
+        yield Text("\nequilibria lost on the way", style="bold")
+        table = Table(box=None, pad_edge=False)
+        for title in ("at load factor", "until", "what", "largest displacement", "of", "why"):
+            table.add_column(title, justify="left" if title in ("what", "of", "why") else "right")
+        for event in lost:
+            numbers = (f"{event.load_factor:.6g}", f"{event.until:.6g}", event.kind, f"{event.displacement:.3g}")
+            table.add_row(*numbers, event.where, _text(event.reason))
+        yield table
 
 
 def _certificate(result: xr.Dataset) -> Table:

@@ -73,15 +73,12 @@ class Quantity:
 
     def text(self, unit: str = "") -> str:
         """For readers; ``unit`` "%" shows parts as per cent."""
-        if self.kind == "bracket":
-            if not self.happens:
-                return f"above {_number(self.low, unit)}"
-            return f"{_number(self.low, unit)} to {_number(self.high, unit)}"
-        if self.kind == "none" or self.low == self.high:
+        low, high = _number(self.low, unit), _number(self.high, unit)
+        if self.kind == "none" or (self.happens and low == high):  # in as many digits as are shown
             return _number(self.value, unit)
-        ends = f"{_number(self.low, unit)} to {_number(self.high, unit)}"
-        if not self.happens:
-            ends = f"above {_number(self.low, unit)}"
+        ends = f"{low} to {high}" if self.happens else f"above {low}"
+        if self.kind == "bracket":
+            return ends
         return f"{_number(self.value, unit)} ({ends})" if math.isfinite(self.value) else ends
 
 

@@ -112,7 +112,8 @@ def _range(brackets: FloatArray) -> str:
         return f"above {low.min():.3g}"
     most = f"above {low[np.isnan(high)].max():.3g}" if np.isnan(high).any() else f"{high.max():.3g}"
     if len(brackets) == 1:
-        return f"{low[0]:.3g} to {most}"
+        least = f"{low[0]:.3g}"
+        return most if least == most else f"{least} to {most}"
     middle = float(np.median(np.where(np.isnan(high), np.inf, 0.5 * (low + high))))
     half = f"{middle:.3g}" if np.isfinite(middle) else "not half of them"
     return f"{half} ({low.min():.3g} to {most})"

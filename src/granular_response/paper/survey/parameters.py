@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import product
 from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from granular_response.paper.groups.polydisperse_averages import parameters as averages
-from granular_response.paper.groups.polydisperse_averages.parameters import EnsembleGroup, Spreads
+from granular_response.paper.groups.polydisperse_averages.parameters import Case, EnsembleGroup, Spreads
 from granular_response.paper.parameters import Coefficients, Growing, some
 from granular_response.scene.base import Count, Description, Ratio
 from granular_response.scene.lattice import LatticeConstant
-from granular_response.scene.protocol import Method
-
-
-@dataclass(frozen=True)
-class Case(averages.Case):
-    """One column of an ensemble, by a method of its own where one is named."""
-
-    method: str | None = None
 
 
 class Cases(Description):
@@ -35,7 +25,6 @@ class Cases(Description):
     )
     wall_friction: Ratio | None = Field(default=None, description="null: the same as between disks.")
     realizations: Count | None = Field(default=None, description="null: those of the survey.")
-    method: Method | None = Field(default=None, description="protocol.method; null: that of the survey.")
 
 
 class Parameters(EnsembleGroup):
@@ -55,7 +44,6 @@ class Parameters(EnsembleGroup):
                 entry.forces,
                 (entry.realizations or self.realizations) if delta else 1,
                 entry.wall_friction,
-                entry.method,
             )
             for entry in self.blocks[block]
             for delta, mu, start in product(

@@ -28,7 +28,8 @@ from granular_response.paper.groups.polydisperse_averages.ensemble.realizations 
     ensemble_task,
     realize,
 )
-from granular_response.paper.survey.parameters import Case, Parameters
+from granular_response.paper.groups.polydisperse_averages.parameters import Case
+from granular_response.paper.survey.parameters import Parameters
 from granular_response.scene import Scene, SceneError, text
 from granular_response.store import files as store
 from granular_response.store.result import variable
@@ -45,10 +46,11 @@ SOURCES = (
     "solve",
     "state",
     "paper/groups/polydisperse_averages/ensemble",
+    "paper/slab_response.py",
 )
 
 #: What is kept of the responses and of the packings.
-RESPONSES = ("force", "x", "floor_response", "outcome", "message")
+RESPONSES = ("force", "x", "floor_response", "outcome", "message", "lost", "by_motion")
 PACKINGS = (
     "coordination_number",
     "coordination_number_bulk",
@@ -82,12 +84,6 @@ def timed(task: Task) -> Timed:
     start = time.process_time()
     found = realize(task)
     return Timed(found, time.process_time() - start)
-
-
-def task_of(parameters: Parameters, case: Case, realization: int) -> Task:
-    """The task of one realization of a case."""
-    task = ensemble_task(parameters, case, realization)
-    return replace(task, scene=task.scene.updated({"protocol.method": case.method})) if case.method else task
 
 
 def read_parameters(path: Path) -> Parameters:
@@ -134,7 +130,7 @@ def run(
     store.check_writable(output, [parameter_file])
     found = map_tasks(
         timed,
-        [task_of(parameters, case, realization) for case in cases for realization in range(case.realizations)],
+        [ensemble_task(parameters, case, realization) for case in cases for realization in range(case.realizations)],
         workers=workers,
         scheduler=scheduler,
         progress=progress,

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from granular_response.observe.floor import floor_disks, floor_force
+from granular_response.paper.slab_response import lost
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states, minimise, rest_state
 from granular_response.solve.equilibrium import finish
@@ -28,7 +29,7 @@ class Disturbed:
     excess_coordination: float  #: contacts of bearing disks over what isostaticity needs, per bearing disk
     loose_disks: int
     negative_modes: int | None
-    crossings: int  #: stretches of load that dynamics crossed
+    lost: int  #: equilibria that the path has lost
 
 
 def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
@@ -59,7 +60,7 @@ def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
                 excess_coordination=float(contacts / bearing.sum() - needed),
                 loose_disks=certificate.loose_disks,
                 negative_modes=certificate.negative_modes,
-                crossings=len(loaded.reached.crossings),
+                lost=len(lost([loaded])),
             )
         )
     return found

@@ -3,8 +3,8 @@
 :func:`elimination` chooses; solvers know the protocols :class:`Factor` and :class:`Storage` only.
 """
 
-from .factor import Factor, Storage
+from .factor import Eliminated, Factor, Storage
 from .nearby import Sequence
 from .ordering import REMEMBERED, Elimination, elimination
 
-__all__ = ["REMEMBERED", "Elimination", "Factor", "Sequence", "Storage", "elimination"]
+__all__ = ["REMEMBERED", "Eliminated", "Elimination", "Factor", "Sequence", "Storage", "elimination"]

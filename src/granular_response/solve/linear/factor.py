@@ -21,13 +21,22 @@ class Factor(Protocol):
         ...
 
 
+class Eliminated(Factor, Protocol):
+    """A factorised matrix that need not be symmetric."""
+
+    @property
+    def negative_pivots(self) -> int:
+        """Of U: where their number changes a real eigenvalue may have passed zero."""
+        ...
+
+
 class Storage(Protocol):
     """Factorises all matrices (n, n) of one symmetric sparsity pattern, column-compressed with sorted indices.
 
     Of a symmetric matrix both triangles are given.
     """
 
-    def factor(self, matrix: sp.csc_array) -> Factor:
+    def factor(self, matrix: sp.csc_array) -> Eliminated:
         """LU of a matrix close to a symmetric one; RuntimeError where it is exactly singular and that is seen."""
         ...
 

@@ -459,6 +459,18 @@ class LU(Multifactor):
 
     whole = True
 
+    @cached_property
+    def negative_pivots(self) -> int:
+        """1 where the determinant is negative, else 0."""
+        fronts, tree = self._fronts, self._pattern.tree
+        signs = 0
+        for front, own in enumerate(self._pattern.own.tolist()):
+            at, start = int(fronts.at[front]), int(tree.start[front])
+            diagonal = fronts.values[at : at + own * own : own + 1]
+            exchanged = fronts.pivots[start : start + own] != np.arange(1, own + 1)
+            signs += int((diagonal < 0.0).sum()) + int(exchanged.sum())
+        return signs % 2
+
 
 class Symmetric(Multifactor):
     """A factorised symmetric matrix."""

@@ -11,6 +11,8 @@
 * ``.data`` and ``.dump`` for LAMMPS, ``.txt`` for YADE, ``.csv`` for anything: disks alone, which
   ``packing: {kind: file}`` reads again (``scene.formats`` has the suffixes). A dump has all states or one, the others
   one.
+* ``.events.csv``: the events of the load path, one a line, all of them or those on the way to one state. ``.vtu`` has
+  them as field data; the other formats leave them out.
 
 Disks lie in the plane of the screen: file coordinates are (x, z, 0); YADE's are (x, 0, z), where gravity points to -z.
 Units are those of the result: mean disk radius, mean disk mass, g.
@@ -31,10 +33,12 @@ from ...errors import GranularError
 from ...scene import formats
 from .. import atomic
 from ..checked import read_result
+from ..result import chosen_states
 from .frames import PREFIXES, contact_force_sums
 
 #: For each suffix its module, and the states of its file: the one asked for, every one, or either as frames.
 _WRITERS = {
+    ".events.csv": ("events_table", "frames"),
     ".gsd": ("gsd_file", "frames"),
     ".pvd": ("vtk", "every"),
     ".vtu": ("vtk", "one"),
@@ -65,14 +69,14 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
     Parameters
     ----------
     result : netCDF file that ``granular-response run`` made.
-    output : file to make; its suffix (one of ``SUFFIXES``) is the format.
+    output : file to make; what its name ends with (one of ``SUFFIXES``) is the format.
     state : index of the only state to write, 0 at rest, -1 the last one; if None all of them, or the last one in a file
         of one state.
 
     Raises
     ------
     ExportError
-        For another suffix, a state that does not exist or of a series of all, or a missing library.
+        For another ending, a state that does not exist or of a series of all, or a missing library.
     granular_response.store.files.StoreError, granular_response.store.result.ResultError
         If the result cannot be read, or is none.
 
@@ -80,9 +84,11 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
     springs of contacts, from which friction goes on.
     """
     output = Path(output)
-    if output.suffix not in _WRITERS:
-        raise ExportError(f"{output}: format {output.suffix!r} is unknown, must be {' or '.join(SUFFIXES)}")
-    name, states = _WRITERS[output.suffix]
+    double = "".join(output.suffixes[-2:])
+    ending = double if double in _WRITERS else output.suffix
+    if ending not in _WRITERS:
+        raise ExportError(f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}")
+    name, states = _WRITERS[ending]
     if states == "every" and state is not None:
         raise ExportError(
             f"state = {state}: {output} is a series of all states, must be left out (.vtu holds one state)"
@@ -92,7 +98,7 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
     if state is not None and not -count <= state < count:
         raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, {result} holds {count} states")
     # the first state stays: what a load adds is the difference from it
-    chosen = dataset.isel(state=[0, -1 if state is None else state]) if states == "one" else dataset
+    chosen = chosen_states(dataset, [0, -1 if state is None else state]) if states == "one" else dataset
     only = {} if states != "frames" or state is None else {"only": state % count}
     try:
         atomic.check_output(output, [result])
@@ -108,7 +114,7 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
         raise ExportError(f"{output}: needs the package {error.name}, install granular-response[export]") from error
     except OSError as error:
         raise ExportError(f"{output}: cannot be written: {error.strerror or error}") from error
-    if output.suffix in _READ:
+    if ending in _READ:
         for remark in _lost(dataset.isel(state=-1 if state is None else state), name):
             warnings.warn(f"{output}: {remark}", stacklevel=2)
     return output

@@ -1,7 +1,8 @@
 """VTK for ParaView: one state as ``.vtu``, or all of them as a series, ``.pvd``, with a ``.vtu`` beside it for each.
 
 Disks are vertices, contacts are lines. A wall contact ends at its foot, one across a periodic side where the other
-disk's image lies; these ends are points without a disk.
+disk's image lies; these ends are points without a disk. The events on the way to a
+state are its field data.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
 from ...state import OPEN
-from ..result import state_from
+from ..result import EVENTS, events_from, state_from
 from .frames import PREFIXES, box, contact_force_sums, in_plane
 
 
@@ -98,6 +99,7 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
             '<?xml version="1.0"?>',
             '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
             "<UnstructuredGrid>",
+            *_section("FieldData", _events(dataset, index)),
             piece,
             *_section("Points", {"points": centres}),
             *_section("Cells", cells),
@@ -109,6 +111,15 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
             "",
         ]
     ).encode()
+
+
+def _events(dataset: xr.Dataset, index: int) -> dict[str, np.ndarray]:
+    """The events on the way to a state, without the reasons, which are words."""
+    if not events_from(dataset, index):
+        return {}
+    here = dataset["event_state"].values == range(dataset.sizes["state"])[index]
+    arrays = {f"event_{name}": dataset[f"event_{name}"].values[here] for name in EVENTS if name != "reason"}
+    return {name: array.astype(np.int32) if array.dtype.kind == "i" else array for name, array in arrays.items()}
 
 
 #: VTK's numbers of the two kinds of cells.
@@ -124,5 +135,6 @@ def _section(name: str, arrays: dict[str, np.ndarray]) -> list[str]:
         raw = array.astype(array.dtype.newbyteorder("<")).tobytes()
         text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode()
         parts = f' NumberOfComponents="{array.shape[1]}"' if array.ndim > 1 else ""
+        parts += f' NumberOfTuples="{len(array)}"' if name == "FieldData" else ""
         lines.append(f'<DataArray type="{kind}" Name="{title}"{parts} format="binary">{text}</DataArray>')
     return [*lines, f"</{name}>"]

@@ -106,15 +106,12 @@ class Parameters(SurveyedGroup):
     visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
     first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
     factor: Annotated[float, Field(strict=True, gt=1, le=2), allowed("must be a number above 1, at most 2")] = Field(
-        description="Each force over the one before, without friction; with friction they are one increment apart."
+        description="Each force over the one before."
     )
     most_forces: Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")] = Field(
         description="Forces after which a slab is given up."
     )
-    increment: Annotated[float, Field(strict=True, gt=0, lt=1), allowed("must be a number above 0, below 1")] = Field(
-        description="Longest increment of a path with friction, as a part of the force at its end."
-    )
-    tolerance: Positive = Field(description="Width of brackets, per force.")
+    tolerance: Positive = Field(description="Width of brackets without friction, per force.")
     extrapolated: Positive = Field(description="Layers to which crossovers are extrapolated.")
 
     @property

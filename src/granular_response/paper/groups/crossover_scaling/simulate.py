@@ -9,16 +9,15 @@ grows with the layers, so that gravity makes the same overlaps at every depth, a
 between the paper's walls, or grows with the weight as well.
 
 Forces grow by one factor until the response has two peaks and the region of open contacts has reached the floor; events
-are then narrowed by bisection. Without friction every state is a minimum of the energy. With friction it is the end of
-a path, in increments in proportion to the force: what happens at a size happens over a stretch of forces in proportion
-to its own; each increment ends at a force that is looked at.
+are then those of the path, or narrowed between two of them. Without friction every state is a minimum of the energy,
+and what happens is narrowed by bisection.
 
 The deepest slabs are simulated by the survey (:mod:`granular_response.paper.survey.larger`), as the others are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 
@@ -29,10 +28,9 @@ from numpy.typing import NDArray
 from granular_response.observe import network
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.crossover_scaling.parameters import VARIED, Parameters, Series
-from granular_response.paper.slab_response import LoadPath, Measures, locate
+from granular_response.paper.slab_response import NARROW, Happening, LoadPath, Measures, by_motion, locate
 from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Scene
-from granular_response.solve.path import follow
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.tasks import map_tasks
@@ -49,6 +47,8 @@ EVENTS = {
     "two_peaks": "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
     "reaches_floor": "the region of opened contacts below the load contains a contact of the bottom row",
 }
+#: Those that are decided by which disks touch.
+OF_CONTACTS = ("first_opening", "reaches_floor")
 
 
 @dataclass(frozen=True)
@@ -81,27 +81,6 @@ class Slab:
         )
 
 
-@dataclass
-class CoarsePath(LoadPath):
-    """A load path whose increments with friction are a part of the force."""
-
-    increment: float = 0.1
-
-    def through(self, forces: Iterable[float]) -> list[State]:
-        """As of a load path."""
-        forces = [float(force) for force in forces]
-        if not self.problem.rotations:
-            return super().through(forces)
-        for force in forces:
-            if force not in self.known:
-                below = max((known for known in self.known if known < force), default=0.0)
-                start = self.known[below] if below else self.rest
-                state = follow(self.problem, start, [force], longest_step=self.increment * force)[0]
-                self.crossings += state.reached.crossings
-                self.known[force] = state
-        return [self.known[force] for force in forces]
-
-
 @dataclass(frozen=True)
 class Task:
     slab: Slab
@@ -110,7 +89,6 @@ class Task:
     first_force: float
     factor: float
     most_forces: int
-    increment: float
     tolerance: float
 
 
@@ -121,7 +99,7 @@ class Outcome:
     confinement: float  #: mean force of horizontal contacts in the central third, at rest
     linear_opening: float  #: force at which the first contact would open, by their answers to a small force
     brackets: FloatArray  #: (event, 2) of EVENTS; nan above for what was not seen
-    crossings: float  #: stretches of the path that dynamics crossed
+    by_motion: float  #: steps of the force to which the motion of the disks led
     force: FloatArray
     dip: FloatArray
     depth: FloatArray
@@ -139,7 +117,7 @@ MEASURED = {
 }
 CONFINEMENT = f"mean force of horizontal contacts in the central third at rest {FORCE}"
 LINEAR_OPENING = f"force {FORCE} at which the first contact would open if contacts went on as under a small one"
-CROSSINGS = "stretches of the path that dynamics crossed"
+BY_MOTION = "steps of the force in which the motion of the disks had a part"
 
 #: How the survey stores slabs.
 STORED = Layout(
@@ -156,7 +134,7 @@ STORED = Layout(
         "confinement": ((), CONFINEMENT),
         "linear_opening": ((), LINEAR_OPENING),
         "brackets": (("event", "bracket"), f"forces {FORCE} between which: {'; '.join(EVENTS.values())}"),
-        "crossings": ((), CROSSINGS),
+        "by_motion": ((), BY_MOTION),
         **{name: (("line",), text) for name, text in MEASURED.items()},
     },
 )
@@ -164,31 +142,26 @@ STORED = Layout(
 
 def compute(task: Task) -> Outcome:
     """Raises what ``rest_state`` and load paths raise."""
-    whole = LoadPath.of(task.scene)
-    path = CoarsePath(whole.scene, whole.problem, whole.rest, increment=task.increment)
+    path = LoadPath.of(task.scene)
     measures = Measures(path)
     confinement = horizontal_force(measures)
 
-    def visible(state: State) -> bool:
-        return measures.dip(state) > task.visible
-
     happened: dict[str, Callable[[State], bool]] = {
         "first_opening": lambda state: measures.opened(state) > 0,
-        "crossover": visible,
+        "crossover": lambda state: measures.dip(state) > task.visible,
         "two_peaks": measures.double_peaked,
         "reaches_floor": lambda state: measures.region(state).reaches_floor,
     }
     forces: list[float] = []
     left = set(happened)
-    factor = 1.0 / (1.0 - task.increment) if task.slab.friction else task.factor
     while left and len(forces) < task.most_forces:
-        forces.append(confinement * task.first_force * factor ** len(forces))
+        forces.append(confinement * task.first_force * task.factor ** len(forces))
         state = path.at(forces[-1])
         left = {name for name in left if not happened[name](state)}
     states = path.through(forces)
-    crossings = float(len(path.crossings))
+    width = NARROW if task.slab.friction else task.tolerance
     found = [
-        locate(name, path, forces, happened[name], task.tolerance * _first(forces, states, happened[name]), text)
+        locate(name, path, forces, Happening(happened[name], text, name in OF_CONTACTS), width)
         for name, text in EVENTS.items()
     ]
     regions = [measures.region(state) for state in states]
@@ -196,18 +169,13 @@ def compute(task: Task) -> Outcome:
         confinement,
         linear_opening(measures, path.at(SMALL * confinement)),
         np.array([(event.low, event.high) for event in found]),
-        crossings,
+        float(sum(by_motion(state) for state in states)),
         np.array(forces),
         np.array([measures.dip(state) for state in states]),
         np.array([region.depth for region in regions]),
         np.array([region.width for region in regions]),
         np.array([region.count for region in regions], float),
     )
-
-
-def _first(forces: Sequence[float], states: Sequence[State], happened: Callable[[State], bool]) -> float:
-    """The first force at which something has happened, or the last one."""
-    return next((f for f, state in zip(forces, states, strict=True) if happened(state)), forces[-1])
 
 
 def horizontal_force(measures: Measures) -> float:
@@ -356,7 +324,6 @@ def _task(slab: Slab, parameters: Parameters) -> Task:
         parameters.first_force,
         parameters.factor,
         parameters.most_forces,
-        parameters.increment,
         parameters.tolerance,
     )
 
@@ -379,7 +346,7 @@ def slab_table(
     }
     data["linear_opening"] = column([o.linear_opening for o in outcomes], LINEAR_OPENING)
     data["confinement"] = column([o.confinement for o in outcomes], CONFINEMENT)
-    data["crossings"] = column([o.crossings for o in outcomes], CROSSINGS)
+    data["by_motion"] = column([o.by_motion for o in outcomes], BY_MOTION)
     each = [slab for _, slab in found]
     coordinates = {
         name: column([getattr(slab, name) for slab in each], STORED.keys[name])

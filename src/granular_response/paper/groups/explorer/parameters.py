@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 
 from granular_response.paper.parameters import UNIT_LOAD, Growing, SceneGroup, over, some
 from granular_response.scene import Scene
-from granular_response.scene.base import Description, Fraction, Part, Positive, Ratio
+from granular_response.scene.base import Description, Fraction, Positive, Ratio
 
 
 class Lattice(Description):
@@ -24,15 +24,6 @@ class Disordered(Description):
     polydispersity: Annotated[Fraction, Field(gt=0)]
     friction: Ratio
     largest_force: Positive = Field(description="Last of the forces; the packing collapses not far beyond.")
-
-
-class Stages(Description):
-    """How disordered slabs are settled and loaded."""
-
-    ramp_time: Positive = Field(description="Of a stage between two forces.")
-    damping: Part = Field(description="Part of the dashpots that is left in a stage.")
-    stop_kinetic_energy: Positive
-    collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a slab counts as collapsed.")
 
 
 class Parameters(SceneGroup):
@@ -52,5 +43,6 @@ class Parameters(SceneGroup):
     forces: Growing = Field(description="In mean disk weights.")
     lattices: Annotated[tuple[Lattice, ...], AfterValidator(some)]
     disordered: Annotated[tuple[Disordered, ...], AfterValidator(some)]
-    stages: Stages
+    stop_kinetic_energy: Positive = Field(description="Of the fall of a disordered slab.")
+    collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a slab counts as collapsed.")
     width: Positive = Field(description="w of the Gaussian that smooths the response of a disordered slab.")

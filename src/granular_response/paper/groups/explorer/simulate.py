@@ -18,6 +18,7 @@ from granular_response.paper.groups.explorer.parameters import Parameters
 from granular_response.paper.slab_response import LoadPath, states_picture, wall_margin
 from granular_response.scene import Scene
 from granular_response.solve import SOLVE_ERRORS
+from granular_response.solve.path import Collapsed
 from granular_response.state import State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
 from granular_response.sweeps.tasks import map_tasks
@@ -40,12 +41,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
 
 def _tasks(parameters: Parameters) -> list[Task]:
-    base, stages, forces = parameters.base, parameters.stages, parameters.forces
+    base, depth, forces = parameters.base, parameters.collapse_depth, parameters.forces
     tasks = [
         Task(
             base.updated({"contact.friction": one.friction, "contact.stiffness_ratio": one.stiffness_ratio}),
             forces,
-            stages.collapse_depth,
+            depth,
             0.0,
         )
         for one in parameters.lattices
@@ -57,17 +58,13 @@ def _tasks(parameters: Parameters) -> list[Task]:
                 "packing.lattice_constant": "touching-largest",
                 "contact.friction": one.friction,
                 "wall.friction": one.friction,
-                "protocol.method": "stages",
                 "protocol.integrator": "leapfrog",
-                "protocol.inertia": "rings",
-                "protocol.stage_damping": stages.damping,
                 "protocol.time_step": "auto",
-                "protocol.ramp_time": stages.ramp_time,
-                "protocol.stop_kinetic_energy": stages.stop_kinetic_energy,
+                "protocol.stop_kinetic_energy": parameters.stop_kinetic_energy,
             }
         )
         below = tuple(force for force in forces if force <= one.largest_force)
-        tasks.append(Task(scene, below, stages.collapse_depth, parameters.width))
+        tasks.append(Task(scene, below, depth, parameters.width))
     return tasks
 
 
@@ -77,14 +74,14 @@ def states(task: Task) -> xr.Dataset:
     Raises what the settling of the slab raises.
     """
     path = LoadPath.of(task.scene)
-    disk, rest = int(path.problem.load_disk[0]), path.rest
-    found = [rest]
+    found = [path.rest]
+    path.lowest = float(path.rest.position[int(path.problem.load_disk[0]), 1]) - task.collapse_depth
     for force in task.forces:
         try:
             state = path.at(force)
-        except SOLVE_ERRORS:
+        except (Collapsed, *SOLVE_ERRORS):
             break
-        if rest.position[disk, 1] - state.position[disk, 1] > task.collapse_depth:
+        if state.position[int(path.problem.load_disk[0]), 1] < path.lowest:  # a minimum of the energy
             break
         found.append(state)
     return _dataset(task, path, found)

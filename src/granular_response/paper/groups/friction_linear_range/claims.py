@@ -57,8 +57,7 @@ for _k, _mu, _paper, _figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (
     CLAIMS.add(
         f"F{_k}",
         "V.B",
-        f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, by bisection on the "
-        "load path",
+        f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, on the load path",
         f"{_paper:g} mg",
         _figures,
     )(at_force("first_opening", _mu, _paper, what="first opening", text="opens at", first_sampled=True))
@@ -179,7 +178,7 @@ CLAIMS.add("R3b", "V.E, Fig. 8", "friction 0.2: force at which the open region r
 CLAIMS.add(
     "R4a",
     "V.E, Fig. 16a",
-    "friction 0.2: force from which the response with two peaks has a third one at x = 0, by bisection",
+    "friction 0.2: force from which the response with two peaks has a third one at x = 0, on the load path",
     "from about 40 mg",
 )(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
 

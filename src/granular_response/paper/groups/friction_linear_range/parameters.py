@@ -26,15 +26,6 @@ class End(Description):
     force: Positive
 
 
-class Tolerance(Description):
-    """Widths of the brackets of events, in mean disk weights."""
-
-    first_opening: Positive
-    linear_range: Positive
-    shape: Positive
-    asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
-
-
 class FrictionAxis(Description):
     """Fig. 12."""
 
@@ -61,7 +52,7 @@ class Parameters(SceneGroup):
     ends: tuple[End, ...] = ()
     extra_forces: tuple[Extra, ...] = ()
     states_of: Coefficients = Field(description="Frictions whose states are stored and whose events are all located.")
-    tolerance: Tolerance
+    asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
     friction_axis: FrictionAxis
     dynamics: LargeForces
 

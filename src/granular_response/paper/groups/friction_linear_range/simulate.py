@@ -1,10 +1,10 @@
 """The response of an ordered slab with friction against the force (Secs. V.A, V.B, V.D and V.E).
 
 Figs. 6 to 9 (linear range, profiles, contact changes), Fig. 12 (friction at one force), Fig. 16 (large
-forces), and the forces at which things happen, by bisection. One load path per coefficient of friction
-serves every force, and a bisection continues it from the state below. At large forces with much friction
-symmetric equilibria lose their stability, and which one is reached depends on the transient: there the
-paper's protocol is followed, dynamics from rest to each force; its ramp time is not told.
+forces), and the forces at which things happen. One load path per coefficient of friction serves every force
+and tells its events. At large forces with much friction symmetric equilibria lose their stability, and which
+one is reached depends on the transient: there the paper's protocol is followed, dynamics from rest to each
+force; its ramp time is not told.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import xarray as xr
 from granular_response.observe import events
 from granular_response.paper import slab_response as slab
 from granular_response.paper.datasets import labelled
-from granular_response.paper.groups.friction_linear_range.parameters import LargeForces, Parameters, Tolerance
+from granular_response.paper.groups.friction_linear_range.parameters import LargeForces, Parameters
 from granular_response.scene import Scene
 from granular_response.solve import Problem
-from granular_response.state import Crossing, State
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.state import Event, State
+from granular_response.store.result import FORCE, variable
 from granular_response.sweeps.tasks import run_tasks
 
 
@@ -34,7 +34,7 @@ class PathResult:
     forces: tuple[float, ...]
     measured: xr.Dataset
     events: tuple[slab.Event, ...]
-    crossings: tuple[Crossing, ...]  #: of the path, without its bisections
+    lost: tuple[Event, ...]  #: equilibria
     method: str
     rest: State
     states: tuple[State, ...]  #: at ``forces``, or none
@@ -46,34 +46,30 @@ class PathTask:
 
     scene: Scene
     forces: tuple[float, ...]
-    tolerance: Tolerance | None = None  #: none: no events
-    all_events: bool = False
-    keep_states: bool = False
+    asymmetry: float | None = None  #: from which symmetry is lost; none: no events
+    keep_states: bool = False  #: and locate every event
 
     def run(self) -> PathResult:
         path = slab.LoadPath.of(self.scene)
         states = path.through(self.forces)
-        crossings = tuple(path.crossings)
         measures = slab.Measures(path)
         return PathResult(
             self.scene.contact.friction,
             self.forces,
             slab.measured(measures, states),
-            tuple(self._events(path, measures, self.tolerance)) if self.tolerance else (),
-            crossings,
+            tuple(self._events(path, measures, self.asymmetry)) if self.asymmetry else (),
+            tuple(slab.lost(states)),
             path.method,
             path.rest,
             tuple(states) if self.keep_states else (),
         )
 
-    def _events(self, path: slab.LoadPath, measures: slab.Measures, tolerance: Tolerance) -> list[slab.Event]:
-        widths = {"first_opening": tolerance.first_opening, "linear_range": tolerance.linear_range}
+    def _events(self, path: slab.LoadPath, measures: slab.Measures, asymmetry: float) -> list[slab.Event]:
+        asked = slab.happenings(measures, path.known[self.forces[0]], asymmetry)
         return [
-            slab.locate(name, path, self.forces, happened, widths.get(name, tolerance.shape), definition)
-            for name, (happened, definition) in slab.happenings(
-                measures, path.known[self.forces[0]], tolerance.asymmetry
-            ).items()
-            if self.all_events or name in widths
+            slab.locate(name, path, self.forces, what)
+            for name, what in asked.items()
+            if self.keep_states or name in ("first_opening", "linear_range")
         ]
 
 
@@ -107,7 +103,7 @@ class FrictionTask:
             return not slab.Measures(path).double_peaked(path.at(self.force))
 
         found = events.bisect_event(single_peaked, self.low, self.high, self.tolerance, at_low=False, at_high=True)
-        return _friction_crossover(self.force, found.low, found.high, self.tolerance, found.evaluations)
+        return _friction_crossover(self.force, found.low, found.high)
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -116,7 +112,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     Returns
     -------
     ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
-    ``large_forces`` (force) with ``large_force_states``, ``events`` and ``crossings``.
+    ``large_forces`` (force) with ``large_force_states``, ``events`` and ``lost``.
     """
     base, frictions, axis = parameters.base, parameters.frictions, parameters.friction_axis
     axis_frictions, axis_force = sorted(axis.frictions), axis.force
@@ -132,7 +128,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         refine = []
     dynamics = _dynamics_tasks(parameters.dynamics, base, paths)
     done = run_tasks([*refine, *dynamics], what="large forces")
-    crossover = done[0] if refine else _friction_crossover(axis_force, low, high, axis.tolerance, 0)
+    crossover = done[0] if refine else _friction_crossover(axis_force, low, high)
     shaken: list[tuple[State, xr.Dataset]] = done[len(refine) :]
 
     main = [paths[mu] for mu in frictions]
@@ -142,7 +138,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "friction_axis": slab.measured_along("friction", list(on_axis.values())).assign_coords(
             friction=_friction(axis_frictions)
         ),
-        "crossings": _crossings_dataset(main),
+        "lost": slab.lost_dataset([(result.friction, event) for result in main for event in result.lost]),
     }
     datasets["friction_axis"]["force"] = variable((), axis_force, f"applied force {FORCE}")
     for result in main:
@@ -153,7 +149,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         large = _large_forces_dataset(mu, dynamics, [measured for _, measured in shaken])
         datasets["large_forces"] = large
         datasets["large_force_states"] = _picture(base, [paths[mu].rest, *(state for state, _ in shaken)])
-        found.append(_loss_of_symmetry(mu, large, parameters.tolerance.asymmetry))
+        found.append(_loss_of_symmetry(mu, large, parameters.asymmetry))
     datasets["events"] = slab.events_dataset(found)
     return labelled(datasets, base)
 
@@ -170,7 +166,7 @@ def _path_tasks(parameters: Parameters, base: Scene, axis_frictions: Sequence[fl
         forces = {axis_force, *parameters.forces, *further.get(mu, ())}
         reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
         keep = mu in parameters.states_of
-        return PathTask(scene, reached, parameters.tolerance, keep, keep)
+        return PathTask(scene, reached, parameters.asymmetry, keep)
 
     return [task(mu) for mu in [*frictions, *(mu for mu in axis_frictions if mu not in frictions)]]
 
@@ -193,16 +189,16 @@ def _at_force(result: PathResult, force: float) -> xr.Dataset:
     return result.measured.isel(state=[result.forces.index(force)])
 
 
-def _friction_crossover(force: float, low: float, high: float, tolerance: float, evaluations: int) -> slab.Event:
+def _friction_crossover(force: float, low: float, high: float) -> slab.Event:
     text = f"along the axis of friction at force {force:g}, the floor response no longer has two peaks"
-    return slab.Event("friction_crossover", float("nan"), low, high, tolerance, evaluations, text)
+    return slab.Event("friction_crossover", float("nan"), low, high, text)
 
 
 def _loss_of_symmetry(friction: float, large: xr.Dataset, above: float) -> slab.Event:
     forces = large["force"].values
     low, high = slab.first_change(forces, (large["asymmetry"].values > above).tolist())
     text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {above:g}"
-    return slab.Event("loss_of_symmetry", friction, low, high, high - low, len(forces), text)
+    return slab.Event("loss_of_symmetry", friction, low, high, text)
 
 
 def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
@@ -215,15 +211,6 @@ def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
     dataset = slab.measured_dataset(dims, parts, shape).assign_coords(
         friction=_friction([result.friction for result in results]), force=_force(forces)
     )
-    crossed = np.full(shape, np.nan)
-    for (row, columns), result in zip((index for index, _ in parts), results, strict=True):
-        below = (0.0, *result.forces[:-1])
-        crossed[row, columns] = [
-            any(crossing.start < force and crossing.end > start for crossing in result.crossings)
-            for start, force in zip(below, result.forces, strict=True)
-        ]
-    text = "1 where dynamics carried the packing over part of the load since the force before"
-    dataset["crossed_by_dynamics"] = variable(dims, crossed, text)
     dataset.attrs["method"] = ", ".join(f"friction {r.friction:g}: {r.method}" for r in results)
     return dataset
 
@@ -235,27 +222,6 @@ def _large_forces_dataset(friction: float, tasks: Sequence[DynamicsTask], measur
     dataset["ramp_time"] = variable((), protocol.ramp_time, "duration of the load ramp in sqrt(radius/g)")
     dataset["time_step"] = variable((), protocol.time_step, "time step in sqrt(radius/g)")
     return dataset
-
-
-def _crossings_dataset(results: Sequence[PathResult]) -> xr.Dataset:
-    """Where dynamics carried a path on; empty if nowhere."""
-    found = [(result.friction, crossing) for result in results for crossing in result.crossings]
-
-    def column(values: list, long_name: str) -> xr.Variable:
-        return variable("crossing", np.array(values, dtype=float), long_name)
-
-    return xr.Dataset(
-        {
-            "friction": column([friction for friction, _ in found], "coefficient of friction of the path"),
-            "start": column([c.start for _, c in found], f"force from which dynamics took over {FORCE}"),
-            "end": column([c.end for _, c in found], f"force at which statics took over again {FORCE}"),
-            "unstable": column(
-                [c.reason == "unstable" for _, c in found],
-                "1 where the equilibrium had lost its stability, 0 where none was found",
-            ),
-            "displacement": column([c.displacement for _, c in found], f"largest on the way {LENGTH}"),
-        }
-    )
 
 
 def _picture(scene: Scene, states: Sequence[State]) -> xr.Dataset:

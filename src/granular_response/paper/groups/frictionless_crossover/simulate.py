@@ -99,7 +99,9 @@ def solve(task: Task) -> Outcome:
         "teardrop_reaches_floor": lambda state: measures.region(state).reaches_floor,
     }
     found = {
-        name: slab_response.locate(name, path, task.forces, happened[name], _width(task, states, happened[name]), text)
+        name: slab_response.locate(
+            name, path, task.forces, slab_response.Happening(happened[name], text), task.tolerance
+        )
         for name, text in EVENTS.items()
     }
     packing = path.problem.packing
@@ -125,12 +127,6 @@ def settle(scene: Scene) -> State:
         return rest_state(Problem.from_scene(scene))
     except Rearranged:
         return rest_state(Problem.from_scene(scene.updated({"protocol.method": "dynamics"})))
-
-
-def _width(task: Task, states: Sequence[State], happened: Callable[[State], bool]) -> float:
-    """Width asked of the bracket of an event, from the first force at which it has happened."""
-    at = [force for force, state in zip(task.forces, states, strict=True) if happened(state)]
-    return task.tolerance * min(at, default=task.forces[-1])
 
 
 def rest_asymmetry(position: FloatArray, rest: State, width: float) -> float:

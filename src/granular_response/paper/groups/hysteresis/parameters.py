@@ -38,7 +38,7 @@ class Parameters(SurveyedGroup):
         "change under the load."
     )
     width: Positive = Field(description="w of the Gaussian at x = 0 under disordered packings, in radii.")
-    tolerance: Part = Field(description="Widths of the brackets of events, as a part of the force.")
+    tolerance: Part = Field(description="Width of the bracket of the reversible range, as a part of the force.")
 
     @property
     def surveyed(self) -> bool:

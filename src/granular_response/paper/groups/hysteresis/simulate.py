@@ -3,7 +3,7 @@
 Each packing is loaded along one path of equilibria. From every force F at which the load turns it goes back to none
 and up to F again; the paths begin at the state that loading has reached, so that each loop is the first one of its
 packing. Inertia and dashpots have no part in a path: what a load does and the packing does not store has slid away
-(``solve.work``), but where dynamics crosses the end of a branch: what goes
+(``solve.work``), but where an equilibrium is lost and the motion of the disks leads to the next one: what goes
 there into dashpots and sliding together is booked apart.
 
 Events, along the first loading: the first opening of a contact, the end of the linear range (the response at x = 0
@@ -13,19 +13,25 @@ that force leaves some floor force changed by more than a part of the largest ch
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from granular_response.observe import network
+from granular_response.observe.events import bisect_event
 from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.hysteresis.parameters import Parameters
-from granular_response.paper.slab_response import LINEARITY, Event, LoadPath, Measures, first_change, locate
+from granular_response.paper.slab_response import (
+    LINEARITY,
+    Happening,
+    LoadPath,
+    Measures,
+    by_motion,
+    first_change,
+)
 from granular_response.paper.survey.packings import Key, Layout, chosen
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states
@@ -59,11 +65,11 @@ MEASURED = {
     "slid": f"energy that sliding took in the first loop {ENERGY}",
     "slid_walls": f"the part of that at floor and side walls {ENERGY}",
     "slid_opened": f"the part of that in contacts which touch at rest and not under load {ENERGY}",
-    "crossed": f"where dynamics had a part in the first loop, what was neither kept nor slid; else 0 {ENERGY}",
+    "crossed": f"where disks jumped in the first loop, what was neither kept nor slid; else 0 {ENERGY}",
     "lost_again": f"work of the load round the second loop, from the load to the load {ENERGY}",
     "kept_again": f"energy that the packing has stored more after the second loop {ENERGY}",
     "slid_again": f"energy that sliding took in the second loop {ENERGY}",
-    "crossed_again": f"where dynamics had a part in the second loop, what was neither kept nor slid; else 0 {ENERGY}",
+    "crossed_again": f"where disks jumped in the second loop, what was neither kept nor slid; else 0 {ENERGY}",
 }
 
 
@@ -142,27 +148,19 @@ class Books:
 def keep_books(problem: Problem, states: Sequence[State]) -> Books:
     """Where the work of the load goes along ``states``, with common candidates.
 
-    Sliding between two states with a crossing by dynamics is left out: nothing is known of the way between them.
+    Sliding between two states is left out where the motion of the disks led from one to the other: nothing is known of
+    the way between them.
     """
     pairs, walls, done, crosses = np.zeros(len(states[0].pairs.first)), 0.0, 0.0, False
     for before, after in pairwise(states):
         done += work(problem, before, after)
-        if _crosses(before, after):
+        if by_motion(after):
             crosses = True
             continue
         lost = slid(problem, before, after)
         pairs += lost.pairs
         walls += float(lost.walls.sum())
     return Books(done, stored(problem, states[-1]) - stored(problem, states[0]), pairs, walls, crosses)
-
-
-def _crosses(before: State, after: State) -> bool:
-    """Whether dynamics carried the packing over some of the load between neighbouring states of a path."""
-    low, high = sorted((before.load_factor, after.load_factor))
-    known = before.reached.crossings
-    late = after.reached.crossings
-    fresh = late[len(known) :] if late[: len(known)] == known else late
-    return any(max(c.start, c.end) > low and min(c.start, c.end) < high for c in fresh)
 
 
 def grid(forces: Sequence[float], increments: int) -> list[float]:
@@ -205,12 +203,6 @@ class Packing:
         response = self.measures.response(state)
         return float(smoothed_response([0.0], self.measures.x, response, self.task.width)[0])
 
-    def opened(self, state: State) -> NDArray[np.bool_]:
-        """(m,) candidates of both that touch at rest and not in ``state``, in the central third of the slab."""
-        rest, there = common_candidates([self.path.rest, state], self.problem.packing.radius)
-        width = self.problem.packing.width
-        return rest.pairs.touching & ~there.pairs.touching & network.interior_contacts(rest, width, width / 3.0)
-
     def after(self, state: State, loads: Sequence[float]) -> list[State]:
         """States at ``loads`` in turn, from ``state`` on."""
         return loaded_states(self.problem, state, loads)[1]
@@ -226,25 +218,24 @@ class Packing:
             self.known_left[force] = self.left(state, self.after(state, [0.0])[0])
         return self.known_left[force]
 
-    def events(self) -> tuple[Event, ...]:
-        """See the module."""
-        task, forces = self.task, self.task.forces
-        passed = sorted(self.path.known)
-        linear = self.centre(self.path.known[forces[0]])
-        looked_at = {"first_opening": passed, "linear_range": passed[passed.index(forces[0]) :]}
-        asked: dict[str, Callable[[State], bool]] = {
-            "first_opening": lambda state: bool(self.opened(state).any()),
-            "linear_range": lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY,
-            "reversible_range": lambda state: self.left_by(state) > task.left,
-        }
-        found = []
-        for name in EVENTS:
-            happened = asked[name]
-            at = looked_at.get(name, forces)  # a loop is known of where the load turns alone
-            _, high = first_change(at, [happened(self.path.known[force]) for force in at])
-            width = task.tolerance * high if np.isfinite(high) else np.inf
-            found.append(locate(name, self.path, at, happened, width, EVENTS[name]))
-        return tuple(found)
+    def events(self) -> list[tuple[float, float]]:
+        """Brackets of ``EVENTS``; see the module."""
+        task, path, forces = self.task, self.path, self.task.forces
+        passed = sorted(path.known)
+        linear = self.centre(path.known[forces[0]])
+        opening, nonlinear = (
+            Happening(lambda state: self.measures.opened(state) > 0, EVENTS["first_opening"], of_contacts=True),
+            Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"]),
+        )
+        # a loop is known of where the load turns alone, and to each further force it is a way of its own
+        low, high = first_change(forces, [self.left_by(path.known[force]) > task.left for force in forces])
+        if np.isfinite(high) and high - low > task.tolerance * high:
+            found = bisect_event(
+                lambda force: self.left_by(path.at(force)) > task.left, low, high, task.tolerance * high,
+                at_low=False, at_high=True,
+            )  # fmt: skip
+            low, high = found.low, found.high
+        return [path.first(passed, opening), path.first(passed[passed.index(forces[0]) :], nonlinear), (low, high)]
 
 
 def compute(task: Task) -> Outcome:
@@ -275,7 +266,7 @@ def compute(task: Task) -> Outcome:
                 "displacement_left": packing.sunk(unloaded),
                 "displacement_repeated": packing.sunk(second),
                 "nonlinearity": packing.centre(loaded) / linear - 1.0,
-                "opened_contacts": packing.opened(first[turn]).sum(),
+                "opened_contacts": packing.measures.opened(first[turn]),
                 "sliding_contacts": loaded.pairs.sliding.sum() + loaded.walls.sliding.sum(),
                 "work": once.work,
                 "lost": loop.work,
@@ -296,7 +287,7 @@ def compute(task: Task) -> Outcome:
     added = np.stack([packing.added(state) for state in (loaded, unloaded, second)])
     return Outcome(
         np.array([[float(row[name]) for name in MEASURED] for row in rows]),
-        np.array([(event.low, event.high) for event in packing.events()]),
+        np.array(packing.events()),
         Shown(curve, added, packing.measures.x),
     )
 

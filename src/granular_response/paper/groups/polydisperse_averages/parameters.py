@@ -38,14 +38,6 @@ class Cases(Description):
     realizations: Count | None = Field(default=None, description="null: those of the group.")
 
 
-class Loading(Description):
-    """A stage between two forces."""
-
-    ramp_time: Positive
-    largest_rate: Positive = Field(description="The ramp is longer where the load would else grow faster.")
-    stop_kinetic_energy: Positive = Field(description="At which dynamics hands over to statics.")
-
-
 class Individual(Description):
     """Fig. 19."""
 
@@ -62,7 +54,6 @@ class LinearRange(Description):
     polydispersities: Spreads
     frictions: Coefficients
     forces: Growing
-    ramp_time: Positive
     width: Positive
     tolerance: Positive
 
@@ -96,7 +87,6 @@ class EnsembleGroup(SceneGroup):
     ] = UNIT_LOAD
     time_step_part: Part = Field(description="Time step over the stability limit of the lightest disk.")
     longest_time_step: Positive = Field(description="Without friction the limit is far beyond what the fall needs.")
-    loading: Loading
     collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a packing counts as collapsed.")
 
 

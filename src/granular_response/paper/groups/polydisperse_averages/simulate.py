@@ -42,7 +42,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for delta, mu in grid:
         case = Case(delta, mu, parameters.lattice_constant, linear.forces, 1, wall_friction=0.0)
-        tasks.append(replace(realizations.ensemble_task(parameters, case, 0), ramp_time=linear.ramp_time))
+        tasks.append(realizations.ensemble_task(parameters, case, 0))
 
     found = map_tasks(realizations.realize, tasks, what="realizations")
     ensemble, single = found[: len(found) - len(grid)], found[len(found) - len(grid) :]

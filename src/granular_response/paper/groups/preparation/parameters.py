@@ -43,7 +43,7 @@ class Parameters(SceneGroup):
 
     scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "wall.friction", "preparation", "loads")] = UNIT_LOAD
     ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
-    forces: Growing = Field(description="Events are bracketed by neighbours of these.")
+    forces: Growing = Field(description="In mean disk weights.")
     parts: tuple[Part, ...] = Field(min_length=1)
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
 

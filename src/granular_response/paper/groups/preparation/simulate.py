@@ -1,13 +1,12 @@
 """The same slab prepared in several ways: what a growing force does to each, and from which force on (Sec. V).
 
 The paper says neither how gravity came nor for how long; with friction the slab at rest remembers it. Each way to
-prepare it is loaded by the same forces, from the state below. Without friction rest is one minimum of the energy, and
+prepare it is loaded by the same forces, on one path. Without friction rest is one minimum of the energy, and
 one way stands for all.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -43,10 +42,7 @@ class Task:
         return Outcome(
             self,
             slab.measured(measures, states),
-            [
-                slab.locate(name, path, self.forces, happened, math.inf, definition)
-                for name, (happened, definition) in asked.items()
-            ],
+            [slab.locate(name, path, self.forces, what) for name, what in asked.items()],
             float(pairs.normal_force[level].mean()) if level.any() else 0.0,
             measures.mobilised(path.rest),
         )

@@ -274,7 +274,7 @@ def _rounding(parameters: Rounding, seed: int) -> Plan:
         "excess_coordination": "contacts per bearing disk beyond the isostatic number",
         "loose_disks": "disks with fewer than two contacts",
         "negative_modes": "negative modes of the rest state",
-        "crossings": "stretches of load that dynamics crossed",
+        "lost": "equilibria that the path has lost",
     }
 
     several: list[list[Disturbed]] = yield tasks

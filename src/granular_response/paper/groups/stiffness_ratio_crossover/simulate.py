@@ -90,7 +90,7 @@ def narrow(search: Search) -> slab.Event:
         return happened(measure(Ratio(search.base, ratio, search.force))[0])
 
     bracket = bisect_event(predicate, search.low, search.high, search.tolerance, at_low=False, at_high=True)
-    return _event(search.name, search.base, bracket.low, bracket.high, search.tolerance, bracket.evaluations)
+    return _event(search.name, search.base, bracket.low, bracket.high)
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -108,7 +108,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         if np.isfinite(high) and low > 0.0 and high - low > tolerance:
             searches.append(Search(name, base, force, low, high, tolerance))
         else:
-            found.append(_event(name, base, low, high, tolerance, 0))
+            found.append(_event(name, base, low, high))
     found += map_tasks(narrow, searches, what="crossovers")
     found.sort(key=lambda event: list(EVENTS).index(event.name))
 
@@ -212,8 +212,8 @@ def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> list[tuple[
     ]
 
 
-def _event(name: str, base: Scene, low: float, high: float, tolerance: float, evaluations: int) -> slab.Event:
-    return slab.Event(name, base.contact.friction, low, high, tolerance, evaluations, EVENTS[name])
+def _event(name: str, base: Scene, low: float, high: float) -> slab.Event:
+    return slab.Event(name, base.contact.friction, low, high, EVENTS[name])
 
 
 def _ratio(ratios: FloatArray) -> xr.Variable:

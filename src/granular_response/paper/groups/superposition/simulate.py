@@ -7,7 +7,7 @@ the added forces on the floor, over the added forces at all contacts as vectors,
 rows, which tells how it changes with depth. A single load on the middle disk, on a path of its own, tells where the
 response of the slab ceases to be linear.
 
-The paper shows one realization; here are several, and which of the stages of a load path needed dynamics is stored.
+The paper shows one realization; here are several, and where the motion of the disks had a part in a path is stored.
 """
 
 from __future__ import annotations
@@ -23,10 +23,9 @@ from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.paper.datasets import labelled
 from granular_response.paper.groups.superposition.parameters import Parameters
+from granular_response.paper.slab_response import by_motion
 from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states
-from granular_response.solve.choice import load_method
-from granular_response.solve.stages import climb
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_of
@@ -71,7 +70,7 @@ class Pair:
     response: FloatArray  #: (forces, parts, floor disks) added floor force per force on one disk
     errors: Mapping[str, FloatArray]  #: ERRORS, each (forces,)
     row_error: FloatArray  #: (forces, rows - 1) root mean square errors between neighbouring rows, from below
-    by_dynamics: BoolArray  #: (forces, parts) whether the stage that ends here needed dynamics
+    by_motion: BoolArray  #: (forces, parts) as the dataset says
     load_x: FloatArray  #: (2,) rest position of the loaded disks
     certified: Mapping[str, float]  #: CERTIFIED
 
@@ -88,11 +87,10 @@ class Single:
 def load_pair(task: Task) -> Pair:
     """Left, right and both; raises what the solvers raise."""
     sides = ((-task.offset,), (task.offset,), (-task.offset, task.offset))
-    paths, dynamic, load_x = [], [], np.empty(0)
+    paths, load_x = [], np.empty(0)
     for places in sides:
-        states, by_dynamics, load_x = _path(task, places)  # the last one gives both positions
+        states, load_x = _path(task, places)  # the last one gives both positions
         paths.append(states)
-        dynamic.append(by_dynamics)
     packing = task.scene.packing.build()
     count = len(task.forces)
     flat = [state for path in paths for state in path]
@@ -117,7 +115,7 @@ def load_pair(task: Task) -> Pair:
         response=np.moveaxis(on_floor, 0, 1) / np.array(task.forces)[:, None, None],
         errors=errors,
         row_error=row_error,
-        by_dynamics=np.array(dynamic).T,
+        by_motion=np.array([[by_motion(state) for state in path] for path in paths]).T,
         load_x=load_x,
         certified={name: float(max(getattr(c, name) for c in certificates)) for name in CERTIFIED},
     )
@@ -125,7 +123,7 @@ def load_pair(task: Task) -> Pair:
 
 def load_single(task: Task) -> Single:
     """One load on the middle disk; raises what the solvers raise."""
-    states, _, load_x = _path(task, (0,))
+    states, load_x = _path(task, (0,))
     packing = task.scene.packing.build()
     rest, *states = common_candidates([task.rest, *states], packing.radius)
     disks = np.flatnonzero(packing.row == 0)
@@ -137,20 +135,11 @@ def load_single(task: Task) -> Single:
     return Single(response, change, float(load_x[0]))
 
 
-def _path(task: Task, places: Sequence[int]) -> tuple[list[State], list[bool], FloatArray]:
-    """States at all forces, whether their stages needed dynamics, and where the loaded disks are at rest."""
+def _path(task: Task, places: Sequence[int]) -> tuple[list[State], FloatArray]:
+    """States at all forces, and where the loaded disks are at rest."""
     loads = [{"disk": {"row": "top", "offset": place}, "force": [0.0, -1.0]} for place in places]
     problem = Problem.from_scene(task.scene.updated({"loads": loads})).with_loads(task.rest.position)
-    load_x = task.rest.position[problem.load_disk, 0]
-    method = load_method(problem).method
-    if method != "stages":
-        return loaded_states(problem, task.rest, task.forces)[1], [method == "dynamics"] * len(task.forces), load_x
-    states, by_dynamics, state = [], [], task.rest
-    for force in task.forces:
-        state, stage = climb(problem, state, force)
-        states.append(state)
-        by_dynamics.append(not stage.static)
-    return states, by_dynamics, load_x
+    return loaded_states(problem, task.rest, task.forces)[1], task.rest.position[problem.load_disk, 0]
 
 
 def superposition_error(left: FloatArray, right: FloatArray, both: FloatArray) -> tuple[float, float]:
@@ -216,10 +205,10 @@ def _responses(
                 [[pair.response for pair in row] for row in pairs],
                 "vertical floor force that the load adds, per force on one disk",
             ),
-            "by_dynamics": variable(
+            "by_motion": variable(
                 ("realization", "distance", "force", "part"),
-                np.array([[pair.by_dynamics for pair in row] for row in pairs], dtype=np.int8),
-                "1 where the stage of the load path that ends here needed dynamics",
+                np.array([[pair.by_motion for pair in row] for row in pairs], dtype=np.int8),
+                "1 where the motion of the disks had a part in what led here from the force before",
             ),
             "x": variable(
                 ("realization", "floor_disk"), x, f"rest position of a floor disk from the middle disk on top {LENGTH}"

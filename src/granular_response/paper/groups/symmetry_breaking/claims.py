@@ -25,7 +25,7 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
     }
     for walls, friction in (("smooth", 0.0), ("rough", 1.0)):
         for way, event in preparations.events(data, "loss_of_symmetry_path", 1.0, friction).items():
-            found[f"{way}, {walls} walls, force grown in stages"] = event
+            found[f"{way}, {walls} walls, along a load path"] = event
     # the next force that the paper names is 95 mg, where its response has lost its symmetry
     return asked.each(
         "",

@@ -90,7 +90,7 @@ class RampTask:
             f"dynamics with a ramp of {self.protocol.ramp_time:g} and a time step of "
             f"{time_step:g}: the asymmetry of the floor response exceeds {self.above:g}"
         )
-        event = slab.Event("loss_of_symmetry", measures.friction, low, high, self.tolerance, len(forces), text)
+        event = slab.Event("loss_of_symmetry", measures.friction, low, high, text)
         ends = tuple(path.known[force] for force in (low, high) if force in path.known)
         measured = slab.measured(measures, [path.known[force] for force in forces])
         states = ends if len(ends) == 2 else ()

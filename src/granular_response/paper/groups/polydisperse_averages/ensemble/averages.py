@@ -116,9 +116,7 @@ def linear_range_dataset(
                 dims, centre, "smoothed response at x = 0 in 1/mean radius: stress per applied force"
             ),
             "outcome": variable(dims, np.stack([one.outcome for one in found]), "what became of the packing"),
-            "static_until": variable(
-                dims, np.stack([one.loaded["static_until"] for one in found]), LOADED["static_until"]
-            ),
+            "by_motion": variable(dims, np.stack([one.loaded["by_motion"] for one in found]), LOADED["by_motion"]),
             "linear_until": variable("path", end[:, 0], f"last force {FORCE} at which the response {below}"),
             "nonlinear_from": variable("path", end[:, 1], f"first force {FORCE} at which it does not; nan for none"),
         },

@@ -1,13 +1,13 @@
 """One realization of a disordered slab: settled under gravity, then loaded through all forces of its case.
 
-Without friction each load is followed by minimisation, with friction by stages (``solve.stages``), unless ``method``
-asks for the paper's protocol, dynamics from rest to each force.
+Without friction by minimisation, with friction along a path, unless ``method`` asks for the paper's protocol, dynamics
+from rest to each force.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +16,13 @@ from granular_response.observe import network
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED
 from granular_response.paper.groups.polydisperse_averages.parameters import Case, EnsembleGroup
+from granular_response.paper.slab_response import LoadPath, by_motion, lost
 from granular_response.scene import Scene
-from granular_response.solve import SOLVE_ERRORS, Problem, loaded_states
-from granular_response.solve.choice import load_method
-from granular_response.solve.stages import Collapsed, climb
+from granular_response.solve import SOLVE_ERRORS, Problem
+from granular_response.solve.path import Collapsed
 from granular_response.solve.timestep import stability_limit
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH
-from granular_response.sweeps.rest import rest_state
 
 #: Bins of the contact angles over half a turn.
 ANGLE_BINS = 36
@@ -53,7 +52,8 @@ LOADED = {
     "torque_residual": "largest unbalanced torque on a disk under load, in mean weight times mean radius",
     "coulomb_excess": f"largest excess of a tangential force over the Coulomb limit under load {FORCE}",
     "negative_modes": "unstable directions of the tangent stiffness under load",
-    "static_until": f"force up to which the stage that ends here was solved by statics, dynamics after it {FORCE}",
+    "lost": "equilibria that the path has lost since the force before",
+    "by_motion": "1 where the motion of the disks led to the next one after some of them",
 }
 
 
@@ -64,9 +64,6 @@ class Task:
     scene: Scene  #: with one load, of unit force
     forces: tuple[float, ...]
     collapse_depth: float
-    ramp_time: float  #: of a stage, or longer so that the load grows no faster than ``largest_rate``
-    largest_rate: float
-    stop_kinetic_energy: float  #: under load
     keep: tuple[float, ...] = ()  #: forces whose states are handed back
 
 
@@ -92,8 +89,7 @@ def realize(task: Task) -> Realization:
     loaded = {name: np.full(count, np.nan) for name in LOADED}
     message = ""
     try:
-        problem = Problem.from_scene(task.scene)
-        rest = rest_state(problem)
+        path = LoadPath.of(task.scene)
     except SOLVE_ERRORS as error:
         none = np.zeros(0)
         outcome[:1] = FAILED
@@ -107,13 +103,13 @@ def realize(task: Task) -> Realization:
             angle_density=np.full(ANGLE_BINS, np.nan),
             message=f"gravity: {error}",
         )
-    problem = problem.with_loads(rest.position)
+    problem, rest = path.problem, path.rest
     disk = int(problem.load_disk[0])
-    loading = _Loading(task, problem, rest)
+    path.lowest = float(rest.position[disk, 1]) - task.collapse_depth
     states: list[State] = []
     for k, force in enumerate(task.forces):
         try:
-            state, until = loading.to(force)
+            state = path.at(force)
         except Collapsed as collapse:
             outcome[k], loaded["sink"][k] = COLLAPSED, rest.position[disk, 1] - collapse.height
             break
@@ -125,7 +121,8 @@ def realize(task: Task) -> Realization:
         values = {
             "sink": -moved[disk, 1],
             "largest_displacement": np.hypot(moved[:, 0], moved[:, 1]).max(),
-            "static_until": until,
+            "lost": len(lost([state])),
+            "by_motion": by_motion(state),
             **{name: getattr(certificate, name) for name in LOADED if hasattr(certificate, name)},
         }
         for name in LOADED:
@@ -154,38 +151,6 @@ def realize(task: Task) -> Realization:
     )
 
 
-class _Loading:
-    """The growing load on one packing."""
-
-    def __init__(self, task: Task, problem: Problem, rest: State) -> None:
-        scene = problem.scene.updated({"protocol.stop_kinetic_energy": task.stop_kinetic_energy})
-        self.task, self.rest, self.state = task, rest, rest
-        self.problem = replace(problem, scene=scene)
-        self.method = load_method(self.problem).method
-        self.lowest = float(rest.position[int(problem.load_disk[0]), 1]) - task.collapse_depth
-        self.statics = True
-
-    def to(self, force: float) -> tuple[State, float]:
-        """The state under ``force`` and the force up to which statics led; raises what ``climb`` raises."""
-        if self.method == "dynamics":
-            return loaded_states(self.problem, self.rest, [force])[1][0], 0.0
-        before = self.state.load_factor
-        if self.method != "stages":
-            self.state = loaded_states(self.problem, self.state, [force])[1][0]
-            return self.state, (force if self.state.reached.relaxation_steps is None else before)
-        self.state, stage = climb(
-            self.problem,
-            self.state,
-            force,
-            ramp_time=max(self.task.ramp_time, (force - before) / self.task.largest_rate),
-            statics=self.statics,
-            lowest=self.lowest,
-        )
-        # where statics has failed once it mostly fails at every larger force
-        self.statics = self.statics and stage.static
-        return self.state, stage.static_until
-
-
 def _packing_numbers(problem: Problem, rest: State) -> dict[str, float]:
     count = rest.position.shape[0]
     touching = rest.pairs.touching
@@ -210,15 +175,7 @@ def _packing_numbers(problem: Problem, rest: State) -> dict[str, float]:
 
 def ensemble_task(parameters: EnsembleGroup, case: Case, realization: int) -> Task:
     """The task of one realization of a case."""
-    loading = parameters.loading
-    return Task(
-        scene=ensemble_scene(parameters, case, realization),
-        forces=case.forces,
-        collapse_depth=parameters.collapse_depth,
-        ramp_time=loading.ramp_time,
-        largest_rate=loading.largest_rate,
-        stop_kinetic_energy=loading.stop_kinetic_energy,
-    )
+    return Task(ensemble_scene(parameters, case, realization), case.forces, parameters.collapse_depth)
 
 
 def ensemble_scene(parameters: EnsembleGroup, case: Case, realization: int) -> Scene:

@@ -1,0 +1,107 @@
+"""The events of a load path as one sequence: counted, chosen by kind, shown as a table."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterable, Sequence
+from dataclasses import fields
+from typing import Any, overload
+
+from ..scene.errors import suggestion
+from ..state import CONTACT_EVENTS, LOST_EVENTS, Event
+
+#: Every kind of event.
+KINDS = CONTACT_EVENTS + LOST_EVENTS
+#: Rows of a table in a notebook.
+_SHOWN = 20
+
+
+class Events(Sequence[Event]):
+    """Events in the order of the load path, and for each the index of the state that it leads to.
+
+    A sequence of :class:`granular_response.state.Event`: ``events[0]``, ``len(events)``, ``for event in events``. It is
+    empty where no path was followed.
+
+    >>> result = gr.solve(gr.Scene())
+    >>> result.events.of("opens")[0].load_factor
+    >>> result.events.lost
+    >>> result.events.to_dataframe().groupby(["state", "kind"]).size()
+    """
+
+    def __init__(self, events: Iterable[Event] = (), states: Iterable[int] = ()) -> None:
+        self._events = tuple(events)
+        #: For each event the index of the state that it leads to; the state at rest is 0.
+        self.states = tuple(states)
+        if len(self.states) != len(self._events):
+            raise ValueError(f"states: {len(self.states)} given, must be one for each of {len(self._events)} events")
+
+    @overload
+    def __getitem__(self, place: int) -> Event: ...
+    @overload
+    def __getitem__(self, place: slice) -> Events: ...
+    def __getitem__(self, place: int | slice) -> Event | Events:
+        if isinstance(place, slice):
+            return Events(self._events[place], self.states[place])
+        return self._events[place]
+
+    def __len__(self) -> int:
+        return len(self._events)
+
+    def of(self, *kinds: str) -> Events:
+        """The events of these kinds. Raises ValueError for a kind that there is not."""
+        for kind in kinds:
+            check_kind(kind)
+        return self._where([event.kind in kinds for event in self._events])
+
+    @property
+    def lost(self) -> Events:
+        """Where equilibria were lost."""
+        return self._where([event.lost for event in self._events])
+
+    def counts(self) -> dict[str, int]:
+        """How many there are of each kind that there is."""
+        kinds = [event.kind for event in self._events]
+        return {kind: kinds.count(kind) for kind in KINDS if kind in kinds}
+
+    def to_dataframe(self) -> Any:
+        """A ``pandas.DataFrame``, a row for each event: its fields, after the index of the ``state`` it leads to."""
+        import xarray as xr
+
+        columns = {"state": self.states}
+        columns |= {field.name: tuple(getattr(event, field.name) for event in self._events) for field in fields(Event)}
+        return xr.Dataset({name: ("event", list(values)) for name, values in columns.items()}).to_dataframe()
+
+    def _where(self, chosen: Sequence[bool]) -> Events:
+        kept = [pair for pair, one in zip(zip(self._events, self.states, strict=True), chosen, strict=True) if one]
+        return Events([event for event, _ in kept], [k for _, k in kept])
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Events):
+            return NotImplemented
+        return (self._events, self.states) == (other._events, other.states)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _counted(self) -> str:
+        counts = ", ".join(f"{count} {kind}" for kind, count in self.counts().items())
+        return f"Events: {counts or 'none'}"
+
+    def __repr__(self) -> str:
+        lines = [f"  {event.load_factor:.9g}: {event.kind}, {event.where}" for event in self._events[:_SHOWN]]
+        more = len(self) - len(lines)
+        return "\n".join([self._counted(), *lines, *([f"  and {more} more"] if more else [])])
+
+    def _repr_html_(self) -> str:
+        rows = [("state", "load factor", "kind", "where", "until", "displacement", "reason")]
+        for k, event in zip(self.states[:_SHOWN], self._events[:_SHOWN], strict=True):
+            lost = (f"{event.until:.9g}", f"{event.displacement:.3g}", event.reason) if event.lost else ("", "", "")
+            rows.append((str(k), f"{event.load_factor:.9g}", event.kind, event.where, *lost))
+        lines = [f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in row)}</tr>" for row in rows]
+        more = len(self) - len(rows) + 1
+        return f"<b>{self._counted()}</b><table>{''.join(lines)}</table>{f'and {more} more' if more else ''}"
+
+
+def check_kind(kind: object) -> None:
+    """Raise ValueError, in one line, for what is no kind of event."""
+    if kind not in KINDS:
+        raise ValueError(f"kind = {kind!r}: must be {' or '.join(KINDS)}{suggestion(kind, KINDS)}")

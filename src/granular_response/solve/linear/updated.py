@@ -1,0 +1,135 @@
+"""Solutions for a matrix that differs in few places from one that has been factorised.
+
+Where few contacts have changed, the matrix is ``K + P Q^T`` with a column for each stiffness that came or went. By the
+formula of Sherman, Morrison and Woodbury its solutions are those of K, less a combination of ``K^-1 P``: a change costs
+one solution for each column in place of a factorisation (W. W. Hager, SIAM Review 31, 221, 1989). The sign of the
+determinant is that of K times that of the capacitance matrix ``C = 1 + Q^T K^-1 P``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...machine.machine_code import kernel
+from ...state import FloatArray
+from .factor import Eliminated
+
+#: Pivot of ``C``, or its inverse, from which on half of the digits of a solution are lost.
+LEAST = 1e-7
+
+
+class Updated:
+    """A factorised matrix (n, n) and what has changed since, by keys; up to ``most`` columns of P and Q.
+
+    A column has ``entries`` numbers that are not zero.
+    """
+
+    def __init__(self, factor: Eliminated, n: int, most: int, entries: int):
+        self.factor = factor
+        self._solved = np.zeros((most, n))
+        self._places = np.zeros((most, entries), np.int64)
+        self._right = np.zeros((most, entries))
+        #: by key: what the change was, and its columns
+        self._columns: dict[int, tuple[int, list[int]]] = {}
+        self._free = list(range(most))
+        self._known: tuple[FloatArray, FloatArray] | None = None
+        self._close()
+
+    def update(self, wanted: dict[int, int], change) -> bool:
+        """Make the changes those of ``wanted``, which says of each key what it is; False where there is no room.
+
+        ``change(key)`` gives the places (r, e) of a change and its columns of P and Q, (r, e) each.
+        """
+        for key in [key for key, (what, _) in self._columns.items() if wanted.get(key) != what]:
+            self._free += self._columns.pop(key)[1]
+        for key, what in wanted.items():
+            if key in self._columns:
+                continue
+            places, left, right = change(key)
+            if len(places) > len(self._free):
+                return False
+            columns = [self._free.pop() for _ in places]
+            self._columns[key] = what, columns
+            for r, column in enumerate(columns):
+                one = np.zeros(self._solved.shape[1])
+                np.add.at(one, places[r], left[r])
+                self._solved[column] = self.factor.solve(one)
+                self._places[column], self._right[column] = places[r], right[r]
+        self._close()
+        return True
+
+    def _close(self) -> None:
+        columns = [column for _, columns in self._columns.values() for column in columns]
+        self._order: NDArray[np.int64] = np.array(columns, np.int64)
+        self._capacitance = np.zeros((len(self._order), len(self._order)))
+        self._negative, smallest, largest = _factorise(
+            self._order, self._places, self._right, self._solved, self._capacitance
+        )
+        #: whether solutions keep half of their digits: not where a change takes hold of what nothing held before
+        self.accurate = smallest > LEAST and largest < 1.0 / LEAST
+
+    @property
+    def negative_pivots(self) -> int:
+        """Of the factorisation and of ``C``: where their number changes a real eigenvalue may have passed zero."""
+        return self.factor.negative_pivots + self._negative
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """(n,) the solution for one right-hand side (n,)."""
+        return self._corrected(self.factor.solve(right))
+
+    def solve_same(self, right: FloatArray) -> FloatArray:
+        """As :meth:`solve`, for a right-hand side that stays the same array: its solution by K is kept."""
+        if self._known is None or self._known[0] is not right:
+            self._known = right, self.factor.solve(right)
+        return self._corrected(self._known[1].copy())
+
+    def _corrected(self, x: FloatArray) -> FloatArray:
+        if len(self._order):
+            weights = np.empty(len(self._order))
+            _correct(x, self._order, self._places, self._right, self._solved, self._capacitance, weights)
+        return x
+
+
+@kernel
+def _factorise(order, places, right, solved, c):
+    """Fill ``c`` with L and U of ``C``; the number of negative pivots, the smallest and the largest in size."""
+    size = order.size
+    for i in range(size):
+        row = order[i]
+        for j in range(size):
+            total = 1.0 if i == j else 0.0
+            for e in range(places.shape[1]):
+                total += right[row, e] * solved[order[j], places[row, e]]
+            c[i, j] = total
+    negative, smallest, largest = 0, 1.0, 1.0
+    for k in range(size):
+        pivot = c[k, k]
+        negative += pivot < 0.0
+        smallest, largest = min(smallest, abs(pivot)), max(largest, abs(pivot))
+        for i in range(k + 1, size):
+            c[i, k] /= pivot
+            for j in range(k + 1, size):
+                c[i, j] -= c[i, k] * c[k, j]
+    return negative, smallest, largest
+
+
+@kernel
+def _correct(x, order, places, right, solved, c, weights):
+    """Overwrite ``x``, a solution by K, with that by ``K + P Q^T``."""
+    size = order.size
+    for i in range(size):
+        total = 0.0
+        for e in range(places.shape[1]):
+            total += right[order[i], e] * x[places[order[i], e]]
+        for j in range(i):
+            total -= c[i, j] * weights[j]
+        weights[i] = total
+    for i in range(size - 1, -1, -1):
+        for j in range(i + 1, size):
+            weights[i] -= c[i, j] * weights[j]
+        weights[i] /= c[i, i]
+    for i in range(size):
+        row, weight = order[i], weights[i]
+        for k in range(x.size):
+            x[k] -= weight * solved[row, k]

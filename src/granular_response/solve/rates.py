@@ -1,0 +1,160 @@
+"""The rate problem: how an equilibrium goes on under a load that grows by a little.
+
+Where contacts keep their status the rates of the displacements ``v`` follow from the tangent, ``K v = f``, with ``f``
+the rate of the load. Which statuses these are is part of the problem where contacts are about to change: a contact at
+Coulomb's limit slides (its slip has the direction of its force) or sticks (its force does not pass the limit), one that
+bears nothing closes or opens. This is the linear complementarity problem of contact with friction in rates
+(McNamara and Herrmann, Phys. Rev. E 74, 061303, 2006), solved here by changing the statuses that contradict themselves
+until none does: all at once, and where that comes back to statuses that it has tried, the worst ones alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..kernels import events
+from ..state import OPEN, SLIDING, STICKING, FloatArray
+from .linear.updated import Updated
+from .system import Configuration, StaticSystem, Trial
+
+#: Rounds in which all contacts that contradict themselves change, and rounds in which the worst ones do. Those that
+#: ended took 17 and 30 at most in the packings of the benchmarks.
+ALL, WORST = 8, 60
+#: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
+AS_BAD = 0.999
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What each of m + w contacts does next; see :mod:`granular_response.kernels.events`."""
+
+    what: np.ndarray
+    left: FloatArray  #: force until then (mean weights)
+    rate: FloatArray  #: of its fall
+
+    def first(self) -> tuple[int, float]:
+        """The contact that changes first and after which growth of the load factor; infinity where none does."""
+        return events.first_change(self.left, self.rate)
+
+    def due(self, force: float) -> np.ndarray:
+        """Contacts that are within a ``force`` of their change."""
+        return np.flatnonzero((self.rate > 0.0) & (self.left <= force))
+
+
+def next_changes(
+    system: StaticSystem, trial: Trial, velocity: FloatArray, sense: np.ndarray, force: float, negligible: float
+) -> Changes:
+    """What each contact of a trial does next where displacements grow at the rates ``velocity`` (dof,).
+
+    ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
+    """
+    count, c = len(sense), trial.configuration
+    found = Changes(np.zeros(count, np.int8), np.empty(count), np.empty(count))
+    events.next_changes(
+        c.q, velocity, system.problem.n, system.problem.packing.radius, system.pairs,
+        system.walls, sense, trial.normal, trial.tangential, c.overlap, force, negligible,
+        np.zeros((2, system.problem.n), np.int64), found.what, found.left, found.rate,
+    )  # fmt: skip
+    return found
+
+
+def changed(sense: np.ndarray, contacts: np.ndarray, what: np.ndarray) -> np.ndarray:
+    """Signed statuses (m + w,) after ``contacts`` have done what they do next."""
+    new = sense.copy()
+    for c in contacts:
+        does = what[c]
+        if does == events.OPENS:
+            new[c] = OPEN
+        elif abs(does) == events.SLIDES:
+            new[c] = SLIDING if does > 0 else -SLIDING
+        else:
+            new[c] = STICKING
+    return new
+
+
+@dataclass(frozen=True)
+class Rates:
+    """How an equilibrium goes on until the next contact changes, per load factor in the direction of the path."""
+
+    sense: np.ndarray  #: (m + w,) signed statuses with which it does
+    factor: Updated
+    velocity: FloatArray  #: (dof,)
+    changes: Changes
+
+
+class RateProblem:
+    """Rates of one system on the way to larger (``direction`` 1) or smaller (-1) load factors.
+
+    ``force`` : by which a contact may be away from its change when it changes; ``negligible`` : rate of a force, per
+    load, with which a contact has no part in the load (mean weights).
+    """
+
+    def __init__(self, system: StaticSystem, direction: float, *, force: float, negligible: float):
+        self.system, self.direction, self.force = system, direction, force
+        self.negligible = negligible * system.problem.load_size
+        load = direction * system.problem.load_vector()
+        load[system.held] = 0.0
+        self._load = load
+        self._right = system.interleave(load)
+        #: (dof,) rates of what loads hold
+        self._held = np.zeros(system.dof)
+        self._held[system.held] = direction * system.problem.held.travel
+
+    def velocity(self, known: Configuration, sense: np.ndarray, factor: Updated) -> FloatArray:
+        """(dof,) rates of the displacements with signed statuses (m + w,), by the factorisation of their tangent."""
+        system = self.system
+        if not system.held.size:
+            return system.deinterleave(factor.solve_same(self._right))
+        force = self._load + system.force_rates(system.trial(known, known.q, fixed=sense), self._held)
+        force[system.held] = 0.0
+        return self._held + system.deinterleave(factor.solve(system.interleave(force)))
+
+    def changes(self, trial: Trial, velocity: FloatArray, sense: np.ndarray) -> Changes:
+        """What each contact does next with signed statuses ``sense`` (m + w,)."""
+        return next_changes(self.system, trial, velocity, sense, self.force, self.negligible)
+
+    def left(self, trial: Trial, c: int, what: int) -> float:
+        """Force that is left (mean weights) until contact ``c`` does ``what``."""
+        law = self.system.problem.pair_law if c < len(self.system.first) else self.system.problem.wall_law
+        if what in (events.OPENS, events.CLOSES):
+            overlap = law.normal_stiffness * float(trial.configuration.overlap[c])
+            return overlap if what == events.OPENS else -overlap
+        return law.friction * float(trial.normal[c]) - np.sign(what) * float(trial.tangential[c])
+
+    def fall(self, q: FloatArray, c: int, what: int, displacement: FloatArray) -> float:
+        """By how much a displacement (dof,) lowers that force."""
+        system = self.system
+        n, radius = system.problem.n, system.problem.packing.radius
+        return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls)
+
+    def solve(self, trial: Trial, sense: np.ndarray) -> Rates | None:
+        """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.
+
+        ``sense`` (m + w,) : signed statuses to begin with, of contacts whose forces those of the trial go on.
+        """
+        known = trial.configuration
+        for rounds, worst, anew in ((ALL, False, False), (WORST, True, False), (WORST, True, True)):
+            now, tried = sense, {sense.tobytes()}
+            for _ in range(rounds):
+                factored = self.system.renewed_factor if anew else self.system.updated_factor
+                try:
+                    factor = factored(known, now)
+                    velocity = self.velocity(known, now, factor)
+                except RuntimeError:  # exactly singular
+                    return None
+                if not np.isfinite(velocity).all():
+                    return None
+                found = self.changes(trial, velocity, now)
+                due = found.due(self.force)
+                if not len(due):
+                    return Rates(now, factor, velocity, found)
+                if worst:
+                    rates = found.rate[due]
+                    due = due[rates >= AS_BAD * rates.max()]
+                now = changed(now, due, found.what)
+                if now.tobytes() in tried:
+                    break
+                tried.add(now.tobytes())
+        return None

@@ -1,0 +1,164 @@
+"""Stability of equilibria: closed forms, and complex pairs of eigenvalues of packings whose contacts slide."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scenes import free_disks, scene
+
+from granular_response.solve import Dynamics, Problem, follow, rest_state
+from granular_response.solve.equilibrium import external_force, newton
+from granular_response.solve.stability import divergence, negative_modes, unstable_direction
+from granular_response.solve.system import StaticSystem
+from granular_response.state import OPEN, SLIDING, STICKING
+
+
+def balanced(places, radius, mass, **changes):
+    """The equilibrium of smooth disks of given masses beside the given places."""
+    problem, _ = free_disks(places, radius, contact__friction=0.0, wall__friction=0.0, **changes)
+    problem = Problem.from_scene(problem.scene, replace(problem.packing, given_mass=np.array(mass)))
+    state = problem.bare_state()
+    system = StaticSystem(problem, state)
+    known = system.start(state)
+    trial, report = newton(system, known, external_force(problem, 0.0), tolerance=1e-13, enough=1e-15)
+    assert np.abs(trial.contact_force + external_force(problem, 0.0)).max() < 1e-12 and report.iterations
+    return system, trial
+
+
+@pytest.mark.parametrize("light", [1.0, 1e-1, 1e-3, 1e-5, 1e-7])
+def test_a_disk_on_the_tip_of_another_is_unstable_whatever_it_weighs(light):
+    """It leaves at sqrt(g / d) times the root of 1 + m / M, and moves as much more as it is lighter."""
+    masses = np.array([1.0, light]) * 2.0 / (1.0 + light)  # their mean is 1
+    # overlaps of the equilibrium, so that nothing is left to find
+    floor, between = masses.sum() / 6000.0, masses[1] / 3000.0
+    system, trial = balanced([(10.0, 1.0 - floor), (10.0, 3.0 - floor - between)], None, masses)
+    assert negative_modes(system, trial) == 1
+    direction = unstable_direction(system, trial)
+    assert direction[0] / direction[1] == pytest.approx(-light, rel=1e-3)
+    assert np.abs(direction).max() == 1.0
+    assert divergence(system, trial) is not None
+    rate = masses[1] / 2.0 * (1.0 / masses).sum()
+    matrix = system.tangent(trial).toarray() / system.interleave(1.0 / system.problem.inverse_mass)[:, None]
+    assert np.linalg.eigvals(matrix).real.min() == pytest.approx(-rate, rel=1e-3)
+
+
+@pytest.mark.parametrize("light", [1.0, 1e-3, 1e-7])
+def test_a_disk_in_a_groove_is_stable_whatever_it_weighs(light):
+    """Two disks between walls bear a third."""
+    masses = np.array([1.0, 1.0, light])
+    masses *= 3.0 / masses.sum()
+    # nearly where they rest: pressed into floor, walls and each other by what they bear
+    borne = masses[2] / np.sqrt(3.0)
+    sunk, aside = (masses[0] + 0.5 * masses[2]) / 6000.0, 0.5 * borne / 6000.0
+    apart = 2.0 - borne / 3000.0
+    places = [(1.0 - aside, 1.0 - sunk), (3.0 + aside, 1.0 - sunk)]
+    places.append((2.0, 1.0 - sunk + np.sqrt(apart**2 - (1.0 + aside) ** 2)))
+    system, trial = balanced(places, None, masses, width=4.0)
+    assert negative_modes(system, trial) == 0
+    assert divergence(system, trial) is None
+
+
+@pytest.mark.parametrize("high", [2, 3, 6])
+def test_an_upright_column_has_an_unstable_direction_for_each_contact_between_disks(high):
+    """It may move as a whole along a smooth floor, and bend in as many ways as it has joints."""
+    system, trial = balanced([(10.0, 1.0 + 2.0 * k) for k in range(high)], None, np.ones(high))
+    assert negative_modes(system, trial) == high - 1
+    loads = [{"disk": k, "displacement": [0.0, None]} for k in range(high)]
+    held, state = free_disks(
+        [(10.0, 1.0 + 2.0 * k) for k in range(high)], contact__friction=0.0, wall__friction=0.0, loads=loads
+    )
+    system = StaticSystem(held.with_loads(state.position), state)
+    trial, _ = newton(system, system.start(state), external_force(system.problem, 0.0))
+    assert negative_modes(system, trial) == 0
+
+
+def sliding(layers, across, force):
+    """A slab with friction 0.5 under an oblique force: its state, and the trial that this is."""
+    loads = [{"disk": "top-centre", "force": [0.15 * force, -force]}]
+    problem = Problem.from_scene(scene(layers, across, contact__friction=0.5, wall__friction=0.5, loads=loads))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    (state,) = follow(problem, rest, [1.0])
+    assert state.certificate.stable and not any(event.lost for event in state.reached.events)
+    system = StaticSystem(problem, state)
+    return state, system, system.at(state)
+
+
+def dashpots(system, trial) -> np.ndarray:
+    """The matrix of the dashpots in the order of the tangent: those of sliding contacts act through the limit."""
+    q, n = trial.configuration.q, system.problem.n
+    i, j = system.first, system.second
+    d = np.stack([system.dx0 + q[i] - q[j], system.dz0 + q[n + i] - q[n + j]], axis=1)
+    normal = np.concatenate([d / np.hypot(*d.T)[:, None], system.wall_normals])
+    local = np.zeros((len(normal), 3, 3))
+    for c in np.flatnonzero(trial.status != OPEN):
+        law = system.problem.pair_law if c < len(i) else system.problem.wall_law
+        along = np.array([-normal[c, 1], normal[c, 0]])
+        by_n = -law.normal_damping * np.array([*normal[c], 0.0])
+        by_t = -law.tangential_damping * np.array([*along, -1.0])
+        if trial.status[c] == SLIDING:
+            by_t = np.sign(trial.tangential[c]) * law.friction * by_n
+        local[c, :2] = np.outer(normal[c], by_n) + np.outer(along, by_t)
+        local[c, 2] = by_t
+    return system.tangent(replace(trial, tangent=local)).toarray()
+
+
+def fastest(system, trial, part: float) -> float:
+    """Largest rate of growth of ``M x'' + C x' + K x = 0`` with a ``part`` of the dashpots."""
+    mass = system.interleave(1.0 / system.problem.inverse_mass)[:, None]
+    size = system.dof
+    whole = np.zeros((2 * size, 2 * size))
+    whole[:size, size:] = np.eye(size)
+    whole[size:, :size] = -system.tangent(trial).toarray() / mass
+    whole[size:, size:] = -part * dashpots(system, trial) / mass
+    return float(np.linalg.eigvals(whole).real.max())
+
+
+def complex_pairs(system, trial) -> int:
+    values = np.linalg.eigvals(
+        system.tangent(trial).toarray() / system.interleave(1.0 / system.problem.inverse_mass)[:, None]
+    )
+    return int((values.imag > 1e-6 * np.abs(values).max()).sum())
+
+
+def test_dashpots_are_what_dynamics_has():
+    """Accelerations by velocities, by differences, of a packing that sticks."""
+    problem = Problem.from_scene(scene(3, 6, contact__friction=50.0, wall__friction=50.0, loads=[]))
+    rest = rest_state(problem)
+    system = StaticSystem(problem, rest)
+    trial = system.at(rest)
+    assert set(trial.status) <= {OPEN, STICKING}
+    rng, n, step = np.random.default_rng(0), problem.n, 1e-7
+    v = rng.normal(size=system.dof)
+
+    def force(sign):
+        moving = replace(
+            rest, velocity=sign * step * v[: 2 * n].reshape(2, n).T, angular_velocity=sign * step * v[2 * n :]
+        )
+        return Dynamics(problem, moving).memory[0] / problem.inverse_mass
+
+    expected = -dashpots(system, trial) @ system.interleave(v)
+    assert system.interleave(force(1.0) - force(-1.0)) / (2.0 * step) == pytest.approx(expected, abs=1e-3)
+
+
+@pytest.mark.parametrize(("across", "layers", "force", "decays"), [(10, 5, 5.0, True), (9, 4, 15.0, False)])
+def test_complex_pairs_of_a_packing_that_slides(across, layers, force, decays):
+    """They exist, and grow with a twentieth of the dashpots; with all of them some packings' decay and some do not.
+
+    This is the motion in which contacts slide to and fro. At rest those that slide back stick: a packing that is shaken
+    a little comes to rest beside where it was, whatever the linearised motion does.
+    """
+    state, system, trial = sliding(layers, across, force)
+    assert system.problem.n <= 60 and (trial.status == SLIDING).sum() > 10
+    assert complex_pairs(system, trial) > 15
+    assert (fastest(system, trial, 1.0) < -1.0) is decays
+    assert fastest(system, trial, 0.05) > 1.0
+    sticks = system.trial(trial.configuration, trial.configuration.q, fixed=np.minimum(trial.status, STICKING))
+    assert complex_pairs(system, sticks) == 0
+
+    kicked = replace(state, position=state.position + np.random.default_rng(0).normal(0.0, 1e-6, state.position.shape))
+    dynamics = Dynamics(system.problem, kicked, time_step=4e-4)
+    dynamics.set_ramps(load=(1.0, 1.0, 0.0))
+    dynamics.advance(20_000)
+    assert dynamics.kinetic_energy() < 1e-28
+    assert np.abs(dynamics.position - state.position).max() < 5e-6
