@@ -129,7 +129,6 @@ def test_a_disk_that_bears_is_no_rattler():
     )
 
 
-@pytest.mark.xfail(reason="no statuses are found where two disks touch at no force")
 def test_a_disk_that_is_pushed_against_another_does_not_leave_it():
     """They touch at no force between two walls, and the load presses them together: nothing is lost."""
     load = [{"disk": 0, "force": [1.0, 0.0]}]

@@ -25,8 +25,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from ..errors import SolveError
+from ..kernels import events
 from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
 from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
@@ -55,8 +58,12 @@ class PathOptions:
     passing: float = 1e-10
     #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
     newton: int = 40
-    #: Times that an increment is shortened to an event that came before the one expected.
-    landings: int = 12
+    #: Times that an increment is shortened: to an event that came before the one expected, or to half of its length
+    #: where no equilibrium is found at its end.
+    landings: int = 40
+    #: Displacement in an increment up to which the rates are those of its start with a law of constant stiffness; with
+    #: another law, and after longer ones, they are found again at the end.
+    straight: float = 1e-3
     #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
     still: int = 30
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
@@ -68,8 +75,9 @@ class PathOptions:
     nearby: float = 1e-3
     #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
     jump: float = 0.01
-    #: Displacement after which candidates are listed again, below half of the largest gap listed.
-    listed_again: float = 0.25
+    #: Displacement after which candidates are listed again, and longest in one increment; the two together are below
+    #: half of the largest gap listed.
+    listed_again: float = 0.12
     #: Increment of a large packing that takes events together: this times the square root of the number of disks, since
     #: a deeper packing takes more load to change as many contacts; and at most ``longest``.
     together: float = 0.0066
@@ -165,6 +173,9 @@ class _Path:
         self.weight = external_force(problem, 0.0)
         self.load = external_force(problem, 1.0) - self.weight
         self.jump = options.jump / self.unit
+        laws = problem.pair_law, problem.wall_law
+        #: whether the stiffness of contacts varies with their overlap
+        self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
 
     def to(self, start: State, target: float) -> State:
         """The state at load factor ``target`` on the way from ``start``."""
@@ -263,34 +274,82 @@ class _Path:
         return factor + self.direction * step if abs(self.target - factor) > 1.1 * step else self.target
 
     def _landed(self, point: Point, rates: Rates) -> Point | None:
-        """Where the next contact changes, or the target if that comes first."""
-        changes, left = rates.changes, abs(self.target - point.factor)
+        """Where the next contact changes, or the target or the end of the longest increment if that comes first."""
+        changes, fastest = rates.changes, float(np.abs(rates.velocity[: 2 * self.problem.n]).max(initial=0.0))
+        left = abs(self.target - point.factor)
+        if fastest * left > self.options.listed_again:
+            left = self.options.listed_again / fastest
         contact, length = changes.first()
         what = int(changes.what[contact])
         for _ in range(self.options.landings):
             event = (contact, what) if length < left else None
             found = self._smooth(point, rates, min(length, left), event)
             if found is None:
-                return None
-            factor, trial, then = found
+                left = 0.5 * min(length, left)
+                if left * self.unit < self.options.beyond:
+                    return None
+                continue
+            factor, trial = found
+            far = np.abs(trial.configuration.q - point.known.q)[: 2 * self.problem.n].max(initial=0.0)
+            turned = self.varying or far > self.options.straight
+            velocity = self._velocity(trial, rates.sense) if turned else rates.velocity
+            then = self.rates.changes(trial, velocity, rates.sense)
             passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.event))
-            if not len(passed):
-                self.record.work.increments += 1
-                self.jump = self.options.jump / self.unit
-                due = then.due(self.event)
-                # rates are those of the start: what they say of contacts that bear nothing is the turn on the way
+            if len(passed):  # another contact came first
+                back = -then.left[passed] / then.rate[passed]
+                contact = int(passed[np.argmax(back)])
+                what, length = int(then.what[contact]), max(abs(factor - point.factor) - float(back.max()), 0.0)
+                continue
+            turn = self._turn(point, rates, then, abs(factor - point.factor)) if turned else None
+            if turn is not None:
+                left, length = turn, np.inf
+                continue
+            self.record.work.increments += 1
+            self.jump = self.options.jump / self.unit
+            due = then.due(self.event)
+            if not turned:  # what the rates of the start say of contacts that bear nothing is the turn on the way
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
-                return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
-            # another contact came first
-            back = -then.left[passed] / then.rate[passed]
-            contact = int(passed[np.argmax(back)])
-            what, length = int(then.what[contact]), max(abs(factor - point.factor) - float(back.max()), 0.0)
+            return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
         return None
+
+    def _velocity(self, trial: Trial, sense: np.ndarray) -> FloatArray:
+        """(dof,) rates at a trial with signed statuses ``sense``; zero where the tangent is singular."""
+        try:
+            factor = self.system.renewed_factor(trial.configuration, sense)
+            return self.rates.velocity(trial.configuration, sense, factor)
+        except RuntimeError:
+            return np.zeros(self.system.dof)
+
+    def _turn(self, point: Point, rates: Rates, then: Changes, length: float) -> float | None:
+        """Where the first slip has turned round within an increment of a ``length``, by less than a force; or None."""
+        back = np.flatnonzero((then.what == events.STICKS) & (then.rate > 0.0))
+        way = np.where(rates.sense[back] > 0, events.SLIDES, -events.SLIDES)
+        falls = zip(back.tolist(), way.tolist(), strict=True)
+        ahead = np.array([max(self.rates.fall(point.known.q, c, w, rates.velocity), 0.0) for c, w in falls])
+        turns = length * ahead / (ahead + then.rate[back])
+        late = 0.5 * then.rate[back] * (length - turns) > self.event
+        if not late.any():
+            return None
+        first = int(np.argmin(np.where(late, turns, np.inf)))
+        c, w = int(back[first]), int(way[first])
+        # slip beyond its turn grows as the square of the length
+        beyond = float(np.sqrt(self.event * length / (ahead[first] + then.rate[c])))
+
+        def slip(part: float) -> float:
+            found = (point.factor, point.trial) if part == 0.0 else self._smooth(point, rates, part, None)
+            if found is None:
+                return -1.0
+            trial = found[1]
+            return self.rates.fall(trial.configuration.q, c, w, self._velocity(trial, rates.sense))
+
+        if slip(0.0) <= 0.0:
+            return beyond if length > beyond else None
+        return min(float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) + beyond, length)
 
     def _smooth(
         self, point: Point, rates: Rates, length: float, event: tuple[int, int] | None
-    ) -> tuple[float, Trial, Changes] | None:
-        """Equilibrium with the statuses of ``rates`` a ``length`` of the load factor on, and what changes then.
+    ) -> tuple[float, Trial] | None:
+        """Load factor and equilibrium with the statuses of ``rates`` a ``length`` of the load factor on.
 
         With an ``event``, a contact and what it does, the load factor is an unknown too: that at which the contact does
         it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
@@ -309,7 +368,7 @@ class _Path:
                 return None
             balanced = size <= enough or (size > 0.5 * before and size <= attainable(system, q))
             if balanced and abs(left) <= 0.5 * self.event:
-                return factor, trial, self.rates.changes(trial, velocity, rates.sense)
+                return factor, trial
             if size > options.slow * before or done % options.same_tangent == options.same_tangent - 1:
                 try:
                     by = system.renewed_factor(trial.configuration, rates.sense)
@@ -354,7 +413,11 @@ class _Path:
             return self._by_motion(point, "jump", "disks meet that were not neighbours", None)
         if moved <= self.options.listed_again:
             return point
-        return self._at(self.problem.relisted(self.system.state(point.trial, point.factor)))
+        keys = self.system.keys()
+        new = self._at(self.problem.relisted(self.system.state(point.trial, point.factor)))
+        sense, due = (carried(keys, self.system.keys(), status) for status in (point.sense, point.due))
+        trial = self.system.trial(new.known, new.known.q, fixed=sense)
+        return Point(point.factor, trial, sense, due)
 
     def _lost(self, point: Point, reason: str) -> Point:
         """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
@@ -471,6 +534,12 @@ class _Path:
         self.record.events.append(
             Event(point.factor, kind, i, -1, False, float(x), float(z), until, float(far[i]), reason)
         )
+
+
+def carried(before: NDArray[np.int64], after: NDArray[np.int64], sense: np.ndarray) -> np.ndarray:
+    """Signed statuses of the candidates ``before`` in the order of those ``after``; open where one is new."""
+    known = dict(zip(before.tolist(), sense.tolist(), strict=True))
+    return np.array([known.get(key, OPEN) for key in after.tolist()], sense.dtype)
 
 
 def _kind(before: int, after: int) -> str:

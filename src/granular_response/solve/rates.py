@@ -24,6 +24,8 @@ from .system import Configuration, StaticSystem, Trial
 ALL, WORST = 8, 60
 #: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
 AS_BAD = 0.999
+#: Ties that a load counts as: more than any disk has freedoms, so that a loaded disk is no rattler.
+LOADED = 4
 
 
 @dataclass(frozen=True)
@@ -50,12 +52,14 @@ def next_changes(
 
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
-    count, c = len(sense), trial.configuration
+    count, c, n = len(sense), trial.configuration, system.problem.n
     found = Changes(np.zeros(count, np.int8), np.empty(count), np.empty(count))
+    ties = np.zeros((2, n), np.int64)
+    ties[0, system.problem.load_disk] = LOADED
     events.next_changes(
-        c.q, velocity, system.problem.n, system.problem.packing.radius, system.pairs,
+        c.q, velocity, n, system.problem.packing.radius, system.pairs,
         system.walls, sense, trial.normal, trial.tangential, c.overlap, force, negligible,
-        np.zeros((2, system.problem.n), np.int64), found.what, found.left, found.rate,
+        ties, found.what, found.left, found.rate,
     )  # fmt: skip
     return found
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from ..kernels import events, statics
 from ..kernels.neighbours import close_pairs
@@ -122,6 +123,11 @@ class StaticSystem:
     @property
     def dof(self) -> int:
         return self.problem.n * self.problem.freedoms
+
+    def keys(self) -> NDArray[np.int64]:
+        """(m + w,) one number for the two bodies of each candidate."""
+        n = self.problem.n
+        return np.concatenate([self.first * n + self.second, n * n + self.wall_disk * 3 + self.wall])
 
     def start(self, state: State) -> Configuration:
         """The configuration of a state of the same candidates."""
