@@ -96,6 +96,8 @@ def test_a_packing_of_a_figure_group_is_found_again(group, key):
     again = simulate.compute(tasks[key])
     for name in simulate.STORED.values:
         values = getattr(again, name)
+        if name in simulate.STORED.later and np.isnan(getattr(kept, name)):
+            continue  # not recorded
         scale = np.nanmax(np.abs(values))
         np.testing.assert_allclose(getattr(kept, name), values, atol=SAME * scale, err_msg=name)
 
