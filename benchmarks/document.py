@@ -39,11 +39,11 @@ TEXTS = {
     ),
     "exactness": (
         "How exact a path is",
-        "Load paths against the same path in small increments with the return map, which share no event with it: the "
-        "paper's slab under nine pairs of friction and force, packings of at most 60 disks under loads of all sizes, and "
-        "slabs of 8 to 15 layers. The error is the largest difference of a force of the floor or a wall, per load. A "
-        "path counts as exact that differs by no more than 1e-8 and the error of the increments. Compared are paths on "
-        "which neither way loses an equilibrium.",
+        "Load paths against the same path in small increments with the return map, which share no event with it: the"
+        " paper's slab under nine pairs of friction and force, packings of at most 60 disks under loads of all "
+        "sizes, and slabs of 8 to 15 layers. The error is the largest difference of a force of the floor or a wall, "
+        "per load. A path counts as exact that differs by no more than 1e-8 and the error of the increments. "
+        "Compared are paths on which neither way loses an equilibrium.",
     ),
     "convergence": (
         "Dynamics approaches the path",
