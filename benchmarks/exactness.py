@@ -65,10 +65,13 @@ def scene(random: np.random.Generator, layers: int, across: int, size: float, an
         packing["sides"] = "periodic"
     law = str(random.choice(["linear", "hertz"]))
     friction = float(random.choice([0.05, 0.2, 0.5, 1.0]))
+    wall = float(random.choice([0.0, friction]))
+    if "sides" in packing and wall == 0.0:
+        angle = 0.0  # nothing holds the packing along x
     return {
         "packing": packing,
         "contact": {"friction": friction, "law": law},
-        "wall": {"friction": float(random.choice([0.0, friction]))},
+        "wall": {"friction": wall},
         "loads": [{"disk": "top-centre", "force": [size * np.sin(angle), -size * np.cos(angle)]}],
         "protocol": {"integrator": "leapfrog", "time_step": "auto"},
     }

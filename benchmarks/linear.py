@@ -59,7 +59,7 @@ def systems(layers: int, per_row: int, friction: float) -> list[tuple[sp.csc_arr
     for ordering.WIDEST_BAND in (10**9, 0):
         system = StaticSystem(problem, state)
         known = system.start(state)
-        found.append((system.tangent(system.trial(known, known.q), REGULARISATION * stiffness), system._storage))
+        found.append((system.tangent(system.trial(known, known.q), REGULARISATION * stiffness), system.storage))
     ordering.WIDEST_BAND = widest
     return found
 

@@ -2,9 +2,8 @@
 
 `python benchmarks/precision.py OUTPUT.json`. Two scenes of the paper's slab: friction 0.2 with a load of 15 disk
 weights, and no friction with 4. The error is the largest difference of the normalised response from the quasi-static
-limit: with friction the path with increments of at most 0.05 disk weights, without it the minimum of the energy.
-Halving the increments changes the reference by `reference_change`. Every time includes the fall under gravity, since a
-response needs it; compilation is not included.
+limit: with friction the load path, without it the minimum of the energy. `reference_change` is what another way to the
+limit differs by. Every time includes the fall under gravity, since a response needs it; compilation is not included.
 
 With friction the rest state depends on the fall, and so on rounding and time step a little: LAMMPS falls into another
 one, and keeps a difference however slowly it is loaded. So its error is given from its own limit too, extrapolated
@@ -25,43 +24,40 @@ from granular_response.scene import Scene
 from granular_response.solve import Problem, follow, loaded_states, rest_state
 
 SCENES = {"friction": (0.2, 15.0), "frictionless": (0.0, 4.0)}
-FINEST = 0.05
+#: Increments of the other way with friction, in disk weights, each by the return map.
+INCREMENT = 0.002
 #: Runs of every method, LAMMPS included, of which the least time counts; the longest dynamics here runs once.
 REPEATS = 2
 
 
-def solve_used(name: str, longest_step: float | None = None, **protocol: Any) -> tuple[np.ndarray, dict[str, float]]:
+def solve_used(name: str, together: float | None = None, **protocol: Any) -> tuple[np.ndarray, dict[str, float]]:
     """Normalised response, and seconds by the clock and of the processor of the whole solution.
 
-    ``longest_step`` asks for a path with such increments.
+    ``together`` asks for a path in such increments of the load.
     """
     friction, force = SCENES[name]
     start, processor = time.perf_counter(), time.process_time()
     problem = Problem.from_scene(scene(friction, force, **protocol))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
-    if longest_step is None:
+    if together is None:
         loaded = loaded_states(problem, rest, [1.0])[1][0]
     else:
-        loaded = follow(problem, rest, [1.0], longest_step=longest_step)[0]
+        loaded = follow(problem, rest, [1.0], together=together)[0]
     used = {"seconds": time.perf_counter() - start, "processor": time.process_time() - processor}
     return (floor(loaded, problem) - floor(rest, problem)) / force, used
 
 
-def solve(name: str, longest_step: float | None = None, **protocol: Any) -> tuple[np.ndarray, float]:
+def solve(name: str, together: float | None = None, **protocol: Any) -> tuple[np.ndarray, float]:
     """Normalised response and seconds of the whole solution."""
-    response, used = solve_used(name, longest_step, **protocol)
+    response, used = solve_used(name, together, **protocol)
     return response, used["seconds"]
 
 
 def quasi_static(name: str) -> tuple[np.ndarray, float]:
-    """The quasi-static limit, and how much another way to it differs: finer increments, or a path to the minimum."""
-    if SCENES[name][0]:
-        reference, _ = solve(name, FINEST, method="path")
-        other, _ = solve(name, 2 * FINEST, method="path")
-    else:
-        reference, _ = solve(name, method="auto")
-        other, _ = solve(name, 0.5, method="path")
+    """The quasi-static limit, and how much another way to it differs: small increments, or a path to the minimum."""
+    reference, _ = solve(name, method="auto")
+    other, _ = solve(name, INCREMENT if SCENES[name][0] else None, method="path")
     return reference, float(np.abs(reference - other).max())
 
 
@@ -86,10 +82,6 @@ def measure(name: str) -> tuple[list[dict], dict]:
     """All runs of one scene, and what its reference is worth."""
     friction, force = SCENES[name]
     reference, worth = quasi_static(name)
-    if friction:
-        statics = [("path", step) for step in (4.0, 2.0, 1.0, 0.5, 0.25, 0.1)]
-    else:
-        statics = [("minimise", None)]
     rows: list[dict] = []
 
     def add(method: str, response: np.ndarray, seconds: float, **settings) -> None:
@@ -97,10 +89,8 @@ def measure(name: str) -> tuple[list[dict], dict]:
         rows.append({"scene": name, "method": method, **settings, "seconds": seconds, "error": error})
         print(rows[-1], flush=True)
 
-    for method, step in statics:
-        protocol = {"method": "path"} if friction else {"method": "auto"}
-        response, seconds = min((solve(name, step, **protocol) for _ in range(REPEATS)), key=lambda run: run[1])
-        add(method, response, seconds, **({"longest_step": step} if step else {}))
+    runs = [solve(name, method="auto") for _ in range(REPEATS)]
+    add("path" if friction else "minimise", *min(runs, key=lambda run: run[1]))
     for setting in dynamics_settings():
         protocol = {"method": "dynamics", **setting}
         slow = setting["ramp_time"] > 50 or setting["integrator"] == "gear" or setting["stop_kinetic_energy"] < 1e-13

@@ -30,7 +30,7 @@ REPEATS = 3
 #: Our own ways to a response, by scene: settings of `precision.solve`.
 OURS: dict[str, dict[str, list[dict[str, Any]]]] = {
     "friction": {
-        "load path": [{"method": "path", "longest_step": step} for step in (4.0, 0.5, 0.1)],
+        "load path": [{"method": "path"}],
         "dynamics": [{"method": "dynamics", "ramp_time": ramp} for ramp in (1.0, 5.0, 20.0)],
     },
     "frictionless": {

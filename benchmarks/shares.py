@@ -21,7 +21,7 @@ from granular_response.solve import Problem, loaded_states, rest_state
 #: What a function's file has in its name, by part of the code, the first that fits; kernels count as those files.
 PARTS = (
     ("factorisations", ("solve/linear/", "scipy/linalg")),
-    ("forces and tangents", ("kernels/statics", "solve/relaxation")),
+    ("forces and tangents", ("kernels/statics", "kernels/events", "solve/rates", "solve/relaxation")),
     ("dynamics", ("kernels/", "solve/dynamics")),
     ("matrices and arrays", ("scipy/sparse", "numpy", "~", "solve/system")),
 )
@@ -42,9 +42,9 @@ def settled(described: Scene) -> Callable[[], object]:
 
 #: Cases by what they are, each a function that prepares what is profiled.
 CASES: dict[str, Callable[[], Callable[[], object]]] = {
-    "path to 15 mg, friction 0.2": lambda: loaded(scene(0.2, 15.0, method="path", path_tolerance=1e-5)),
-    "path to 15 mg, friction 0.05": lambda: loaded(scene(0.05, 15.0, method="path", path_tolerance=1e-5)),
-    "path to 50 mg, friction 0.2": lambda: loaded(scene(0.2, 50.0, method="path", path_tolerance=1e-5)),
+    "path to 15 mg, friction 0.2": lambda: loaded(scene(0.2, 15.0, method="path")),
+    "path to 15 mg, friction 0.05": lambda: loaded(scene(0.05, 15.0, method="path")),
+    "path to 50 mg, friction 0.2": lambda: loaded(scene(0.2, 50.0, method="path")),
     "fall of the default slab": lambda: settled(scene(0.2)),
     "57,660 disks at rest without friction": lambda: settled(scale.scene(120, 481, "minimise", 0.0, 5.0)),
     "path of 57,660 disks to 15 mg": lambda: loaded(scale.scene(120, 481, "path", 0.2, 15.0)),

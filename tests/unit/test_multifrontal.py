@@ -14,6 +14,7 @@ from granular_response.solve.linear import Sequence, multifrontal, nearby, order
 from granular_response.solve.linear.dissection import Dissection
 from granular_response.solve.linear.multifrontal import Multifrontal
 from granular_response.solve.linear.nearby import Nearby
+from granular_response.solve.stability import negative_modes
 from granular_response.solve.system import StaticSystem
 
 
@@ -155,7 +156,7 @@ def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
     banded = StaticSystem(problem, state)
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     fronts = StaticSystem(problem, state)
-    assert type(banded._storage) is not type(fronts._storage)
+    assert type(banded.storage) is not type(fronts.storage)
     known = banded.start(state)
     q = known.q + 1e-3 * np.random.default_rng(3).normal(size=known.q.size)
     right = np.random.default_rng(4).normal(size=known.q.size)
@@ -314,16 +315,14 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless", loads=loads))
     rest = rest_state(problem)
     problem = problem.with_loads(rest.position)
-    made = counted(monkeypatch, StaticSystem, "_factorise")
     roughly = counted(monkeypatch, Multifrontal, "rough_factor")
     alone = follow(problem, rest, [1.0])[0]
-    before = len(made)
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "LARGE", 0)
     kept = follow(problem, rest, [1.0])[0]
-    assert 0 < len(made) - before + len(roughly) < 0.5 * before
-    # where Newton's method takes other steps, so do increments
-    assert kept.walls.normal_force == pytest.approx(alone.walls.normal_force, rel=1e-5)
+    assert 0 < len(roughly) < 0.5 * kept.reached.increments
+    # what increments leave out of events
+    assert kept.walls.normal_force == pytest.approx(alone.walls.normal_force, abs=12.0 * 1e-5)
     assert kept.reached.certificate.force_residual < 1e-10
 
 
@@ -348,7 +347,7 @@ def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(mon
     """A million disks with friction had two: 17 GiB."""
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
     monkeypatch.setattr(multifrontal, "LARGE", 0)
-    loads = [{"disk": "top-centre", "force": [0.0, -24.0]}]
+    loads = [{"disk": "top-centre", "force": [0.0, -28.0]}]
     problem = Problem.from_scene(scene(4, 9, contact__friction=1.0, preparation__gravity="frictionless", loads=loads))
     rest = rest_state(problem)
     state = follow(problem.with_loads(rest.position), rest, [1.0])[0]
@@ -372,6 +371,6 @@ def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(mon
     system.definite_step(trial, force, 4.0 * problem.stiffness)
     assert len(alive) == 2  # solvers take turns with these at most
     before = len(most)
-    assert system.negative_modes(trial) == 0
+    assert negative_modes(system, trial) == 0
     assert len(most) > before + 1  # it was a suspicion
     assert max(most[before:]) == 1

@@ -124,7 +124,7 @@ def test_a_path_whose_every_increment_fails_gives_up_after_a_few(monkeypatch, st
     monkeypatch.setattr(path._Path, "_landed", fails)
     monkeypatch.setattr(path._Path, "_by_motion", moves)
     with pytest.raises(Moves):
-        path.follow(problem.with_loads(rest.position), rest, [steps * path.OPTIONS.beyond[-1]])
+        path.follow(problem.with_loads(rest.position), rest, [steps * path.OPTIONS.beyond])
     assert len(tried) > 1
 
 

@@ -1,6 +1,6 @@
 """The survey's parameters, that its runs go on where they were, and packings that it makes for figure groups."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -149,6 +149,14 @@ def test_packings_are_read_as_they_were_stored(tmp_path):
     other = packings.Layout(Measured, LAYOUT.keys, {**LAYOUT.values, "single": ((), "another")})
     with pytest.raises(store.StoreError, match=r"is no file of packings of the survey, lacks single"):
         packings.read(path, other)
+
+
+def test_a_number_that_files_of_earlier_versions_lack_is_not_recorded(tmp_path):
+    path = tmp_path / "group.nc"
+    given = packings.dataset(LAYOUT, {(0.2, 20): measured(4)}, [1.0])
+    store.write(path, labelled({packings.DATASET: given.drop_vars("height")}))
+    (found,) = packings.read(path, replace(LAYOUT, later=("height",))).values()
+    assert np.isnan(found.height) and found.depth.size == 4
 
 
 #: The same case or series without and with a part left to the survey.

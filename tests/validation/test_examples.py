@@ -130,13 +130,14 @@ def test_a_notebook_runs(path, tmp_path, monkeypatch):
 
 def test_the_code_of_the_tutorial_runs(tmp_path, monkeypatch):
     text = (EXAMPLES.parent / "docs" / "tutorial.md").read_text()
-    first, second = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    first, second, third = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "examples").symlink_to(EXAMPLES)
     store.write(tmp_path / "slab.nc", to_dataset(solve_scene(small(EXAMPLES / "slab.yaml"))))
     exec(compile(first, "tutorial 1", "exec"), {})
     names: dict = {}
     exec(compile(second, "tutorial 2", "exec"), names)
+    exec(compile(third, "tutorial 3", "exec"), {"gr": names["gr"]})
     assert (tmp_path / "response.png").stat().st_size > 1000
     assert (tmp_path / "contacts.png").stat().st_size > 1000
     low, _, high = names["result"].to_dataset()["floor_response"].values

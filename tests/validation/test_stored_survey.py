@@ -51,7 +51,9 @@ def test_a_realization_is_found_again(stored, block, polydispersity, friction, s
     np.testing.assert_allclose(one["ensembles"]["x"].values[: again.x.size], again.x, atol=5e-3)
     assert one["packings"]["coordination_number"] == pytest.approx(again.packing["coordination_number"], abs=0.01)
     x = np.arange(-30.0, 30.5, 1.0)
-    for k in range(3):
+    kept_on = np.cumsum(again.loaded["lost"]) == 0  # where an equilibrium is lost a last digit may lead elsewhere
+    assert kept_on[0]
+    for k in np.flatnonzero(kept_on):
         response = one["ensembles"]["floor_response"].values[k, : again.x.size]
         kept, new = (smoothed_response(x, again.x, values, 3.0) for values in (response, again.response[k]))
         np.testing.assert_allclose(kept, new, atol=SAME * np.abs(new).max())
@@ -94,10 +96,20 @@ def test_a_packing_of_a_figure_group_is_found_again(group, key):
     key = next(one for one in tasks if one[: len(key)] == key)
     kept = packings.read(FOLDER / "data" / f"{group}.nc", simulate.STORED)[key]
     again = simulate.compute(tasks[key])
-    for name in simulate.STORED.values:
+    sampled = "force" in simulate.STORED.values and len(kept.force) != len(again.force)
+    for name, (dims, _) in simulate.STORED.values.items():
         values = getattr(again, name)
-        scale = np.nanmax(np.abs(values))
-        np.testing.assert_allclose(getattr(kept, name), values, atol=SAME * scale, err_msg=name)
+        if name in simulate.STORED.later and np.isnan(getattr(kept, name)):
+            continue  # not recorded
+        if sampled and packings.RAGGED in dims:
+            continue  # at other forces
+        stored, near = getattr(kept, name), SAME * np.nanmax(np.abs(values))
+        if name == "brackets":  # some wider than others: they overlap
+            assert np.array_equal(np.isnan(stored), np.isnan(values))
+            low, high = np.maximum(stored, values)[:, 0], np.minimum(stored, values)[:, 1]
+            assert not (low > high + near).any()
+        else:
+            np.testing.assert_allclose(stored, values, atol=near, err_msg=name)
 
 
 @pytest.mark.parametrize("group", larger.GROUPS)

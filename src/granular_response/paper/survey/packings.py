@@ -36,6 +36,7 @@ class Layout(Generic[Outcome]):
     kind: type[Outcome]
     keys: Mapping[str, str]  #: names of the parts of a key, with long names
     values: Mapping[str, tuple[tuple[str, ...], str]]  #: fields of the outcome: dimensions and long names
+    later: tuple[str, ...] = ()  #: numbers that files of earlier versions lack: they are read as nan, not recorded
 
 
 def dataset(layout: Layout[Outcome], outcomes: Mapping[Key, Outcome], seconds: Sequence[float]) -> xr.Dataset:
@@ -71,11 +72,12 @@ def read(path: str | Path, layout: Layout[Outcome]) -> dict[Key, Outcome]:
         If the file cannot be read, or is none of this layout.
     """
     found = store.read(path).get(DATASET)
-    missing = {*layout.keys, *layout.values} - set(found.variables if found is not None else ())
+    missing = {*layout.keys, *layout.values} - {*layout.later} - set(found.variables if found is not None else ())
     if found is None or missing:
         raise store.StoreError(f"{path}: is no file of packings of the survey, lacks {', '.join(sorted(missing))}")
     keys = zip(*(found[name].values.tolist() for name in layout.keys), strict=True)
-    columns = {name: found[name].values for name in layout.values}
+    unknown = np.full(found.sizes[ALONG], np.nan)
+    columns = {name: found[name].values if name in found else unknown for name in layout.values}
     return {
         key: layout.kind(**{name: _own(columns[name][row], layout.values[name][0]) for name in layout.values})
         for row, key in enumerate(keys)

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from granular_response.paper.slab_response import by_motion
+from granular_response.paper.slab_response import lost
 from granular_response.paper.trials.audit import Audit, ContactRule, audit
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Solution, solve_scene
@@ -364,7 +364,7 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
             return float("nan")
     one, other = solved
     both = [(one.rest, other.rest), *zip(one.loaded, other.loaded, strict=True)]
-    if any(not state.certificate.stable or by_motion(state) for pair in both for state in pair):
+    if any(lost(pair) or not all(state.certificate.stable for state in pair) for pair in both):
         return float("nan")
     floor = [(_floor(a), _floor(b)[place]) for a, b in both]
     if np.abs(floor[0][0] - floor[0][1]).max() > SAME_REST:

@@ -117,7 +117,7 @@ MEASURED = {
 }
 CONFINEMENT = f"mean force of horizontal contacts in the central third at rest {FORCE}"
 LINEAR_OPENING = f"force {FORCE} at which the first contact would open if contacts went on as under a small one"
-BY_MOTION = "steps of the force in which the motion of the disks had a part"
+BY_MOTION = "steps of the force in which the motion of the disks had a part; nan: not recorded"
 
 #: How the survey stores slabs.
 STORED = Layout(
@@ -137,6 +137,7 @@ STORED = Layout(
         "by_motion": ((), BY_MOTION),
         **{name: (("line",), text) for name, text in MEASURED.items()},
     },
+    later=("by_motion",),
 )
 
 
