@@ -326,25 +326,24 @@ class _Path:
         way = np.where(rates.sense[back] > 0, events.SLIDES, -events.SLIDES)
         falls = zip(back.tolist(), way.tolist(), strict=True)
         ahead = np.array([max(self.rates.fall(point.known.q, c, w, rates.velocity), 0.0) for c, w in falls])
-        turns = length * ahead / (ahead + then.rate[back])
+        turns = length * ahead / (ahead + then.rate[back])  # were the rate of slip linear
         late = 0.5 * then.rate[back] * (length - turns) > self.event
-        if not late.any():
-            return None
-        first = int(np.argmin(np.where(late, turns, np.inf)))
-        c, w = int(back[first]), int(way[first])
-        # slip beyond its turn grows as the square of the length
-        beyond = float(np.sqrt(self.event * length / (ahead[first] + then.rate[c])))
+        for k in np.flatnonzero(late)[np.argsort(turns[late], kind="stable")]:
+            c, w = int(back[k]), int(way[k])
 
-        def slip(part: float) -> float:
-            found = (point.factor, point.trial) if part == 0.0 else self._smooth(point, rates, part, None)
-            if found is None:
-                return -1.0
-            trial = found[1]
-            return self.rates.fall(trial.configuration.q, c, w, self._velocity(trial, rates.sense))
+            def slip(part: float, c: int = c, w: int = w) -> float:
+                found = (point.factor, point.trial) if part == 0.0 else self._smooth(point, rates, part, None)
+                if found is None:
+                    return -1.0
+                trial = found[1]
+                return self.rates.fall(trial.configuration.q, c, w, self._velocity(trial, rates.sense))
 
-        if slip(0.0) <= 0.0:
-            return beyond if length > beyond else None
-        return min(float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) + beyond, length)
+            # slip beyond its turn grows as the square of the length
+            beyond = float(np.sqrt(self.event * length / (ahead[k] + then.rate[c])))
+            turn = float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) if slip(0.0) > 0.0 > slip(length) else 0.0
+            if length > turn + 1.5 * beyond:
+                return turn + beyond
+        return None
 
     def _smooth(
         self, point: Point, rates: Rates, length: float, event: tuple[int, int] | None
@@ -358,7 +357,7 @@ class _Path:
         factor = self._towards(point.factor, length) if event is None else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-        before, enough = np.inf, ENOUGH if event is None else options.passing
+        before, enough, stalled = np.inf, ENOUGH if event is None else options.passing, False
         for done in range(options.newton):
             trial = system.trial(known, q, fixed=rates.sense, tangent=False)
             force = trial.contact_force + self._external(factor)
@@ -366,10 +365,14 @@ class _Path:
             left = 0.0 if event is None else self.rates.left(trial, *event)
             if not np.isfinite(size):
                 return None
-            balanced = size <= enough or (size > 0.5 * before and size <= attainable(system, q))
+            rounding = size > 0.5 * before and size <= attainable(system, q)
+            # a contact that began to slide a little early leaves a torque on a disk of which all contacts slide
+            left_over = stalled and size > options.slow * before and size <= self.event
+            balanced = size <= enough or rounding or left_over
             if balanced and abs(left) <= 0.5 * self.event:
                 return factor, trial
-            if size > options.slow * before or done % options.same_tangent == options.same_tangent - 1:
+            stalled = size > options.slow * before
+            if stalled or done % options.same_tangent == options.same_tangent - 1:
                 try:
                     by = system.renewed_factor(trial.configuration, rates.sense)
                     velocity = self.rates.velocity(trial.configuration, rates.sense, by)
