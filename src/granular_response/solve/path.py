@@ -73,6 +73,8 @@ class PathOptions:
     faster: float = 10.0
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
+    #: Load to which the loss of stability between two events is found.
+    stability: float = 1e-6
     #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
     jump: float = 0.01
     #: Displacement after which candidates are listed again, and longest in one increment; the two together are below
@@ -173,6 +175,7 @@ class _Path:
         self.weight = external_force(problem, 0.0)
         self.load = external_force(problem, 1.0) - self.weight
         self.jump = options.jump / self.unit
+        self.system: StaticSystem | None = None
         laws = problem.pair_law, problem.wall_law
         #: whether the stiffness of contacts varies with their overlap
         self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
@@ -187,33 +190,84 @@ class _Path:
         if self.asked is None and self.system.dissected:
             self.together = min(self.options.together * self.problem.n**0.5, self.options.longest)
         if self.together is None or point.factor == target:
-            return self._followed(point)
+            return self._followed(start)
         # what increments leave out, from those of twice the length
         once, self.together = self.together, 2.0 * self.together
-        coarse = self._followed(point).wall_force()
-        del self.record.events[self.begun :]
+        coarse = self._followed(start).wall_force()
         self.together = once
-        state = self._followed(self._at(start))
+        state = self._followed(start)
         off = np.abs(state.wall_force() - coarse).max(initial=0.0) if len(coarse) == len(state.wall_force()) else np.inf
         error = float(off) / (self.unit * abs(target - start.load_factor))
         return replace(state, reached=replace(state.reached, events_within=once, events_error=error))
 
-    def _followed(self, point: Point) -> State:
-        """The certified state at the target, from a point on the way there."""
-        point = self._balanced(point)
+    def _followed(self, start: State, watched: bool = False) -> State:
+        """The certified state at the target.
+
+        ``watched`` : whether stability is looked at wherever a contact changes, with a factorisation each; needed only
+        where the equilibrium at the target turns out to be unstable.
+        """
+        del self.record.events[self.begun :]
+        self.singly_until = start.load_factor
+        point = self._balanced(self._at(start))
         while True:
             still = 0  #: points in turn at one load
             while point.factor != self.target:
-                before = point.factor
+                before, system, lost = point, self.system, self._lost_so_far()
                 point = self._advance(point, still > self.options.still)
-                still = still + 1 if abs(point.factor - before) * self.unit < self.event else 0
+                if watched and self.system is system and self._lost_so_far() == lost:
+                    point = self._first_unstable(before, point)
+                still = still + 1 if abs(point.factor - before.factor) * self.unit < self.event else 0
                 self._look_down(point)
                 if self.progress is not None:
                     self.progress(point.factor)
             state = self._state(point)
             if state.certificate.stable is not False:
                 return replace(state, reached=replace(state.reached, events=tuple(self.record.events[self.begun :])))
+            if not watched:
+                return self._followed(start, watched=True)
             point = self._by_motion(point, "bifurcation", "unstable", None)
+
+    def _lost_so_far(self) -> int:
+        return sum(event.lost for event in self.record.events)
+
+    def _first_unstable(self, before: Point, point: Point) -> Point:
+        """``point``, if it is stable with the statuses of its increment; else the one that motion leads to.
+
+        That begins where stability is lost after ``before``.
+        """
+        direction = self._direction(point.trial, point.sense)
+        if direction is None:
+            return point
+        rates = self.rates.solve(before.trial, before.due) if self.together is None else None
+        stable, length, last = 0.0, abs(point.factor - before.factor), before
+        while (length - stable) * self.unit > self.options.stability:
+            middle = 0.5 * (stable + length)
+            factor = before.factor + self.direction * middle
+            if rates is not None:
+                found = self._smooth(before, rates, middle, None)
+                trial = None if found is None else found[1]
+            else:
+                trial = self._increased(before, factor)
+            if trial is None:
+                break
+            sense = trial.sense if rates is None else rates.sense
+            turned = self._direction(trial, sense)
+            if turned is None:
+                stable, last = middle, Point(factor, trial, sense, sense)
+            else:
+                length, direction = middle, turned
+        return self._by_motion(last, "bifurcation", "unstable", direction)
+
+    def _direction(self, trial: Trial, sense: np.ndarray) -> FloatArray | None:
+        """(dof,) direction in which an equilibrium diverges with signed statuses ``sense``, or None."""
+        self.record.stability_checks += 1
+        return divergence(self.system, self.system.trial(trial.configuration, trial.configuration.q, fixed=sense))
+
+    def _count(self) -> None:
+        """Add the factorisations of tangents with kept statuses to what the path has cost."""
+        if self.system is not None:
+            self.record.work.factorisations += self.system.renewals
+            self.system.renewals = 0
 
     def _external(self, factor: float) -> FloatArray:
         """(dof,) gravity and loads; nothing on what is held."""
@@ -221,6 +275,7 @@ class _Path:
 
     def _at(self, state: State) -> Point:
         """A point of a new system around the positions and candidates of a state."""
+        self._count()
         self.system = StaticSystem(self.problem, state)
         trial = self.system.at(state)
         force = max(self.options.event, 10.0 * attainable(self.system, trial.configuration.q))
@@ -248,11 +303,19 @@ class _Path:
 
         ``stuck`` : whether contacts have changed again and again at one load.
         """
-        if self.together is not None:
-            return self._relisted(self._increment(point, self._towards(point.factor, self.together / self.unit)))
+        if self.together is not None and self.direction * (point.factor - self.singly_until) >= 0.0:
+            new = self._towards(point.factor, self.together / self.unit)
+            found = self._increased(point, new)
+            if found is not None:
+                self.velocity = (found.configuration.q - point.known.q) / abs(new - point.factor)
+                self._record(replace(point, factor=new), found.sense)
+                return self._relisted(Point(new, found, found.sense, found.sense))
+            self.singly_until = new
         rates = None if stuck else self.rates.solve(point.trial, point.due)
         if rates is None:
             return self._relisted(self._lost(point, "no statuses of the contacts go on"))
+        if rates.one_of_two:
+            self._record_lost("bifurcation", point, point.factor, 0.0 * rates.velocity, "no rates that are symmetric")
         self._record(point, rates.sense)
         self.velocity = rates.velocity
         direction = self._unstable(point, rates)
@@ -388,7 +451,7 @@ class _Path:
                 if rate <= 0.0:  # it does not come nearer: on with new rates from here
                     event = None
                 else:
-                    further = (left - self.rates.fall(q, *event, step)) / rate
+                    further = float((left - self.rates.fall(q, *event, step)) / rate)
                     factor += self.direction * further
                     step += further * velocity
             q = system.displaced(q + step, factor)
@@ -403,9 +466,7 @@ class _Path:
         before, self.suspect = self.suspect, negative
         if negative in (0, before):
             return None
-        self.record.stability_checks += 1
-        trial = self.system.trial(point.known, point.known.q, fixed=rates.sense)
-        return divergence(self.system, trial)
+        return self._direction(point.trial, rates.sense)
 
     def _relisted(self, point: Point) -> Point:
         """Where disks have moved so far that others may be near: candidates listed anew."""
@@ -435,7 +496,7 @@ class _Path:
                 usual = 0.0 if self.velocity is None else float(np.abs(self.velocity[:n]).max(initial=0.0))
                 if far > self.options.faster * usual * abs(new - point.factor):
                     self._record_lost("stepped over", point, new, moved, reason)
-                self._record(point, found.sense)
+                self._record(point, found.sense, until=new)
                 return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)
 
@@ -473,16 +534,8 @@ class _Path:
         self.jump *= 2.0
         return replace(found[0], factor=new)
 
-    def _increment(self, point: Point, new: float) -> Point:
-        """One increment with the return map, whatever changes within it."""
-        found = self._increased(point, new)
-        if found is None:
-            return self._lost(point, "no equilibrium with the return map")
-        self.velocity = (found.configuration.q - point.known.q) / abs(new - point.factor)
-        self._record(replace(point, factor=new), found.sense)
-        return Point(new, found, found.sense, found.sense)
-
     def _increased(self, point: Point, new: float) -> Trial | None:
+        """Equilibrium with the return map, one increment on, whatever changes within it."""
         guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
         guess = self.system.displaced(guess, new)
         return solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
@@ -498,6 +551,7 @@ class _Path:
         modes = negative_modes(self.system, trial)
         if modes and divergence(self.system, trial) is None:
             modes = 0
+        self._count()
         work = self.record.work
         reached = Reached(
             method="path",
@@ -507,8 +561,8 @@ class _Path:
         )
         return replace(state, reached=reached)
 
-    def _record(self, point: Point, after: np.ndarray) -> None:
-        """The events in which contacts get the signed statuses ``after`` (m + w,)."""
+    def _record(self, point: Point, after: np.ndarray, until: float | None = None) -> None:
+        """The events in which contacts get the signed statuses ``after`` (m + w,), at the latest ``until``."""
         contacts = np.flatnonzero(point.sense != after)
         if not len(contacts):
             return
@@ -521,11 +575,13 @@ class _Path:
         apart = self.problem.packing.box.separation(position[system.second[pair]], position[system.first[pair]])
         towards = np.concatenate([apart, -system.wall_normals[wall]])
         place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
-        kinds = map(_kind, point.sense[contacts].tolist(), after[contacts].tolist())
-        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), place[:, 0], place[:, 1], strict=True)
+        kinds = map(_kinds, point.sense[contacts].tolist(), after[contacts].tolist())
+        until = point.factor if until is None else until
+        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
         self.record.events += [
-            Event(point.factor, kind, i, j, wall_contact, float(x), float(z), point.factor)
-            for kind, i, j, wall_contact, x, z in rows
+            Event(point.factor, kind, i, j, wall_contact, x, z, until)
+            for does, i, j, wall_contact, x, z in rows
+            for kind in does
         ]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
@@ -545,12 +601,12 @@ def carried(before: NDArray[np.int64], after: NDArray[np.int64], sense: np.ndarr
     return np.array([known.get(key, OPEN) for key in after.tolist()], sense.dtype)
 
 
-def _kind(before: int, after: int) -> str:
+def _kinds(before: int, after: int) -> tuple[str, ...]:
     """What a contact does between two signed statuses."""
     if after == OPEN:
-        return "opens"
+        return ("opens",)
     if before == OPEN:
-        return "closes"
+        return ("closes", "slides") if abs(after) == SLIDING else ("closes",)
     if after == STICKING:
-        return "sticks"
-    return "reverses" if abs(before) == SLIDING else "slides"
+        return ("sticks",)
+    return ("reverses",) if abs(before) == SLIDING else ("slides",)

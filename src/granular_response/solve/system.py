@@ -111,6 +111,7 @@ class StaticSystem:
         self.storage = self.pattern.storage
         self._kept: tuple[np.ndarray, Factor] | None = None
         self._updated: tuple[Updated, np.ndarray] | None = None
+        self.renewals = 0  #: factorisations made by :meth:`renewed_factor`
         same = SAME_SHIFT * problem.stiffness
         self._steps = Sequence(self.storage, definite=False, same=same)
         self._definite_steps = Sequence(self.storage, definite=True, same=same)
@@ -319,6 +320,7 @@ class StaticSystem:
     def renewed_factor(self, known: Configuration, sense: np.ndarray) -> Updated:
         """The same, made anew."""
         self._updated = None
+        self.renewals += 1
         updated = Updated(self.factorise(self.trial(known, known.q, fixed=sense)), self.dof, MOST_CHANGED, 6)
         self._updated = updated, sense
         return updated
