@@ -69,8 +69,6 @@ class PathOptions:
     #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
     #: for the rates. In lattices the path mostly goes on there, only with other statuses.
     beyond: float = 1e-4
-    #: Times by which disks may be faster than before there, or the equilibrium before was lost.
-    faster: float = 10.0
     #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
     nearby: float = 1e-3
     #: Load to which the loss of stability between two events is found.
@@ -314,8 +312,6 @@ class _Path:
         rates = None if stuck else self.rates.solve(point.trial, point.due)
         if rates is None:
             return self._relisted(self._lost(point, "no statuses of the contacts go on"))
-        if rates.one_of_two:
-            self._record_lost("bifurcation", point, point.factor, 0.0 * rates.velocity, "no rates that are symmetric")
         self._record(point, rates.sense)
         self.velocity = rates.velocity
         direction = self._unstable(point, rates)
@@ -493,9 +489,7 @@ class _Path:
             moved = found.configuration.q - point.known.q
             far = float(np.abs(moved[:n]).max(initial=0.0))
             if far <= self.options.nearby:
-                usual = 0.0 if self.velocity is None else float(np.abs(self.velocity[:n]).max(initial=0.0))
-                if far > self.options.faster * usual * abs(new - point.factor):
-                    self._record_lost("stepped over", point, new, moved, reason)
+                self._record_lost("stepped over", point, new, moved, reason)
                 self._record(point, found.sense, until=new)
                 return Point(new, found, found.sense, found.sense)
         return self._by_motion(point, "jump", reason, None)

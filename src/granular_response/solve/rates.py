@@ -22,8 +22,8 @@ from .system import Configuration, StaticSystem, Trial
 #: Rounds in which all contacts that contradict themselves change, and rounds in which the worst ones do. Those that
 #: ended took 17 and 30 at most in the packings of the benchmarks.
 ALL, WORST = 8, 60
-#: Rounds, whether the worst alone change, whether each tangent is factorised anew, and whether one contact changes.
-WAYS = (ALL, False, False, False), (WORST, True, False, False), (WORST, True, True, False), (WORST, True, False, True)
+#: Rounds, whether the worst alone change, and whether each tangent is factorised anew.
+WAYS = (ALL, False, False), (WORST, True, False), (WORST, True, True)
 #: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
 AS_BAD = 0.999
 #: Ties that a load counts as: more than any disk has freedoms, so that a loaded disk is no rattler.
@@ -88,7 +88,6 @@ class Rates:
     factor: Updated
     velocity: FloatArray  #: (dof,)
     changes: Changes
-    one_of_two: bool = False  #: whether one contact of a mirror pair was chosen, since no symmetric statuses go on
 
 
 class RateProblem:
@@ -140,14 +139,10 @@ class RateProblem:
         """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.
 
         ``sense`` (m + w,) : signed statuses to begin with, of contacts whose forces those of the trial go on. Of
-        contacts that are equally bad, such as a mirror pair, all change, or the one farthest to the right if that leads
-        to nothing.
+        contacts that are equally bad, such as a mirror pair, all change.
         """
         known = trial.configuration
-        ties = False
-        for rounds, worst, anew, single in WAYS:
-            if single and not ties:
-                break
+        for rounds, worst, anew in WAYS:
             now, tried = sense, {sense.tobytes()}
             for _ in range(rounds):
                 factored = self.system.renewed_factor if anew else self.system.updated_factor
@@ -161,21 +156,12 @@ class RateProblem:
                 found = self.changes(trial, velocity, now)
                 due = found.due(self.force)
                 if not len(due):
-                    return Rates(now, factor, velocity, found, single)
+                    return Rates(now, factor, velocity, found)
                 if worst:
                     rates = found.rate[due]
                     due = due[rates >= AS_BAD * rates.max()]
-                    ties |= len(due) > 1
-                if single:
-                    due = due[[np.argmax(self._place(known)[due])]]
                 now = changed(now, due, found.what)
                 if now.tobytes() in tried:
                     break
                 tried.add(now.tobytes())
         return None
-
-    def _place(self, known: Configuration) -> FloatArray:
-        """(m + w,) where along x the first disk of each contact is."""
-        system = self.system
-        x = system.reference[:, 0] + known.q[: system.problem.n]
-        return x[np.concatenate([system.first, system.wall_disk])]
