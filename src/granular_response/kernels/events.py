@@ -111,10 +111,10 @@ def next_changes(
 
     ``q``, ``v`` (dof,) : displacements and their rates; ``status`` (m + w,) : negative for contacts that slide under a
     negative force; ``normal``, ``tangential``, ``overlap`` (m + w,); ``tip``, ``negligible`` : a force and a rate of a
-    force that are none; ``count`` (2, n) : to count contacts in, from zero, or from more ties than freedoms where a load
-    acts. A rattler that rests on one contact and
-    that no more ties than it has freedoms, pushed along by another disk, bears nothing there however it moves: such a
-    contact opens when the other disk withdraws, and nothing else happens to it.
+    force that are none; ``count`` (2, n) : to count contacts in, from zero, or from more ties than freedoms where a
+    load acts. A rattler that rests on one contact and that no more ties than it has freedoms, pushed along by another
+    disk, bears nothing there however it moves: such a contact opens when the other disk withdraws, and nothing else
+    happens to it.
     """
     m = pairs.first.size
     turn = q.size == 3 * n

@@ -173,7 +173,6 @@ class _Path:
         self.weight = external_force(problem, 0.0)
         self.load = external_force(problem, 1.0) - self.weight
         self.jump = options.jump / self.unit
-        self.system: StaticSystem | None = None
         laws = problem.pair_law, problem.wall_law
         #: whether the stiffness of contacts varies with their overlap
         self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
@@ -263,9 +262,8 @@ class _Path:
 
     def _count(self) -> None:
         """Add the factorisations of tangents with kept statuses to what the path has cost."""
-        if self.system is not None:
-            self.record.work.factorisations += self.system.renewals
-            self.system.renewals = 0
+        self.record.work.factorisations += self.system.renewals
+        self.system.renewals = 0
 
     def _external(self, factor: float) -> FloatArray:
         """(dof,) gravity and loads; nothing on what is held."""
@@ -273,7 +271,6 @@ class _Path:
 
     def _at(self, state: State) -> Point:
         """A point of a new system around the positions and candidates of a state."""
-        self._count()
         self.system = StaticSystem(self.problem, state)
         trial = self.system.at(state)
         force = max(self.options.event, 10.0 * attainable(self.system, trial.configuration.q))
@@ -473,6 +470,7 @@ class _Path:
             return self._by_motion(point, "jump", "disks meet that were not neighbours", None)
         if moved <= self.options.listed_again:
             return point
+        self._count()
         keys = self.system.keys()
         new = self._at(self.problem.relisted(self.system.state(point.trial, point.factor)))
         sense, due = (carried(keys, self.system.keys(), status) for status in (point.sense, point.due))
