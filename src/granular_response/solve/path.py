@@ -346,6 +346,9 @@ class _Path:
                     return None
                 continue
             factor, trial = found
+            if event is not None and self.direction * (factor - point.factor) > left:
+                length = np.inf  # the contact changes later than its rate said
+                continue
             far = np.abs(trial.configuration.q - point.known.q)[: 2 * self.problem.n].max(initial=0.0)
             turned = self.varying or far > self.options.straight
             velocity = self._velocity(trial, rates.sense) if turned else rates.velocity

@@ -142,6 +142,8 @@ class RateProblem:
         contacts that are equally bad, such as a mirror pair, all change.
         """
         known = trial.configuration
+        # one that bears nothing has no slip to go on with
+        sense = np.where((np.abs(sense) == SLIDING) & (trial.normal <= self.force), STICKING, sense).astype(sense.dtype)
         for rounds, worst, anew in WAYS:
             now, tried = sense, {sense.tobytes()}
             for _ in range(rounds):
