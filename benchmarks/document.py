@@ -260,7 +260,8 @@ def groups(metrics: Metrics) -> str:
         return row["simulate_seconds"] + row["draw_seconds"]
 
     each = ", ".join(f"`{row['group']}` {whole(row):.0f}" for row in metrics["runs"])
-    return f" Seconds with figures: {each}." + "".join(f" The paper's groups: {whole(row):.0f}." for row in metrics["totals"])
+    totals = "".join(f" The paper's groups: {whole(row):.0f}." for row in metrics["totals"])
+    return f" Seconds with figures: {each}.{totals}"
 
 
 def out_of_reach(runs: list[dict[str, Any]], scene: str, comparison: dict[str, Any]) -> float | None:
