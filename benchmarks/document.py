@@ -81,8 +81,8 @@ TEXTS = {
     ),
     "limits": (
         "Roofline",
-        "Kernels of a step of 908 disks against a loop of independent operations of the same mix; those of the pair"
-        " forces depend on each other. Factorisations are against LAPACK's matrix product (goals).",
+        "The goals compare kernels of a step of 908 disks with a loop of independent operations of the same mix, and "
+        "factorisations with LAPACK's matrix product.",
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
@@ -221,12 +221,6 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
         }  # fmt: skip
         words = "Largest differences of the energy kept, in parts of the energy before"
         return [table(metrics["compared"], columns, skipped(words, metrics))]
-    if benchmark == "limits":
-        columns = {
-            "part": "part of a step", "friction": "friction", "microseconds": "µs",
-            "mix_microseconds": "loop of the same mix [µs]", "ratio": "of the limit",
-        }  # fmt: skip
-        return [table(metrics["runs"], columns)]
     if benchmark == "linear":
         return [factorisations(metrics, "factor_milliseconds", "Numeric factorisation, ms")]
     if benchmark == "shares":
