@@ -1,6 +1,6 @@
 """`docs/benchmarks.md`, its pictures, `summary.json` with its goals, and the lines of the README that quote them.
 
-Tables and pictures come from the other JSON files alone; texts may name what earlier versions took.
+Tables and pictures come from the other JSON files alone.
 
 `python benchmarks/document.py` from anywhere in the repository. A benchmark whose file is missing is named as not
 measured.
@@ -22,133 +22,99 @@ from granular_response.store import atomic, generated
 
 HERE = Path(__file__).resolve().parent
 
+#: Disks, and unknowns of a matrix, from which on they are rows of a table.
+LARGE, MANY = 50_000, 5_000
+
 TEXTS = {
     "precision": (
         "Run time against error",
-        "The error is the largest difference of the normalised floor response from the quasi-static limit; times "
-        "include the fall under gravity. Open symbols of integrators: without the static finish, at several kinetic "
-        "energies of rest. With friction the rest state itself depends a little on how the packing fell, so LAMMPS "
-        "keeps a difference however slowly it is loaded; its error is given from its own limit too.",
+        "The error is the largest difference of the normalized floor response from the quasi-static limit; times "
+        "include the fall under gravity. Open symbols: without the static finish, at several stopping energies. "
+        "With friction the initial equilibrium depends a little on the fall, so LAMMPS is also compared with its "
+        "own limit.",
     ),
     "nine_points": (
-        "Path and dynamics",
-        "From rest, without the fall, in one run: the load path and dynamics (leapfrog in steps of 1.4e-3, 0.86 of its "
-        "limit, static finish, ramps of 1, 5, 20 and 100). The error is that of the normalised floor response against "
-        "the path. Of dynamics the fastest run counts whose error, known afterwards, is small enough: the luckiest "
-        "ramp.",
+        "Path against dynamics",
+        "From the initial equilibrium, in one run: load path, and dynamics by leapfrog with ramps of 1, 5, 20 and "
+        "100 sqrt(R/g) and a static finish. The error is relative to the path; of dynamics the best-case ramp "
+        "counts.",
     ),
     "exactness": (
-        "How exact a path is",
-        "Load paths against the same path in small increments with the return map, which share no event with it: the"
-        " paper's slab under nine pairs of friction and force, packings of at most 60 disks under loads of all "
-        "sizes, and slabs of 8 to 15 layers. The error is the largest difference of a force of the floor or a wall, "
-        "per load. A path counts as exact that differs by no more than 1e-8 and the error of the increments. "
-        "Compared are paths on which neither way loses an equilibrium.",
+        "Accuracy of the path",
+        "Load paths against the same path in small increments with the return map: the paper's slab under nine "
+        "pairs of friction and force, packings of at most 60 disks, and slabs of 8 to 15 layers. The error is the "
+        "largest difference of a force of the floor or a wall, per load; a path that differs by no more than 1e-8 "
+        "and the error of the increments counts as exact. Paths that lose an equilibrium are not compared.",
     ),
     "convergence": (
-        "Dynamics approaches the path",
-        "Responses after a linear ramp of the load, from the same rest state, compared with the load path: the "
-        "difference falls like one over the ramp time, below and above the loads at which a simple follower stops "
-        "(29.3 for a friction of 0.2, 62.3 for 1). Lines: the symmetric part of the difference; dotted: all of it, "
-        "where that is more. The packing and its path are symmetric, but with a friction of 1 and large loads a slow "
-        "ramp amplifies what rounding adds to the antisymmetric part, and under 65 the symmetric part of the slowest "
-        "rises again.",
+        "Convergence of dynamics to the path",
+        "The difference falls like one over the ramp time. Lines: its symmetric part; dotted: all of it, where that"
+        " is more, since at friction 1 a slow ramp amplifies rounding.",
     ),
     "trajectory": (
-        "Error of trajectories against the time step",
-        "A smooth motion shows the order of each integrator; leapfrog's is the first, since its dashpots see the "
-        "velocity of half a step before. In the fall of a slab every contact that opens, closes or starts to slide "
-        "breaks the smoothness, and no integrator is of more than first order.",
+        "Order of the integrators",
+        "Leapfrog's dashpots see the velocity of half a step before. In a fall, contacts that open, close or begin "
+        "to slide limit the order to one.",
     ),
     "kernel": (
-        "Speed of the kernels",
-        "Slabs that have fallen into their contacts, same time step and dashpots; eight pairs of a scene are taken at "
-        "once. Times are of the processor, on a machine with other work. LAMMPS runs `pair_style gran/hooke/history` "
-        "in the same run. Eight scenes in lock-step, one in each lane of a vector, did not pay: 0.9 to 1.3 times the "
-        "steps per second of a scene alone up to 908 "
-        "disks, less above, 0.993 times its speed from the lattice to rest. A scene alone passes the goal that "
-        "lock-step was built for, ten times LAMMPS, so it went.",
+        "Time of a step",
+        "Slabs in equilibrium, same time step and dashpots; LAMMPS runs `pair_style gran/hooke/history` in the same"
+        " run.",
     ),
     "arena": (
-        "Beside other codes",
-        "Slabs with friction 0.2 that have fallen into their contacts; same start, contact law and time step, one core "
-        "each, in turns in one run, each round a new process. LAMMPS runs its old style `hooke/history` and its newer "
-        "one, `granular`, with the same law; LIGGGHTS `gran model hooke/stiffness tangential history`; YADE "
-        "`Law2_ScGeom_ViscElPhys_Basic` on one thread. Times are of the processor, the least of all rounds, and in "
-        "brackets the least of the worst round; the machine had other work. Memory is the peak of the process; ours "
-        "has Python, compiled kernels and their compiler in it, YADE Python.",
+        "Comparison with other codes: a step",
+        "Slabs with friction 0.2; same start, contact law and time step, one core each, interleaved. LAMMPS runs "
+        "`hooke/history` and `granular`, LIGGGHTS `gran model hooke/stiffness tangential history`, YADE "
+        "`Law2_ScGeom_ViscElPhys_Basic`. Processor time, least of all rounds.",
     ),
     "responses": (
-        "To a response, beside other codes",
-        "908 disks, the two scenes of run time against error above. The error is the largest difference of the "
-        "normalised floor response from the quasi-static limit; times are of the processor and include the fall under "
-        "gravity. The other codes run a ramp of the load between two rests, all longer from point to point; each of "
-        "these runs was made once, several at a time. With friction their error ends at what their rest states differ "
-        "by, which remember the fall. Errors below 1e-7 are drawn there.",
+        "Comparison with other codes: a response",
+        "908 disks, the scenes and errors of run time against error; processor time with the fall under gravity. "
+        "The other codes ramp the load between two equilibria.",
     ),
     "bounces": (
-        "Bounces off a wall with friction",
-        "One disk flies at a wall with friction 0.5 at several angles, with the paper's springs, and with dashpots of "
-        "the paper and next to none. A disk that slides all the time has a closed form (dotted). `fix wall/gran "
-        "hooke/history` of LAMMPS of 2025 gives it too little friction, that of 2021 did not; "
-        "[lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007) of 2026 corrects it. `granular` agrees with "
-        "ours. With the paper's dashpots YADE lets no contact pull, and YADE and LIGGGHTS keep less energy of a disk "
-        "that grazes: their motion differs, what is at rest does not.",
+        "Single collisions with a frictional wall",
+        "One disk hits a wall with friction 0.5 at several angles. A disk that slides throughout has a closed form "
+        "(dotted). `fix wall/gran hooke/history` of LAMMPS of 2025 gives it too little friction "
+        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE lets no"
+        " contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk; equilibria do not depend on this.",
     ),
     "limits": (
-        "How near the limit",
-        "What a step of 908 disks does, counted by running the kernels on arrays that count: operations on doubles "
-        "(additions, multiplications, divisions, roots, and comparisons with their choice) and bytes moved between "
-        "registers and caches. Beside each kernel, in turns, a loop of the same mix for each vector, of numbers that "
-        "are in order and do not wait for each other; the fastest of several arrangements of it; in one chain each "
-        "operation of a vector waits for the one before. Factorisations, by "
-        "the operations that their sizes need, beside LAPACK's matrix product; fronts also as bare dense "
-        "factorisations of the same sizes. Times are of the processor, least of many. Above 1 a kernel is faster than "
-        "the loop, which is no bound then. Pair forces lie between the two loops: their operations wait for each "
-        "other, root, quotient, normal force, its limit on the tangential one. Fronts and bands are small: bare "
-        "LAPACK on fronts of these sizes is no nearer to the product of large matrices than the table says, and the "
-        "rest of the time puts the matrix into them.",
+        "Roofline",
+        "The goals compare kernels of a step of 908 disks with a loop of independent operations of the same mix, and "
+        "factorisations with LAPACK's matrix product.",
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
-        "Slabs at rest. With friction the tangent has three unknowns a disk and is factorised as L U; without, two: "
-        "all but SuperLU take it as symmetric and positive. The package takes a band up to a half-width of 130, and "
-        "fronts beyond. Numeric phase alone; the time of SuperLU holds its ordering, which scipy makes each time. One "
-        "thread each, the instructions that the command line chooses; PARDISO (MKL) chooses its own.",
+        "With friction L U of three unknowns a disk; without, two, symmetric and positive for all but SuperLU, "
+        "whose time has its ordering. One thread each.",
     ),
     "skipping": (
-        "What skipping buys",
-        "The same scene with an unneeded part forced on. Results are the same to the last bit where that is said.",
+        "Cost of work that is skipped",
+        "The same scene with an unneeded part forced on: rotations without friction, neighbour searches in a "
+        "network that does not change, wall tests for every disk. Results are bitwise the same.",
     ),
     "scale": (
         "Large systems",
-        "Whole processes, `granular-response run` from a scene file to the stored result. Slabs are four times as "
-        "wide as deep, and stiffness grows with their size so that the order of the slab survives. Where the time "
-        "is far above the processor time of a thread, other work held the cores; goals are judged by the time.",
+        "Whole processes, `granular-response run` from a scene file to the stored result, on two threads. Slabs are"
+        " four times as wide as deep, and stiffness grows with their size.",
     ),
     "depth": (
         "The teardrop in deep slabs",
-        "Without friction, the region of contacts that the load opens (Fig. 5), in slabs up to sixteen times as deep "
-        "as the paper's. Stiffness grows with the size of the slab, so that gravity compresses all of them equally "
-        "little; open symbols: the region has reached the floor.",
+        "Open region without friction (Fig. 5), in slabs whose stiffness grows with their size; open symbols: it "
+        "has reached the floor.",
     ),
     "shares": (
-        "Where the time of a solution goes",
-        "Shares of the time on one thread, by a profile, on a machine with other work; the first four cases are slabs "
-        "of 908 disks.",
+        "Profile",
+        "Largest shares of the time on one thread; the first four cases are slabs of 908 disks.",
     ),
     "startup": (
-        "What a newcomer waits for",
-        "Whole processes, the least of five. Compiled kernels are kept on disk. A run of two disks is what every "
-        "run pays: libraries imported, kernels read from the disk and linked, a result written. Most of what is "
-        "left is the fall of the slab, in the paper's time steps. On a slower machine the kernels took 54 s and the "
-        "default scene 2.1 s, and in turns the first version 61 and 3.1 s.",
+        "Start-up",
+        "Whole processes, least of five. Compiled kernels are cached.",
     ),
     "pipeline": (
-        "Where the time of the pipeline goes",
-        "Every group from nothing, with compiled kernels, on all cores. Wall-clock seconds of each stage with "
-        "its start, one group after another. In other hours of the same machine all groups of the paper took 6.5 min "
-        "in place of 5.2: `sensitivity`, which is explicit steps, 20 s in place of 13.",
+        "The pipeline",
+        "Every group from nothing, with compiled kernels, one after another on all cores.",
     ),
 }
 
@@ -180,16 +146,43 @@ def table(rows: list[dict[str, Any]], columns: dict[str, str], title: str = "") 
     return {"title": title, "columns": list(columns.values()), "rows": cells}
 
 
-def spread(row: dict[str, Any], key: str) -> str:
-    """The least value, and that of the worst round."""
-    return f"{cell(row[key])} ({cell(row[f'{key}_worst_round'])})"
+def by_size(metrics: Metrics) -> dict[str, Any]:
+    """One row for each code, one column for each number of disks, and the memory at the largest."""
+    columns = {"code": "code", "version": "version"}
+    rows: dict[tuple[str, str], dict[str, Any]] = {}
+    for run in metrics["runs"]:
+        columns.setdefault(str(run["disks"]), f"{run['disks']:,} disks")
+        one = rows.setdefault((run["code"], run["version"]), dict(run))
+        one[str(run["disks"])] = f"{cell(run['processor_microseconds'])} ({run['times_ours']:.3g})"
+        one["peak_mebibytes"] = run["peak_mebibytes"]
+    columns["peak_mebibytes"] = "memory, most disks [MiB]"
+    return table(list(rows.values()), columns, skipped("Microseconds per step (times ours)", metrics))
+
+
+def to_a_response(metrics: Metrics) -> dict[str, Any]:
+    """One row for each code, for each scene the time to the error that the README compares at, and the least error."""
+    columns = {"code": "code"}
+    rows: dict[str, dict[str, Any]] = {}
+    for run in metrics["reached"]:
+        scene, (error, _) = run["scene"], COMPARED[run["scene"]]
+        columns |= {scene: f"{scene}, to {error} [s]", f"{scene}_least": "least error"}
+        row = rows.setdefault(run["code"], {"code": run["code"]})
+        row |= {scene: run[error], f"{scene}_least": run["least_error"]}
+    words = skipped("Least processor time to an error", metrics)
+    if metrics.get("not_run"):
+        theirs = sum("steps" in row for row in metrics["runs"])
+        count = f"{len(metrics['not_run'])} of {theirs + len(metrics['not_run'])}"
+        words = f"{words.removesuffix(':')}; {count} runs were not made (`responses.json` names them):"
+    return table(list(rows.values()), columns, words)
 
 
 def factorisations(metrics: Metrics, key: str, title: str) -> dict[str, Any]:
     """One row for each matrix, one column for each method."""
-    columns = {"friction": "friction", "unknowns": "unknowns", "half_width": "half-width"}
+    columns = {"friction": "friction", "unknowns": "unknowns"}
     rows: dict[int, dict[str, Any]] = {}
     for run in metrics["runs"]:
+        if run["unknowns"] < MANY:
+            continue
         columns.setdefault(run["method"], run["method"])
         rows.setdefault(run["unknowns"], dict(run))[run["method"]] = run[key]
     return table(list(rows.values()), columns, skipped(title, metrics))
@@ -209,19 +202,7 @@ def nine_points(points: list[dict]) -> dict[str, Any]:
 
 
 def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
-    """What of a benchmark is worth reading as numbers."""
-    if benchmark == "precision":
-        return [
-            table(
-                metrics["comparison"],
-                {
-                    "scene": "scene", "target_error": "error", "statics_seconds": "statics [s]",
-                    "dynamics_seconds": "dynamics [s]", "lammps_seconds": "LAMMPS [s]",
-                    "times_faster_than_lammps": "LAMMPS / statics",
-                },
-                "Least time to reach an error:",
-            ),
-        ]  # fmt: skip
+    """The tables of a benchmark."""
     if benchmark == "nine_points":
         return [nine_points(metrics["points"])]
     if benchmark == "exactness":
@@ -232,97 +213,31 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
         }  # fmt: skip
         names = {"slab": "the paper's slab", "small": "small", "slabs": "slabs"}
         return [table([{"what": what, **metrics[f"{key}_summary"]} for key, what in names.items()], columns)]
-    if benchmark == "convergence":
-        return [
-            table(
-                metrics["fits"],
-                {
-                    "friction": "friction", "force": "force",
-                    "exponent_of_symmetric_difference": "exponent of the symmetric part",
-                    "exponent_of_difference": "exponent of the difference",
-                    "largest_asymmetry": "largest asymmetry",
-                },
-            )
-        ]  # fmt: skip
     if benchmark == "trajectory":
-        orders = [{**row, "integrator": name(row["integrator"])} for row in metrics["orders"]]
-        return [table(orders, {"problem": "problem", "integrator": "integrator", "measured_order": "measured order"})]
-    if benchmark == "kernel":
-        return [
-            table(
-                metrics["runs"],
-                {
-                    "disks": "disks", "friction": "friction", "microseconds": "ours [µs/step]",
-                    "lammps_microseconds": "LAMMPS [µs/step]", "over_lammps": "speed over LAMMPS",
-                },
-            ),
-            table(
-                [row for row in metrics["profile"] if row["microseconds"] is not None],
-                {"friction": "friction", "part": "part of a step, 908 disks", "microseconds": "µs", "share": "share"},
-                "Where a step goes:",
-            ),
-        ]  # fmt: skip
+        orders: dict[str, dict[str, Any]] = {}
+        for row in metrics["orders"]:
+            one = orders.setdefault(row["integrator"], {"integrator": name(row["integrator"])})
+            one[row["problem"]] = row["measured_order"]
+        columns = {"integrator": "integrator", "swing": "smooth motion", "fall": "fall of a slab"}
+        return [table(list(orders.values()), columns)]
     if benchmark == "arena":
-        columns = {
-            "disks": "disks", "code": "code", "version": "version", "spread": "µs/step (worst round)",
-            "times_ours": "times ours", "peak_mebibytes": "peak memory [MiB]",
-        }  # fmt: skip
-        rows = [{**row, "spread": spread(row, "processor_microseconds")} for row in metrics["runs"]]
-        return [table(rows, columns, skipped("Microseconds per step", metrics))]
+        return [by_size(metrics)]
     if benchmark == "responses":
-        errors = {key: f"to {key} [s]" for key in metrics["reached"][0] if key.startswith("1e-") or key[0] == "0"}
-        columns = {"scene": "scene", "code": "code", **errors, "least_error": "least error"}
-        words = skipped("Least time of the processor to an error", metrics)
-        if metrics.get("not_run"):
-            theirs = sum("steps" in row for row in metrics["runs"])
-            count = f"{len(metrics['not_run'])} of {theirs + len(metrics['not_run'])}"
-            words = f"{words.removesuffix(':')}; {count} runs were not made (`responses.json` names them):"
-        return [table(metrics["reached"], columns, words)]
-    if benchmark == "bounces":
-        columns = {
-            "code": "code", "version": "version", "from_ours_weak": "next to no dashpots: from ours",
-            "from_ours_strong": "the paper's dashpots: from ours", "excess": "sliding disk: from the closed form",
-            "at_angle": "at [°]",
-        }  # fmt: skip
-        words = "Largest differences of the energy kept, in parts of the energy before"
-        return [table(metrics["compared"], columns, skipped(words, metrics))]
-    if benchmark == "limits":
-        columns = {
-            "part": "part of a step", "friction": "friction", "operations": "operations",
-            "divisions_and_roots": "of which divisions and roots", "bytes": "bytes", "microseconds": "µs",
-            "gigaflops": "10⁹ operations/s", "gigabytes_per_second": "GB/s",
-            "mix_microseconds": "loop of the same mix [µs]", "chain_microseconds": "in one chain [µs]",
-            "ratio": "of the limit",
-        }  # fmt: skip
-        factors = {
-            "method": "factorisation", "friction": "friction", "unknowns": "unknowns",
-            "size": "half-width, largest front", "operations": "operations", "milliseconds": "ms",
-            "gigaflops": "10⁹ operations/s", "product_gigaflops": "matrix product", "ratio": "of the product",
-            "bare_ratio": "bare fronts, of the product", "bare_share": "their share of the time",
-        }  # fmt: skip
-        return [table(metrics["runs"], columns), table(metrics["factorisations"], factors, "Factorisations:")]
+        return [to_a_response(metrics)]
     if benchmark == "linear":
-        return [
-            factorisations(metrics, "factor_milliseconds", "Factorisation, ms"),
-            factorisations(metrics, "solve_milliseconds", "Solution for one right-hand side, ms"),
-        ]
+        return [factorisations(metrics, "factor_milliseconds", "Numeric factorisation, ms")]
     if benchmark == "shares":
         columns = {
-            "what": "what", "seconds": "time [s]", "factorisations": "factorisations and solutions",
-            "forces and tangents": "forces and tangents of contacts", "dynamics": "steps of dynamics",
-            "matrices and arrays": "matrices and arrays", "the rest": "the rest",
+            "what": "case", "seconds": "time [s]", "factorisations": "linear algebra",
+            "forces and tangents": "contacts", "dynamics": "dynamics",
         }  # fmt: skip
-        return [table(metrics["runs"], columns)]
-    if benchmark == "skipping":
-        columns = {"part": "part", "friction": "friction", "cost": "cost", "same_result": "bitwise the same"}
         return [table(metrics["runs"], columns)]
     if benchmark == "scale":
         columns = {
-            "method": "method", "disks": "disks", "layers": "layers", "threads": "threads", "seconds": "time [s]",
-            "cpu_seconds": "processor [s]", "peak_gibibytes": "peak memory [GiB]",
-            "force_residual": "largest unbalanced force [mg]",
+            "method": "method", "disks": "disks", "seconds": "time [s]", "cpu_seconds": "processor [s]",
+            "peak_gibibytes": "memory [GiB]",
         }  # fmt: skip
-        return [table(metrics["runs"], columns)]
+        return [table([row for row in metrics["runs"] if row["disks"] >= LARGE], columns)]
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
@@ -330,17 +245,19 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
         }  # fmt: skip
         return [table(metrics["growth"], columns)]
     if benchmark == "startup":
-        return [
-            table(metrics["runs"], {"what": "process", "seconds": "time [s]", "processor_seconds": "processor [s]"})
-        ]
-    if benchmark == "pipeline":
-        columns = {"group": "group", "simulate_seconds": "simulations [s]", "draw_seconds": "figures [s]"}
-        sums = {"cores": "cores", "simulate_seconds": "simulations [s]", "draw_seconds": "figures [s]"}
-        return [
-            table(metrics["runs"], columns),
-            table(metrics["totals"], sums, "Sum of the groups that draw the paper's figures or check its claims:"),
-        ]
+        return [table(metrics["runs"][:4], {"what": "process", "seconds": "time [s]"})]
     return []
+
+
+def groups(metrics: Metrics) -> str:
+    """Seconds of each figure group, and of those of the paper together."""
+
+    def whole(row: dict[str, Any]) -> float:
+        return row["simulate_seconds"] + row["draw_seconds"]
+
+    each = ", ".join(f"`{row['group']}` {whole(row):.0f}" for row in metrics["runs"])
+    totals = "".join(f" The paper's groups: {whole(row):.0f}." for row in metrics["totals"])
+    return f" Seconds with figures: {each}.{totals}"
 
 
 def out_of_reach(runs: list[dict[str, Any]], scene: str, comparison: dict[str, Any]) -> float | None:
@@ -451,6 +368,7 @@ def text(found: dict[str, Metrics]) -> str:
             part["measured_on"] = measured_on(metrics)
             part["picture"] = benchmark if benchmark in pictures.DRAWN else None
             part["tables"] = tables(benchmark, metrics)
+            part["text"] += groups(metrics) if benchmark == "pipeline" else ""
         parts.append(part)
     environment = Environment(
         loader=FileSystemLoader(HERE),

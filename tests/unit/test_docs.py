@@ -95,7 +95,7 @@ def texts_of_the_sources() -> str:
 
 def quoted_messages() -> list[str]:
     text = (ROOT / "docs" / "own-scenes.md").read_text(encoding="utf-8")
-    section = text.partition("## When it does not work")[2].partition("\n## ")[0]
+    section = text.partition("## Troubleshooting")[2].partition("\n## ")[0]
     return [" ".join(message.split()) for message in re.findall(r"^\* \*([^*]+)\*", section, re.MULTILINE)]
 
 
