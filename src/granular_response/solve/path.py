@@ -413,7 +413,8 @@ class _Path:
         it. Newton's method by the tangent at ``point``, or by that of an iterate where it does not lead there soon.
         """
         options, known = self.options, point.known
-        factor = self._towards(point.factor, length) if event is None else point.factor + self.direction * length
+        at_end = event is None and length >= abs(self.target - point.factor)
+        factor = self.target if at_end else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
         before, enough, stalled = np.inf, ENOUGH if event is None else options.passing, False
