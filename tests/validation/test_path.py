@@ -1,6 +1,6 @@
 """Quasi-static load paths against slow dynamics and small increments, through lost equilibria, cut and continued."""
 
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -24,6 +24,7 @@ from granular_response.solve import (
     rest_state,
     solve_scene,
 )  # fmt: skip
+from granular_response.solve.rates import RateProblem
 from granular_response.state import OPEN, SLIDING, STICKING, State
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
@@ -332,15 +333,19 @@ def test_a_lost_equilibrium_is_an_event_with_its_displacement():
         assert event.load_factor <= event.until <= 1.0
 
 
+def prepared(packing, contact, wall, load):
+    """A problem with a load on the top disk, and its rest state."""
+    described = {"packing": {"kind": "slab", **packing}, "contact": contact, "wall": wall, "loads": pushed(*load)}
+    problem = Problem.from_scene(gr.Scene.from_dict(described | {"protocol": {"time_step": "auto"}}))
+    rest = rest_state(problem)
+    return problem.with_loads(rest.position), rest
+
+
 def test_an_equilibrium_that_is_lost_between_two_events_is_lost_there():
     """At 0.904 of the load, wherever states are kept; the packing moves by 5e-3 radii."""
-    packing = {"kind": "slab", "layers": 3, "disks_per_row": 10, "sides": "periodic", "polydispersity": 0.02}
-    packing |= {"lattice_constant": "touching-largest", "seed": 74}
-    described = {"packing": packing, "contact": {"friction": 0.5}, "wall": {"friction": 0.5}}
-    described |= {"loads": pushed(-0.868857798426316, -0.379878289386005), "protocol": {"time_step": "auto"}}
-    problem = Problem.from_scene(gr.Scene.from_dict(described))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    packing = {"layers": 3, "disks_per_row": 10, "sides": "periodic", "polydispersity": 0.02, "seed": 74}
+    packing["lattice_constant"], rubs = "touching-largest", {"friction": 0.5}
+    problem, rest = prepared(packing, rubs, rubs, (-0.868857798426316, -0.379878289386005))
     ends = []
     for programme in ([1.0], [0.92, 1.0]):
         record = PathRecord()
@@ -351,12 +356,50 @@ def test_an_equilibrium_that_is_lost_between_two_events_is_lost_there():
 
 def test_slip_that_turns_round_between_two_events_is_seen():
     """With the 3/2 law rates change on the way: the contact of disks 14 and 15 sticks at 0.1039, not at 0.1185."""
-    described = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 4}, "protocol": {"time_step": "auto"}}
-    described |= {"contact": {"law": "hertz", "friction": 0.2}, "wall": {"friction": 0.2}}
-    described |= {"loads": pushed(-0.6549511091414716, -11.063131298210278)}
-    problem = Problem.from_scene(gr.Scene.from_dict(described))
-    rest = rest_state(problem)
-    problem = problem.with_loads(rest.position)
+    hertz = {"law": "hertz", "friction": 0.2}
+    load = (-0.6549511091414716, -11.063131298210278)
+    problem, rest = prepared({"layers": 5, "disks_per_row": 4}, hertz, {"friction": 0.2}, load)
     (state,) = follow(problem, rest, [0.15])
     sticks = [e.load_factor for e in state.reached.events if (e.kind, e.first, e.second) == ("sticks", 14, 15)]
     assert sticks == [pytest.approx(0.1039, abs=2e-4)]
+
+
+def test_pieces_of_a_path_with_hertz_contacts_make_the_whole():
+    """151 events, slip that turns round among them; no event is passed, and none beyond the target is gone to."""
+    packing, hertz = {"layers": 4, "disks_per_row": 9}, {"law": "hertz", "friction": 0.2}
+    problem, rest = prepared(packing, hertz, {"friction": 0.2}, (15.142146600609928, -19.622483928994026))
+    whole, cut = PathRecord(), PathRecord()
+    (end,) = follow(problem, rest, [1.0], record=whole)
+    other = follow(problem, rest, np.linspace(0.0, 1.0, 101)[1:], record=cut)[-1]
+    assert len(whole.events) == len(cut.events) > 100
+    assert [event.kind for event in whole.events if event.lost] == []
+    assert np.abs(_walls(end) - _walls(other)).max() < 3e-8 * problem.load_size
+
+
+def test_no_statuses_go_on_where_none_are_found(monkeypatch):
+    """All statuses of the contacts that are at a change are tried where the search for rates ends without any."""
+    packing = {"layers": 2, "disks_per_row": 10, "sides": "periodic", "polydispersity": 0.1, "seed": 6}
+    packing["lattice_constant"] = "touching-largest"
+    rubs = {"friction": 0.2}
+    problem, rest = prepared(packing, rubs, rubs, (-1.1659190170581237, -28.555894880622567))
+    searched, tried = RateProblem.solve, []
+
+    def solve(self, trial, sense):
+        found = searched(self, trial, sense)
+        if found is None:
+            limit = 0.2 * trial.normal - np.abs(trial.tangential)
+            slides = np.where(trial.tangential > 0.0, SLIDING, -SLIDING)
+            at = np.flatnonzero((trial.normal > self.force) & (limit <= self.force))
+            assert len(at) and not (np.abs(trial.configuration.overlap) * problem.stiffness <= self.force).any()
+            for choice in product(*((STICKING, slides[c]) for c in at)):
+                now = sense.copy()
+                now[at] = choice
+                velocity = self.velocity(trial.configuration, now, self.system.renewed_factor(trial.configuration, now))
+                tried.append(len(self.changes(trial, velocity, now).due(self.force)))
+        return found
+
+    monkeypatch.setattr(RateProblem, "solve", solve)
+    record = PathRecord()
+    follow(problem, rest, [0.4], record=record)
+    assert sum(event.lost for event in record.events) == 3
+    assert len(tried) >= 32 and min(tried) > 0

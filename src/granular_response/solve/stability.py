@@ -11,13 +11,12 @@ they oscillate, and decay or grow (flutter) by the dashpots.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import LinearOperator, eigs, eigsh
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from ..kernels.events import SLIDES, STICKS
 from ..state import SLIDING, STICKING, FloatArray
@@ -34,6 +33,8 @@ ROUGH, FEW = 1e-3, 6
 #: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that is
 #: known roughly.
 SOUGHT, AMONG, AMONG_FEW = 4, 14, 6
+#: Restarts with so many vectors, and how many times as many are tried in turn where these do not do.
+RESTARTS, WIDER = 300, (1, 4, 16)
 #: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it is
 #: where it is so many times as far from zero as the accuracy of this distance.
 ACCURACIES, CERTAIN = (1e-3, 1e-4, 1e-5, 1e-6), 10.0
@@ -199,10 +200,24 @@ def _left_of_all(system: StaticSystem, matrix: sp.csc_array) -> float:
 def _nearest_to(
     system: StaticSystem, left: float, matrix: sp.csc_array
 ) -> Callable[..., tuple[NDArray[Any], NDArray[Any]]]:
-    """What finds so many eigenvalues (m,) of a matrix, the nearest to a number, and their vectors (dof, m)."""
+    """What finds so many eigenvalues (m,) of a matrix, the nearest to a number, and their vectors (dof, m).
+
+    Where the nearest are a cluster they are looked for among more vectors.
+    """
     factor = system.storage.factor(system.pattern.with_shift(matrix, -left))
-    return partial(
-        eigs, matrix, sigma=left, ncv=AMONG, tol=SIGN * (NEUTRAL / -left),
-        OPinv=LinearOperator((system.dof, system.dof), factor.solve, dtype=float),
-        v0=np.random.default_rng(0).standard_normal(system.dof),
-    )  # fmt: skip
+    inverse = LinearOperator((system.dof, system.dof), factor.solve, dtype=float)
+    start = np.random.default_rng(0).standard_normal(system.dof)
+
+    def nearest(
+        count: int, *, tol: float = SIGN * (NEUTRAL / -left), v0: FloatArray = start, ncv: int = AMONG
+    ) -> tuple[NDArray[Any], NDArray[Any]]:
+        for more in WIDER:
+            among = min(more * ncv, system.dof - 1)
+            try:
+                return eigs(matrix, k=count, sigma=left, OPinv=inverse, v0=v0, tol=tol, ncv=among, maxiter=RESTARTS)
+            except ArpackNoConvergence:
+                if more == WIDER[-1]:
+                    raise
+        raise AssertionError
+
+    return nearest
