@@ -2,6 +2,7 @@
 
 import errno
 import functools
+import importlib
 import json
 import os
 import pickle
@@ -19,12 +20,13 @@ import pytest
 from granular_response.scene import Scene
 from granular_response.solve import Problem
 from granular_response.sweeps import cluster as dask_tasks
+from granular_response.sweeps import digest as digesting
 from granular_response.sweeps import executor, memory, processes
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks
+from granular_response.sweeps.tasks import map_tasks, run_tasks
 
 
 def response(item):
@@ -187,7 +189,7 @@ def test_lambdas_and_functions_of_a_function_run_in_processes():
 
 NOTEBOOK = """
 import dataclasses
-from granular_response.sweeps.tasks import map_tasks
+from granular_response.sweeps.tasks import map_tasks, run_tasks
 @dataclasses.dataclass
 class Found:
     value: int
@@ -388,6 +390,39 @@ def test_the_resources_in_use_name_the_folder(tmp_path):
     assert len(list((tmp_path / "kept").rglob("*.kept"))) == 3
 
 
+def test_a_named_package_counts_with_all_of_its_modules(tmp_path, monkeypatch):
+    """Outcomes may be of its classes, and what is kept is of its present code."""
+    package = tmp_path / "mine"
+    package.mkdir()
+    (package / "__init__.py").write_text("RUNS = []\n")
+    (package / "width.py").write_text("def width(item):\n    return 2 * item\n")
+    dataclass = "from dataclasses import dataclass\n\n\n@dataclass(frozen=True)\n"
+    (package / "outcome.py").write_text(f"{dataclass}class Outcome:\n    value: int\n")
+    (package / "study.py").write_text(
+        "from . import RUNS, outcome, width\n"
+        f"{dataclass}class Study:\n    item: int\n\n    def run(self):\n"
+        "        RUNS.append(self.item)\n        return outcome.Outcome(width.width(self.item))\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    study = importlib.import_module("mine.study")
+
+    def outcomes():
+        digesting.sources.cache_clear()  # what another process would find
+        with using(checkpoint=tmp_path / "kept", packages=("mine",), workers=1):
+            return [found.value for found in run_tasks([study.Study(1), study.Study(2)])]
+
+    assert outcomes() == outcomes() == [2, 4] and study.RUNS == [1, 2]
+    with (package / "width.py").open("a") as file:
+        file.write("# another\n")
+    assert outcomes() == [2, 4] and study.RUNS == [1, 2, 1, 2]
+    with using(checkpoint=tmp_path / "other", workers=1), pytest.warns(MemoryWarning, match=r"mine\.outcome\.Outcome"):
+        run_tasks([study.Study(1)])
+    with pytest.raises(ModuleNotFoundError, match=r"nowhere/a\.py: no part of this package, and no package nowhere"):
+        digesting.sources("nowhere/a.py")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "mine"]:
+        monkeypatch.delitem(sys.modules, name)
+
+
 def test_another_function_or_item_finds_nothing(tmp_path):
     marks = tmp_path / "marks"
     marks.mkdir()
@@ -545,7 +580,7 @@ def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd, mo
 
 
 FROM_STANDARD_INPUT = """
-from granular_response.sweeps.tasks import map_tasks
+from granular_response.sweeps.tasks import map_tasks, run_tasks
 def square(x):
     return x * x
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ def encode(value: Any, modules: Collection[str] = ()) -> bytes:
         Numbers, text, arrays, xarray datasets, lists, tuples, sets and mappings of such, and dataclasses, named tuples,
         enumerations and scenes.
     modules
-        Whose classes may occur, beside those of this package.
+        Whose classes may occur, beside those of this package; a package stands for all of its modules.
 
     Raises
     ------
@@ -111,11 +111,14 @@ class _Reader(pickle.Unpickler):
             return super().find_class(module, name)
         if (module, name) == (__name__, _dataset.__name__):
             return _dataset
-        if _OWN.fullmatch(module) or (module in self.modules and module in sys.modules):
+        if _OWN.fullmatch(module) or (self._is_named(module) and module in sys.modules):
             kind = super().find_class(module, name)
             if isinstance(kind, type) and kind.__module__ == module and _holds_values(kind):
                 return kind
         raise NotDecodable(f"{module}.{name} is no class that may be made")
+
+    def _is_named(self, module: str) -> bool:
+        return any(module == name or module.startswith(f"{name}.") for name in self.modules)
 
 
 def _holds_values(kind: type) -> bool:

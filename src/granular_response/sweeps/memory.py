@@ -45,7 +45,7 @@ class Memory:
     sources
         Name of the code that makes the values, from :func:`.digest.sources`.
     modules
-        Whose classes values may be of, beside those of this package.
+        Whose classes values may be of, beside those of this package; a package stands for all of its modules.
     """
 
     def __init__(self, folder: str | os.PathLike[str], sources: str, modules: Collection[str] = ()) -> None:

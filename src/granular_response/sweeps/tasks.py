@@ -61,10 +61,11 @@ def map_tasks(
         Called as ``progress(done, total, what)`` at the start and after each task; if None, that of the resources.
     checkpoint
         Folder in which the result of each finished task is kept until the caller removes it. A later call
-        finds it there if function, item and the sources of this package are the same (see :mod:`.digest`). If None,
-        that of the resources in use; nothing is kept if there is none either.
+        finds it there if function, item and the sources of this package, and of those that the resources in use name,
+        are the same (see :mod:`.digest`). If None, that of the resources in use; nothing is kept if there is none
+        either.
     parts
-        Folders of this package with the sources that the results depend on; all of it if none is named.
+        The sources that the results depend on, as :func:`.digest.sources` takes them; all if none is named.
     what
         What the tasks are, for the progress line.
 
@@ -81,7 +82,7 @@ def map_tasks(
     items = list(items)
     scheduler = scheduler or given.scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
     folder = checkpoint or given.checkpoint
-    kept = _Checkpoint(folder, function, items, parts) if folder and items else None
+    kept = _Checkpoint(folder, function, items, parts, given.packages) if folder and items else None
 
     results: list[Any] = [kept.load(index) if kept else MISSING for index in range(len(items))]
     todo = [index for index, result in enumerate(results) if result is MISSING]
@@ -150,15 +151,22 @@ class _Checkpoint:
     """Finished results of one function in a folder; nothing is kept of what has no name of its own."""
 
     def __init__(
-        self, folder: str | os.PathLike[str], function: Callable, items: Sequence[Any], parts: Sequence[str]
+        self,
+        folder: str | os.PathLike[str],
+        function: Callable,
+        items: Sequence[Any],
+        parts: Sequence[str],
+        packages: Sequence[str],
     ) -> None:
-        self.memory = Memory(folder, sources(*parts), (_module(function),))
+        code = sources(*(parts or ("", *packages)))
+        self.memory = Memory(folder, code, (_module(function), *packages))
+        self.packages = packages
         self.function = self._name(function)
         self.names = [self._name(self.function, item) if self.function else None for item in items]
 
     def _name(self, *values: Any) -> str | None:
         try:
-            return digest(*values)
+            return digest(*values, packages=self.packages)
         except Indistinct as error:
             warn(f"{self.memory.folder}: {error}, so results are not kept")
             return None
