@@ -24,7 +24,7 @@ endif
 export DVC_NO_ANALYTICS := 1
 # Some environments ask Python to keep no bytecode. Hundreds of short processes would each compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
-# The stages of the pipeline call granular-response and tools beside it.
+# The stages of the pipeline call granular-response-paper and tools beside it.
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
@@ -34,15 +34,16 @@ export PATH := $(BIN):$(PATH)
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
-setup: $(STAMP) ## Create .venv with the pinned versions and this package (PYTHON=python3.12 picks another one)
+setup: $(STAMP) ## Create .venv with the pinned versions, the library and the reproduction (PYTHON=python3.12 picks another one)
 
-$(STAMP): requirements.lock pyproject.toml
+$(STAMP): requirements.lock pyproject.toml src/granular_response_paper/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "$(PYTHON) is older than Python 3.11: make setup PYTHON=python3.12" >&2; exit 1; }
 	@echo "Installing the pinned versions into .venv (some minutes the first time)"
 	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
 	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check -r requirements.lock
-	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation \
+	  -e . -e src/granular_response_paper
 	@touch "$@"
 
 # Quoting makes the report again, with benchmarks that are no dependency of its stage.
@@ -54,9 +55,9 @@ reproduce: setup ## Run what is not up to date: simulations, figures, claims, re
 # Not in the pipeline: its stages write what they declare, and these files are otherwise written by hand. The page is made
 # again with them, so dvc.lock records it again: benchmarks, which it shows, are no dependency that DVC would look at.
 quote: setup ## Renew the lines that README and documents quote from stored results and code (tests compare them)
-	"$(BIN)/granular-response" claims --list --readme README.md > /dev/null & claims=$$!; \
+	"$(BIN)/granular-response-paper" claims --list --readme README.md > /dev/null & claims=$$!; \
 	"$(BIN)/granular-response" keys --page docs/scene-reference.md & keys=$$!; \
-	"$(BIN)/granular-response" report --notes docs/reproduction-notes.md --figures docs/figures.md \
+	"$(BIN)/granular-response-paper" report --notes docs/reproduction-notes.md --figures docs/figures.md \
 	  --beyond docs/beyond.md && wait $$claims && wait $$keys
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	@"$(BIN)/dvc" commit --quiet --force report < /dev/null
@@ -83,7 +84,7 @@ broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of 
 	"$(BIN)/python" tests/unit/broken_files.py $(BROKEN)
 
 scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (hours)
-	"$(BIN)/python" -W ignore -m granular_response.paper.trials.random_scenes $(SCENES)
+	"$(BIN)/python" -W ignore -m granular_response_paper.trials.random_scenes $(SCENES)
 
 coverage: setup ## Unit tests with compilation off, so that kernels count too
 	NUMBA_DISABLE_JIT=1 "$(BIN)/coverage" run -m pytest tests/unit
@@ -99,15 +100,15 @@ docs: setup ## Build the documentation site into docs/_build/html, running every
 	"$(BIN)/python" .ci/links docs/_build/html
 
 notebooks: setup ## Write a notebook for each figure group into notebooks/
-	"$(BIN)/granular-response" notebooks
+	"$(BIN)/granular-response-paper" notebooks
 
 archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
-	"$(BIN)/granular-response" archive
+	"$(BIN)/granular-response-paper" archive
 
 restore: setup ## Take the datasets from an archive in place of computing them: make restore ARCHIVE=path
 	@test -n "$(ARCHIVE)" || { echo "make restore ARCHIVE=path" >&2; exit 1; }
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
-	"$(BIN)/granular-response" restore "$(ARCHIVE)"
+	"$(BIN)/granular-response-paper" restore "$(ARCHIVE)"
 	"$(BIN)/dvc" commit simulate < /dev/null
 
 package: setup ## Build sdist and wheel, and try the wheel in a fresh environment
@@ -127,9 +128,10 @@ arena: setup ## Steps, responses and bounces beside other codes that are install
 
 lock: ## Renew requirements.lock with the newest versions that pyproject.toml allows
 	$(PYTHON) -m venv --clear "$(VENV)-lock"
-	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[archive,dask,docs,export,pipeline,test]"
+	"$(VENV)-lock/bin/python" -m pip install -qq hatchling editables ".[dask,docs,export,pipeline,test]" \
+	  "./src/granular_response_paper[archive]"
 	{ sed -n '/^#/p' requirements.lock; \
-	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response; } > requirements.lock.new
+	  "$(VENV)-lock/bin/python" -m pip freeze --exclude granular-response --exclude granular-response-paper; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock
 	rm -rf "$(VENV)-lock"
 

@@ -18,15 +18,15 @@ from pathlib import Path
 from startup import run
 from timing import write
 
-from granular_response.paper.claims.table import CLAIMS
-from granular_response.paper.claims.table import GROUPS as JUDGED
+from granular_response_paper.claims.table import CLAIMS
+from granular_response_paper.claims.table import GROUPS as JUDGED
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
 def groups() -> list[str]:
     """Figure groups in the order in which they can run."""
-    listed = ROOT / "src" / "granular_response" / "paper" / "groups" / "groups.json"
+    listed = ROOT / "src" / "granular_response_paper" / "groups" / "groups.json"
     return list(json.loads(listed.read_text(encoding="utf-8"))["groups"])
 
 
@@ -38,7 +38,7 @@ def of_the_paper(group: str) -> bool:
 
 def main(path: str, folder: str | None = None) -> None:
     output = Path(path).resolve()
-    command = [sys.executable, "-m", "granular_response"]
+    command = [sys.executable, "-m", "granular_response_paper"]
     rows = []
     with nullcontext(folder) if folder else tempfile.TemporaryDirectory() as scratch:
         (Path(scratch) / "data").mkdir(parents=True)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from granular_response.paper.groups.phase_diagram.claims import linear_end
 from granular_response.store import generated
+from granular_response_paper.groups.phase_diagram.claims import linear_end
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTES = ROOT / "docs" / "reproduction-notes.md"
@@ -122,8 +122,8 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
 
 def measured() -> dict[str, xr.Dataset]:
     """What the study ``phase_diagram`` makes of the stored survey."""
-    from granular_response.paper.groups.phase_diagram.simulate import simulate
-    from granular_response.paper.pipeline.simulation import parameters
+    from granular_response_paper.groups.phase_diagram.simulate import simulate
+    from granular_response_paper.pipeline.simulation import parameters
 
     _, described = parameters("phase_diagram", ROOT / "params.yaml")
     return simulate(described.model_copy(update={"survey": str(ROOT / described.survey)}))  # type: ignore[attr-defined]

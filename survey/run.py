@@ -23,12 +23,12 @@ def main() -> None:
     parser.add_argument("--realizations", type=int, help="at most so many of each case of an ensemble")
     given = parser.parse_args()
     floating_point.pin()
-    from granular_response.paper.pipeline import GroupError
-    from granular_response.paper.survey import larger
-    from granular_response.paper.survey.simulate import SurveyError, read_parameters, run
     from granular_response.scene import SceneError
     from granular_response.store.files import StoreError
     from granular_response.sweeps.errors import SweepError
+    from granular_response_paper.pipeline import GroupError
+    from granular_response_paper.survey import larger
+    from granular_response_paper.survey.simulate import SurveyError, read_parameters, run
 
     try:
         for block in given.blocks or [*read_parameters(HERE / "params.yaml").blocks, *larger.GROUPS]:

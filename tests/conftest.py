@@ -22,6 +22,7 @@ IMPORTED = [
     "granular_response.api.sweep",
     "granular_response.cli.main",
     "granular_response.store.result",
+    "granular_response_paper.cli",
     "hypothesis",
     "pytest",
     "xarray",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.contact_law import draw
+from granular_response_paper.groups.contact_law import draw
 
 PARAMETERS = reduced.parameters("contact_law")
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.claims.claim import Data
-from granular_response.paper.claims.verdict import judge
-from granular_response.paper.groups.crossover_scaling import draw, simulate
-from granular_response.paper.groups.crossover_scaling.claims import CLAIMS
-from granular_response.paper.groups.crossover_scaling.parameters import Parameters
-from granular_response.paper.groups.frictionless_crossover import simulate as frictionless
-from granular_response.paper.report import beyond
 from granular_response.scene import SceneError
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
+from granular_response_paper.groups.crossover_scaling import draw, simulate
+from granular_response_paper.groups.crossover_scaling.claims import CLAIMS
+from granular_response_paper.groups.crossover_scaling.parameters import Parameters
+from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
+from granular_response_paper.report import beyond
 
 PARAMETERS = reduced.parameters("crossover_scaling")
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.friction_fields import draw as figures
-from granular_response.paper.groups.friction_fields import simulate as study
 from granular_response.plot import style
+from granular_response_paper.groups.friction_fields import draw as figures
+from granular_response_paper.groups.friction_fields import simulate as study
 
 PARAMETERS = reduced.parameters("friction_fields")
 SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.friction_linear_range import draw as figures
 from granular_response.plot import style
 from granular_response.state import SLIDING
 from granular_response.store import files as store
+from granular_response_paper.groups.friction_linear_range import draw as figures
 
 PARAMETERS = reduced.parameters("friction_linear_range")
 

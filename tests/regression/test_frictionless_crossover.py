@@ -3,8 +3,8 @@
 import numpy as np
 import reduced
 
-from granular_response.paper.groups.frictionless_crossover import draw as figures
 from granular_response.plot import style
+from granular_response_paper.groups.frictionless_crossover import draw as figures
 
 PARAMETERS = reduced.parameters("frictionless_crossover")
 STEMS = [

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.claims.claim import Data
-from granular_response.paper.claims.verdict import judge
-from granular_response.paper.groups.hysteresis import draw, simulate
-from granular_response.paper.groups.hysteresis.claims import CLAIMS
-from granular_response.paper.groups.hysteresis.parameters import Parameters
-from granular_response.paper.report import beyond
 from granular_response.scene import SceneError
 from granular_response.solve import Problem, loaded_states, minimise
 from granular_response.solve import solution as solvers
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
+from granular_response_paper.groups.hysteresis import draw, simulate
+from granular_response_paper.groups.hysteresis.claims import CLAIMS
+from granular_response_paper.groups.hysteresis.parameters import Parameters
+from granular_response_paper.report import beyond
 
 PARAMETERS = reduced.parameters("hysteresis")
 #: Cases of the reduced parameters.

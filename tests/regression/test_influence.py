@@ -5,12 +5,12 @@ import pytest
 import reduced
 import xarray as xr
 
-from granular_response.paper.claims.claim import Data
-from granular_response.paper.claims.verdict import judge
-from granular_response.paper.groups.influence import draw, simulate
-from granular_response.paper.groups.influence.claims import CLAIMS
-from granular_response.paper.groups.influence.parameters import Parameters
 from granular_response.scene import SceneError
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
+from granular_response_paper.groups.influence import draw, simulate
+from granular_response_paper.groups.influence.claims import CLAIMS
+from granular_response_paper.groups.influence.parameters import Parameters
 
 PARAMETERS = reduced.parameters("influence")
 

@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.claims.claim import Data
-from granular_response.paper.claims.verdict import judge
-from granular_response.paper.groups.moduli import draw, simulate
-from granular_response.paper.groups.moduli.claims import CLAIMS
-from granular_response.paper.groups.moduli.parameters import Parameters
 from granular_response.scene import SceneError
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import response_of_layers
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
+from granular_response_paper.groups.moduli import draw, simulate
+from granular_response_paper.groups.moduli.claims import CLAIMS
+from granular_response_paper.groups.moduli.parameters import Parameters
 
 PARAMETERS = reduced.parameters("moduli")
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.claims.claim import Data
-from granular_response.paper.claims.verdict import judge
-from granular_response.paper.groups.peak_width import draw
-from granular_response.paper.groups.peak_width.claims import CLAIMS
-from granular_response.paper.groups.peak_width.parameters import Parameters
 from granular_response.scene import SceneError
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.verdict import judge
+from granular_response_paper.groups.peak_width import draw
+from granular_response_paper.groups.peak_width.claims import CLAIMS
+from granular_response_paper.groups.peak_width.parameters import Parameters
 
 PARAMETERS = reduced.parameters("peak_width")
 SMALL, LARGE, DISORDERED = 0, 1, 2

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.pile_dip import draw as figures
-from granular_response.paper.groups.pile_dip import simulate as study
 from granular_response.plot import style
+from granular_response_paper.groups.pile_dip import draw as figures
+from granular_response_paper.groups.pile_dip import simulate as study
 
 PARAMETERS = reduced.parameters("pile_dip")
 

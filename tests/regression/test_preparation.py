@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.preparation import draw as figures
-from granular_response.paper.groups.preparation import simulate as study
-from granular_response.paper.groups.preparation.numbers import numbers
-from granular_response.paper.groups.preparation.parameters import Parameters
-from granular_response.paper.slab_response import LoadPath, Measures
 from granular_response.scene import SceneError
+from granular_response_paper.groups.preparation import draw as figures
+from granular_response_paper.groups.preparation import simulate as study
+from granular_response_paper.groups.preparation.numbers import numbers
+from granular_response_paper.groups.preparation.parameters import Parameters
+from granular_response_paper.slab_response import LoadPath, Measures
 
 PARAMETERS = reduced.parameters("preparation")
 WAYS = PARAMETERS["ways"]

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.slab_comparison import draw as figures
-from granular_response.paper.groups.slab_comparison import simulate as study
 from granular_response.plot import style
+from granular_response_paper.groups.slab_comparison import draw as figures
+from granular_response_paper.groups.slab_comparison import simulate as study
 
 
 def case(friction, floor, layers, gravity="at-once"):

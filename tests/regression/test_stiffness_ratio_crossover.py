@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.stiffness_ratio_crossover import draw as figures
-from granular_response.paper.groups.stiffness_ratio_crossover import simulate as study
 from granular_response.plot import style
 from granular_response.theory import crossover
+from granular_response_paper.groups.stiffness_ratio_crossover import draw as figures
+from granular_response_paper.groups.stiffness_ratio_crossover import simulate as study
 
 PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 

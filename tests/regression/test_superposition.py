@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.superposition import draw as figures
-from granular_response.paper.groups.superposition import simulate as study
 from granular_response.plot import style
 from granular_response.scene import Scene
 from granular_response.sweeps.rest import rest_of
+from granular_response_paper.groups.superposition import draw as figures
+from granular_response_paper.groups.superposition import simulate as study
 
 PARAMETERS = reduced.parameters("superposition")
 CERTIFIED = ("force_residual", "torque_residual", "coulomb_excess")

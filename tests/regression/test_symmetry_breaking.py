@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.symmetry_breaking import draw as figures
-from granular_response.paper.groups.symmetry_breaking import simulate as study
 from granular_response.plot import style
 from granular_response.store import files as store
+from granular_response_paper.groups.symmetry_breaking import draw as figures
+from granular_response_paper.groups.symmetry_breaking import simulate as study
 
 PARAMETERS = reduced.parameters("symmetry_breaking")
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.torque import draw as figures
-from granular_response.paper.groups.torque import simulate as study
 from granular_response.plot import style
+from granular_response_paper.groups.torque import draw as figures
+from granular_response_paper.groups.torque import simulate as study
 
 PARAMETERS = reduced.parameters("torque")
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")

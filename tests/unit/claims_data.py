@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 import yaml
 
-from granular_response.paper.groups.theory import simulate as theory
+from granular_response_paper.groups.theory import simulate as theory
 
 ROOT = Path(__file__).parents[2]
 FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [15.0, 50.0]]))

@@ -1,4 +1,4 @@
-"""The command line as a test runs it: in a new process, or in one forked from a process that has imported everything.
+"""The command lines as a test runs them: in a new process, or in one forked from a process that imported everything.
 
 Both have their own folder, streams and exit code, and a forked one begins in a hundredth of the time that imports take.
 What a process does before it has imported anything, and what it must not import, is tested by new ones.
@@ -20,20 +20,31 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-PACKAGE = "granular_response"
+LIBRARY, PAPER = "granular_response", "granular_response_paper"
+#: Commands of the reproduction; all others are the library's.
+OF_THE_PAPER = ("simulate", "draw", "measure", "claims", "report", "notebooks", "archive", "restore")
 #: Of a command, in seconds.
 LONGEST = 120.0
 
 
-def process(*arguments: object, folder: str | Path | None = None, **options) -> subprocess.CompletedProcess[str]:
-    """``granular-response ARGUMENTS`` in a new process; ``options`` of ``subprocess.run``."""
-    command = [sys.executable, "-m", PACKAGE, *map(str, arguments)]
+def package_of(*arguments: object) -> str:
+    """The package whose command line has a command."""
+    return PAPER if arguments and arguments[0] in OF_THE_PAPER else LIBRARY
+
+
+def process(
+    *arguments: object, folder: str | Path | None = None, package: str | None = None, **options
+) -> subprocess.CompletedProcess[str]:
+    """``granular-response ARGUMENTS``, or that of ``package``, in a new process; ``options`` of ``subprocess.run``."""
+    command = [sys.executable, "-m", package or package_of(*arguments), *map(str, arguments)]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
 
 
-def call(*arguments: object, folder: str | Path | None = None) -> subprocess.CompletedProcess[str]:
+def call(
+    *arguments: object, folder: str | Path | None = None, package: str | None = None
+) -> subprocess.CompletedProcess[str]:
     """The same in a forked process."""
-    argv = [str(argument) for argument in arguments]
+    argv = [package or package_of(*arguments), *map(str, arguments)]
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         server = _server()
         request = pickle.dumps((argv, str(folder or Path.cwd()), dict(os.environ)))
@@ -57,10 +68,11 @@ def _server() -> socket.socket:
 
 
 def _serve(connection: socket.socket) -> None:
-    package = importlib.import_module(PACKAGE)
-    for module in pkgutil.walk_packages(package.__path__, f"{PACKAGE}."):
-        if not module.name.endswith("__main__"):
-            importlib.import_module(module.name)
+    for name in (LIBRARY, PAPER):
+        package = importlib.import_module(name)
+        for module in pkgutil.walk_packages(package.__path__, f"{name}."):
+            if not module.name.endswith("__main__"):
+                importlib.import_module(module.name)
     while True:
         request, descriptors, _, _ = socket.recv_fds(connection, 1 << 20, 2)
         if not request:
@@ -84,9 +96,9 @@ def _run(argv: Sequence[str], folder: str, environment: dict[str, str], descript
     for ours, theirs in zip((1, 2), descriptors, strict=True):
         os.dup2(theirs, ours)
         os.close(theirs)
-    sys.argv = [PACKAGE, *argv]
+    sys.argv = list(argv)
     try:
-        sys.modules[f"{PACKAGE}.cli.main"].main()
+        sys.modules[{LIBRARY: f"{LIBRARY}.cli.main", PAPER: f"{PAPER}.cli"}[argv[0]]].main()
         code = 0
     except SystemExit as end:
         code = end.code if isinstance(end.code, int) else int(end.code is not None)

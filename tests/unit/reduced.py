@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 import xarray as xr
 
-from granular_response.paper.pipeline import GroupError, simulation
 from granular_response.store import files as store
+from granular_response_paper.pipeline import GroupError, simulation
 
 PATH = Path(__file__).parents[2] / "notebooks" / "reduced.yaml"
 

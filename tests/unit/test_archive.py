@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from commands import call
 
-from granular_response.paper.archive import ArchiveError, crate, lock
-from granular_response.paper.archive.restore import restore
+from granular_response_paper.archive import ArchiveError, crate, lock
+from granular_response_paper.archive.restore import restore
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """\

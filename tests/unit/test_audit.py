@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.paper.trials.audit import ContactRule, audit
-from granular_response.paper.trials.random_scenes import (
+from granular_response.scene import Scene
+from granular_response.solve import PathError, Problem, Solution, solve_scene
+from granular_response.state import OPEN, SLIDING, Contacts, Reached
+from granular_response_paper.trials.audit import ContactRule, audit
+from granular_response_paper.trials.random_scenes import (
     MASS_RATIO,
     RADIUS_RATIO,
     anachronism,
@@ -17,9 +20,6 @@ from granular_response.paper.trials.random_scenes import (
     rounding_of,
     write_table,
 )
-from granular_response.scene import Scene
-from granular_response.solve import PathError, Problem, Solution, solve_scene
-from granular_response.state import OPEN, SLIDING, Contacts, Reached
 
 
 @pytest.fixture(scope="module")

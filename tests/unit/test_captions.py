@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from granular_response.paper import captions
-from granular_response.paper.captions import Caption, of_scene
-from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import GroupError, drawing, group_member
 from granular_response.plot import style
 from granular_response.scene import PilePacking, Scene
 from granular_response.store import files as store
+from granular_response_paper import captions
+from granular_response_paper.captions import Caption, of_scene
+from granular_response_paper.groups import NAMES
+from granular_response_paper.pipeline import GroupError, drawing, group_member
 
 ROOT = Path(__file__).parents[2]
 STORED = {group: ROOT / "figures" / group / captions.FILE for group in NAMES}

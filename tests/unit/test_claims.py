@@ -11,9 +11,11 @@ import xarray as xr
 import yaml
 from claims_data import STARTS, dataset, everything, pile_study
 
-from granular_response.paper.claims import preparations, table, words
-from granular_response.paper.claims.bootstrap import over_brackets, over_realizations
-from granular_response.paper.claims.claim import (
+from granular_response.store import files as store
+from granular_response.store import generated
+from granular_response_paper.claims import preparations, table, words
+from granular_response_paper.claims.bootstrap import over_brackets, over_realizations
+from granular_response_paper.claims.claim import (
     Claim,
     Condition,
     Data,
@@ -25,11 +27,9 @@ from granular_response.paper.claims.claim import (
     rises,
     sampled,
 )
-from granular_response.paper.claims.verdict import MEANINGS, judge, verdict_of
-from granular_response.paper.groups import NAMES
-from granular_response.paper.groups.frictionless_crossover import claims as slab_claims
-from granular_response.store import files as store
-from granular_response.store import generated
+from granular_response_paper.claims.verdict import MEANINGS, judge, verdict_of
+from granular_response_paper.groups import NAMES
+from granular_response_paper.groups.frictionless_crossover import claims as slab_claims
 
 ROOT = Path(__file__).parents[2]
 CLAIM = {claim.id: claim for claim in table.CLAIMS}
@@ -320,7 +320,7 @@ def test_every_row_of_the_list_has_one_entry_with_text():
     for claim in table.CLAIMS:
         assert claim.place and claim.measured and claim.paper and claim.group in table.GROUPS
         assert all(1 <= number <= 24 for number in claim.figures)
-        module = f"granular_response.paper.groups.{claim.group}.claims"
+        module = f"granular_response_paper.groups.{claim.group}.claims"
         assert (ROOT / "src" / Path(*module.split("."))).with_suffix(".py").exists()
 
 

@@ -22,25 +22,26 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from commands import call, process
+from commands import LIBRARY, OF_THE_PAPER, PAPER, call, process
 from rich.console import Console
 
 from granular_response import __version__
 from granular_response.api import terminal
 from granular_response.cli import main as cli
 from granular_response.machine import floating_point
-from granular_response.paper import pipeline
-from granular_response.paper.captions import Caption
-from granular_response.paper.pipeline import drawing, simulation
 from granular_response.scene import SceneError
 from granular_response.scene.base import Description
 from granular_response.store import files as store
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Resources, current
+from granular_response_paper import cli as paper
+from granular_response_paper import pipeline
+from granular_response_paper.captions import Caption
+from granular_response_paper.pipeline import drawing, simulation
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ["run", "continue", "simulate", "draw", "measure", "show", "plot", "keys"]
-COMMANDS += ["export", "claims", "report", "notebooks", "archive", "restore", "cite", "version"]
+COMMANDS = ["run", "continue", "show", "plot", "keys", "export", "cite", "version"]
+PROGRAMS = {LIBRARY: "granular-response", PAPER: "granular-response-paper"}
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
 contact: {friction: 0.0}
@@ -51,11 +52,12 @@ loads: [{disk: top-centre, force: [0.0, -1.0]}]
 def assert_one_line_error(finished, *parts):
     assert finished.returncode == 2
     assert finished.stderr.count("\n") == 1
-    for part in ("granular-response: ", *parts):
+    for part in ("granular-response", ": ", *parts):
         assert part in finished.stderr
 
 
-def test_help_answers_within_half_a_second():
+@pytest.mark.parametrize("package", [LIBRARY, PAPER])
+def test_help_answers_within_half_a_second(package):
     def processor_time():
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         return used.ru_utime + used.ru_stime
@@ -63,30 +65,44 @@ def test_help_answers_within_half_a_second():
     durations = []  # of the processor, so that other work on the machine does not count
     for _ in range(3):
         before = processor_time()
-        assert process("--help").returncode == 0
+        assert process("--help", package=package).returncode == 0
         durations.append(processor_time() - before)
     assert min(durations) < 0.5
 
 
-@pytest.mark.parametrize("command", [None, *COMMANDS])
-def test_every_help_has_examples(command):
-    finished = call(*([command] if command else []), "--help")
+@pytest.mark.parametrize(
+    ("package", "command"),
+    [(LIBRARY, name) for name in (None, *COMMANDS)] + [(PAPER, name) for name in (None, *OF_THE_PAPER)],
+)
+def test_every_help_has_examples(package, command):
+    finished = call(*([command] if command else []), "--help", package=package)
+    program = PROGRAMS[package]
     assert finished.returncode == 0
     examples = finished.stdout.partition("Examples:")[2].strip().splitlines()
     assert examples
-    assert all(re.match(r"\s*granular-response [a-z]+", line) for line in examples)
+    assert all(re.match(rf"\s*{program} [a-z]+", line) for line in examples)
     if command:
-        assert f"granular-response {command}" in examples[0]
+        assert f"{program} {command}" in examples[0]
 
 
-def test_no_command_shows_the_help():
-    shown = process()
+@pytest.mark.parametrize("package", PROGRAMS)
+def test_no_command_shows_the_help(package):
+    shown = process(package=package)
     assert "Commands:" in shown.stdout + shown.stderr
 
 
 def test_version():
     assert process("version").stdout == f"granular-response {__version__}\n"
-    assert call("--version").stdout == f"granular-response {__version__}\n"
+    for package, program in PROGRAMS.items():
+        assert call("--version", package=package).stdout == f"{program} {__version__}\n"
+
+
+@pytest.mark.parametrize("command", OF_THE_PAPER)
+def test_a_command_of_the_reproduction_says_where_it_is(command):
+    for arguments in ([command], [command, "pile_dip", "--option"], [command, "--help"]):
+        finished = call(*arguments, package=LIBRARY)
+        assert_one_line_error(finished, f"granular-response: {command}: ", f": granular-response-paper {command}, ")
+        assert finished.stdout == ""
 
 
 def test_cite_agrees_with_the_citation_file():
@@ -385,14 +401,14 @@ def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, c
     whole = simulation.simulate
     monkeypatch.setattr(simulation, "simulate", lambda *args, **kind: whole(*args, **{**kind, "progress": interrupt}))
     with pytest.raises(KeyboardInterrupt):
-        cli.simulate(group, workers=1, params=simulation.PARAMETERS)
-    said = "granular-response: interrupted; run again, it goes on from 2 finished tasks\n"
+        paper.simulate(group, workers=1, params=simulation.PARAMETERS)
+    said = "granular-response-paper: interrupted; run again, it goes on from 2 finished tasks\n"
     assert capsys.readouterr().err == said
     monkeypatch.setattr(simulation, "simulate", whole)
-    cli.simulate(group, workers=1, params=simulation.PARAMETERS)
+    paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     again = capsys.readouterr()
-    assert again.err == f"granular-response: {group} goes on from 2 finished tasks of an earlier run\n"
-    cli.simulate(group, workers=1, params=simulation.PARAMETERS)
+    assert again.err == f"granular-response-paper: {group} goes on from 2 finished tasks of an earlier run\n"
+    paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     assert capsys.readouterr().err == ""
 
 
@@ -507,9 +523,10 @@ def test_a_command_leaves_garbage_collection_on(monkeypatch, capsys):
 
 
 def test_every_command_is_listed():
-    assert sorted(COMMANDS) == sorted(
-        command.name or command.callback.__name__ for command in cli.app.registered_commands
-    )
+    for names, module in ((COMMANDS, cli), (OF_THE_PAPER, paper)):
+        registered = module.commands.app.registered_commands
+        assert sorted(names) == sorted(command.name or command.callback.__name__ for command in registered)
+    assert set(cli.REPRODUCTION) == set(OF_THE_PAPER)
 
 
 def test_a_shell_takes_the_floating_point_choices():

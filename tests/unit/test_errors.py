@@ -6,15 +6,16 @@ import pkgutil
 import pytest
 
 import granular_response as gr
+import granular_response_paper as paper
 from granular_response.errors import GranularError
 from granular_response.solve import SOLVE_ERRORS
 from granular_response.sweeps.executor import WorkerError
 
 
 def errors() -> list[type[Exception]]:
-    """Every exception class of the package, but for warnings."""
+    """Every exception class of library and reproduction, but for warnings."""
     found: set[type[Exception]] = set()
-    for module in pkgutil.walk_packages(gr.__path__, "granular_response."):
+    for module in (m for one in (gr, paper) for m in pkgutil.walk_packages(one.__path__, f"{one.__name__}.")):
         if not module.name.endswith("__main__"):
             for value in vars(importlib.import_module(module.name)).values():
                 if isinstance(value, type) and issubclass(value, Exception) and value.__module__ == module.name:

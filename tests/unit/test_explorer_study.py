@@ -5,10 +5,10 @@ import pytest
 import reduced
 
 from granular_response.observe.floor import smoothed_response
-from granular_response.paper.groups.explorer import simulate as study
-from granular_response.paper.groups.explorer.numbers import numbers
-from granular_response.paper.groups.explorer.parameters import Parameters
 from granular_response.sweeps.resources import using
+from granular_response_paper.groups.explorer import simulate as study
+from granular_response_paper.groups.explorer.numbers import numbers
+from granular_response_paper.groups.explorer.parameters import Parameters
 
 SECTION = reduced.parameters("explorer")
 

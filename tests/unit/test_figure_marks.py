@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from granular_response.paper.groups.phase_diagram import draw as phase_diagram
-from granular_response.paper.groups.stability import draw as stability
 from granular_response.plot import style
+from granular_response_paper.groups.phase_diagram import draw as phase_diagram
+from granular_response_paper.groups.stability import draw as stability
 
 
 @pytest.fixture

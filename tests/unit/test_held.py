@@ -10,7 +10,6 @@ from small_scenes import free_disks, scene
 
 import granular_response as gr
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.paper.trials.random_scenes import check, contradiction, rounding_of, write_table
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solve import Problem, continue_solution, rest_state, solve_scene
 from granular_response.solve.dynamics import Dynamics
@@ -22,6 +21,7 @@ from granular_response.solve.work import slid, stored, work
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
 from granular_response.store.summary import summarise
+from granular_response_paper.trials.random_scenes import check, contradiction, rounding_of, write_table
 
 DISK = {"kind": "pile", "layers": 1}
 

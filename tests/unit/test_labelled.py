@@ -82,8 +82,8 @@ def test_a_scene_is_solved_and_stored_without_loading_xarray(tmp_path):
     scene = tmp_path / "scene.yaml"
     scene.write_text("packing: {kind: slab, layers: 3, disks_per_row: 5}\ncontact: {friction: 0.0}\n")
     code = (
-        "import sys\nfrom granular_response.cli.main import app\n"
-        f"app(['run', {str(scene)!r}, '-o', {str(tmp_path / 'result.nc')!r}], standalone_mode=False)\n"
+        "import sys\nfrom granular_response.cli.main import commands\n"
+        f"commands.app(['run', {str(scene)!r}, '-o', {str(tmp_path / 'result.nc')!r}], standalone_mode=False)\n"
         "print(sorted({'dask', 'pandas', 'xarray'} & set(sys.modules)))\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from granular_response.machine.machine_code import SOURCES
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 PACKAGE = SOURCE / "granular_response"
+PAPER = SOURCE / "granular_response_paper"
 
 #: What each part may import from outside. What it may import from inside is checked by import-linter.
 ALLOWED = {
@@ -31,8 +33,18 @@ ALLOWED = {
     "store": {"gsd", "netCDF4", "numpy", "rich", "xarray"},
     "sweeps": {"cloudpickle", "distributed", "xarray"},
     "api": {"numpy", "rich", "xarray"},
-    "paper": {"PIL", "jinja2", "matplotlib", "numpy", "pydantic", "rocrate", "scipy", "xarray"},
     "cli": {"rich", "typer"},
+    "granular_response_paper": {
+        "PIL",
+        "jinja2",
+        "matplotlib",
+        "numpy",
+        "pydantic",
+        "rocrate",
+        "scipy",
+        "typer",
+        "xarray",
+    },
 }
 
 
@@ -66,25 +78,26 @@ def outside_imports(part: Path) -> dict[str, str]:
             else:
                 continue
             for name in (name.partition(".")[0] for name in names):
-                if name not in sys.stdlib_module_names and name != "granular_response":
+                if name not in sys.stdlib_module_names and name not in (PACKAGE.name, PAPER.name):
                     found[name] = f"{path.relative_to(ROOT)}:{node.lineno}"
     return found
 
 
 def test_the_library_imports_its_own_by_relative_names():
     for path in sorted(PACKAGE.rglob("*.py")):
-        if "paper" not in path.relative_to(PACKAGE).parts:
-            nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
-            absolute = [str(node.module) for node in nodes if node.level == 0]
-            assert not [name for name in absolute if name.startswith("granular_response")], path
+        nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
+        absolute = [str(node.module) for node in nodes if node.level == 0]
+        assert not [name for name in absolute if name.startswith("granular_response")], path
 
 
 PARTS = sorted(
     p for p in PACKAGE.iterdir() if (p.suffix == ".py" or (p / "__init__.py").exists()) and p.stem[:2] != "__"
 )
+#: Parts of the library, and the reproduction as a whole.
+PLACES = [*PARTS, PAPER]
 
 
-@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.stem)
+@pytest.mark.parametrize("part", PLACES, ids=lambda part: part.stem)
 def test_a_part_imports_what_its_place_allows(part):
     outside = outside_imports(part)
     forbidden = {name: place for name, place in outside.items() if name not in ALLOWED[part.stem]}
@@ -92,11 +105,12 @@ def test_a_part_imports_what_its_place_allows(part):
 
 
 def test_every_import_is_a_declared_dependency():
-    declared = set(re.findall(r'^    "([A-Za-z0-9_-]+)[>=]', (ROOT / "pyproject.toml").read_text(), re.MULTILINE))
-    declared |= {"pydantic_core", "distributed", "gsd", "rocrate"}  # part of pydantic; of the extras
-    declared |= {"cycler", "yaml", "PIL"}  # part of matplotlib; the packages pyyaml and pillow
-    used = {name for part in PARTS for name in outside_imports(part)}
-    assert used <= {name.replace("-", "_") for name in declared}
+    of_others = {"pydantic_core", "cycler", "yaml", "PIL"}  # of pydantic and matplotlib; the packages pyyaml and pillow
+    of_extras = {PACKAGE: {"distributed", "gsd"}, PAPER: {"rocrate"}}
+    for project, package in ((ROOT, PACKAGE), (PAPER, PAPER)):
+        described = tomllib.loads((project / "pyproject.toml").read_text())["project"]
+        declared = {re.split("[>=]", name)[0].replace("-", "_") for name in described["dependencies"]}
+        assert set(outside_imports(package)) <= declared | of_others | of_extras[package]
 
 
 @functools.cache
@@ -115,24 +129,25 @@ def names_used(path: Path) -> set[str]:
 def test_only_the_entry_point_writes_the_environment():
     writing = {f"os.environ.{verb}" for verb in ("setdefault", "update", "pop", "clear")}
     writing |= {"os.environ is set", "os.putenv", "os.unsetenv"}
-    found = {str(path.relative_to(PACKAGE)) for path in PACKAGE.rglob("*.py") if writing & names_used(path)}
-    assert found == {"machine/floating_point.py"}
-    pinning = {str(p.relative_to(PACKAGE)) for p in PACKAGE.rglob("*.py") if "floating_point.pin" in names_used(p)}
-    assert pinning == {"cli/main.py"}
+    found = {str(path.relative_to(SOURCE)) for path in SOURCE.rglob("*.py") if writing & names_used(path)}
+    assert found == {"granular_response/machine/floating_point.py"}
+    pinning = {str(p.relative_to(SOURCE)) for p in SOURCE.rglob("*.py") if "floating_point.pin" in names_used(p)}
+    assert pinning == {"granular_response/cli/command_line.py"}
 
 
 def test_pickles_go_to_workers_only():
     """A pickle runs code when it is read: from a file only values are (``sweeps/encoding.py``)."""
     reads = {"pickle.load", "pickle.loads", "pickle.Unpickler", "cloudpickle.load", "cloudpickle.loads"}
-    found = {str(p.relative_to(PACKAGE)) for p in PACKAGE.rglob("*.py") if reads & names_used(p)}
-    assert found == {"sweeps/encoding.py", "sweeps/executor.py"}
-    imported = [p.read_text() for p in PACKAGE.rglob("*.py") if "pickle import" in p.read_text()]
+    found = {str(p.relative_to(SOURCE)) for p in SOURCE.rglob("*.py") if reads & names_used(p)}
+    assert found == {f"granular_response/sweeps/{name}.py" for name in ("encoding", "executor")}
+    imported = [p.read_text() for p in SOURCE.rglob("*.py") if "pickle import" in p.read_text()]
     assert imported == []
 
 
-def test_the_command_line_loads_nothing_heavy():
+@pytest.mark.parametrize("module", ["granular_response.cli.main", "granular_response_paper.cli"])
+def test_a_command_line_loads_nothing_heavy(module):
     script = (
-        "import sys, granular_response.cli.main;"
+        f"import sys, {module};"
         "print(sorted({'numpy', 'scipy', 'numba', 'xarray', 'matplotlib', 'yaml'} & set(sys.modules)))"
     )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
@@ -142,14 +157,15 @@ def test_the_command_line_loads_nothing_heavy():
 def test_only_scenes_ask_for_the_kind_of_a_packing():
     """What others need of a packing is data: its order, its neighbours, a smaller one of its kind."""
     asks = re.compile(r"(?<!\")\bpacking\.kind\b|isinstance\([^)]*(Slab|Pile|Lattice)Packing")
-    paths = [path for path in (SOURCE / "granular_response").rglob("*.py") if path.parent.name != "scene"]
+    paths = [path for path in SOURCE.rglob("*.py") if path.parent.name != "scene"]
     assert len(paths) > 100
     assert [path.name for path in paths if asks.search(path.read_text())] == []
 
 
 def sources() -> dict[str, str]:
-    """Text of every module, by its place in the package."""
-    return {path.relative_to(PACKAGE).as_posix(): path.read_text() for path in sorted(PACKAGE.rglob("*.py"))}
+    """Text of every module, by its place in the library, or below ``src`` in the reproduction."""
+    bases = ((PACKAGE, PACKAGE), (PAPER, SOURCE))
+    return {p.relative_to(base).as_posix(): p.read_text() for top, base in bases for p in sorted(top.rglob("*.py"))}
 
 
 def test_only_contact_laws_know_their_constants_by_place():

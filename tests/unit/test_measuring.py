@@ -8,11 +8,11 @@ import pytest
 import xarray as xr
 from claims_data import pile_study
 
-from granular_response.paper.groups import NAMES
-from granular_response.paper.groups.sensitivity.numbers import numbers as sensitivity
-from granular_response.paper.groups.stability.numbers import numbers as stability
-from granular_response.paper.pipeline import GroupError, measuring
 from granular_response.store import files as store
+from granular_response_paper.groups import NAMES
+from granular_response_paper.groups.sensitivity.numbers import numbers as sensitivity
+from granular_response_paper.groups.stability.numbers import numbers as stability
+from granular_response_paper.pipeline import GroupError, measuring
 
 LABELS = {"long_name": "test", "units": "1"}
 

@@ -15,10 +15,11 @@ import xarray as xr
 from commands import call, process
 
 from granular_response.cli import main as cli
-from granular_response.paper.archive import crate
 from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response.store.files import StoreError
+from granular_response_paper import cli as paper
+from granular_response_paper.archive import crate
 
 ROOT = Path(__file__).parents[2]
 SCENE = """\
@@ -73,7 +74,7 @@ def inputs(tmp_path_factory) -> Path:
 def test_every_command_that_writes_is_tried():
     writing = {
         command.name or command.callback.__name__
-        for command in cli.app.registered_commands
+        for command in (*cli.commands.app.registered_commands, *paper.commands.app.registered_commands)
         if "output" in command.callback.__annotations__
     }
     assert writing == set(COMMANDS)

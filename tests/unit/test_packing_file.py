@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from granular_response.paper.trials.random_scenes import write_table
 from granular_response.scene import FilePacking, Scene, SceneError, SlabPacking
+from granular_response_paper.trials.random_scenes import write_table
 
 
 @pytest.fixture

@@ -7,14 +7,16 @@ import pytest
 import xarray as xr
 import yaml
 
-from granular_response.paper.claims import table, words
-from granular_response.paper.ensembles import AT_REST, COLLAPSED, NOT_REACHED
-from granular_response.paper.groups.phase_diagram import draw as figures
-from granular_response.paper.groups.phase_diagram.parameters import Parameters
-from granular_response.paper.groups.phase_diagram.simulate import read_ensemble, simulate
-from granular_response.paper.groups.polydisperse_averages.ensemble.averages import linear_end
-from granular_response.paper.survey import datasets as survey
-from granular_response.paper.survey.crossover import (
+from granular_response.plot import style
+from granular_response.store import files as store
+from granular_response_paper.claims import table, words
+from granular_response_paper.ensembles import AT_REST, COLLAPSED, NOT_REACHED
+from granular_response_paper.groups.phase_diagram import draw as figures
+from granular_response_paper.groups.phase_diagram.parameters import Parameters
+from granular_response_paper.groups.phase_diagram.simulate import read_ensemble, simulate
+from granular_response_paper.groups.polydisperse_averages.ensemble.averages import linear_end
+from granular_response_paper.survey import datasets as survey
+from granular_response_paper.survey.crossover import (
     ABOVE,
     BELOW,
     FOUND,
@@ -32,8 +34,6 @@ from granular_response.paper.survey.crossover import (
     singles,
     weights,
 )
-from granular_response.plot import style
-from granular_response.store import files as store
 
 ROOT = Path(__file__).parents[2]
 X = np.arange(0.0, 30.5, 0.5)

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from granular_response.paper import groups, pipeline
-from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import drawing, measuring, simulation
 from granular_response.scene import SceneError
 from granular_response.store import files as store
+from granular_response_paper import groups, pipeline
+from granular_response_paper.groups import NAMES
+from granular_response_paper.pipeline import drawing, measuring, simulation
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
@@ -22,27 +22,27 @@ SOURCE = ROOT / "src"
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C, where PyYAML has it: every process reads these files
 
 PIPELINE = yaml.load((ROOT / "dvc.yaml").read_text(), LOADER)["stages"]
-GROUPS = json.loads((SOURCE / "granular_response/paper/groups/groups.json").read_text())["groups"]
+GROUPS = json.loads((SOURCE / "granular_response_paper/groups/groups.json").read_text())["groups"]
 PARAMETERS = yaml.load((ROOT / "params.yaml").read_text(), LOADER)
 
 SIMULATION = [
-    "granular_response.paper.pipeline.simulation",
-    *(f"granular_response.paper.groups.{{}}.{module}" for module in ("parameters", "simulate")),
+    "granular_response_paper.pipeline.simulation",
+    *(f"granular_response_paper.groups.{{}}.{module}" for module in ("parameters", "simulate")),
 ]
 
 #: Modules at which a stage starts; {} is its figure group.
 STARTS = {
     "simulate": SIMULATION,
     "draw": [
-        "granular_response.paper.pipeline.drawing",
-        "granular_response.paper.pipeline.measuring",
-        *(f"granular_response.paper.groups.{{}}.{module}" for module in ("parameters", "draw", "claims", "numbers")),
+        "granular_response_paper.pipeline.drawing",
+        "granular_response_paper.pipeline.measuring",
+        *(f"granular_response_paper.groups.{{}}.{module}" for module in ("parameters", "draw", "claims", "numbers")),
     ],
     "claims": [
-        "granular_response.paper.claims.table",
-        *(f"granular_response.paper.groups.{name}.claims" for name in GROUPS),
+        "granular_response_paper.claims.table",
+        *(f"granular_response_paper.groups.{name}.claims" for name in GROUPS),
     ],
-    "report": ["granular_response.paper.report"],
+    "report": ["granular_response_paper.report"],
 }
 
 
@@ -190,17 +190,17 @@ def test_dependencies_and_parameters_exist(kind, group, definition):
 @pytest.mark.parametrize(("kind", "group", "definition"), STAGES)
 def test_stages_have_the_agreed_form(kind, group, definition):
     if kind == "simulate":
-        assert definition["cmd"] == f"granular-response simulate {group}"
+        assert definition["cmd"] == f"granular-response-paper simulate {group}"
         assert definition["outs"] == [f"data/{group}.nc"]
         assert definition["params"] == ["common", group]
     elif kind == "draw":
-        assert definition["cmd"] == f"granular-response draw {group} --measure"
+        assert definition["cmd"] == f"granular-response-paper draw {group} --measure"
         assert definition["outs"] == [{f"figures/{group}": {"cache": False}}]
         assert "params" not in definition
         assert definition["metrics"] == [{f"figures/metrics/{group}.json": {"cache": False}}]
         assert f"data/{group}.nc" in definition["deps"]
     else:  # nothing is written that is not declared: no file named beside the outputs
-        assert definition["cmd"] == f"granular-response {kind}"
+        assert definition["cmd"] == f"granular-response-paper {kind}"
 
 
 def test_what_is_derived_comes_after_the_data_that_it_reads():
@@ -210,7 +210,7 @@ def test_what_is_derived_comes_after_the_data_that_it_reads():
 
 
 def test_the_list_of_groups_is_that_of_the_folders_and_of_the_stages():
-    folders = {path.parent.name for path in SOURCE.glob("granular_response/paper/groups/*/__init__.py")}
+    folders = {path.parent.name for path in SOURCE.glob("granular_response_paper/groups/*/__init__.py")}
     assert len(NAMES) == len(set(NAMES)) and set(NAMES) == folders == set(PARAMETERS) - {"common"}
     assert list(NAMES) == list(GROUPS)
     assert all(groups_of(kind) == list(NAMES) for kind in ("simulate", "draw"))
@@ -302,7 +302,7 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
         measured = json.loads(measuring.measure("example").read_text())["numbers"]
         assert measured["largest_response_0"] != measured["largest_response_0.5"] and min(measured.values()) > 0.0
     finally:
-        for name in [name for name in sys.modules if name.startswith("granular_response.paper.groups.example")]:
+        for name in [name for name in sys.modules if name.startswith("granular_response_paper.groups.example")]:
             del sys.modules[name]
     response = store.read("data/example.nc")["response"]["floor_response"].values
     assert response.shape == (2, 13) and abs(response.sum(axis=1) - 1.0).max() < 0.2

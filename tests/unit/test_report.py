@@ -15,15 +15,15 @@ from chromium import BROWSER, Chromium
 from PIL import Image
 from xarray import Dataset
 
-from granular_response.paper import groups, report
-from granular_response.paper.claims import table as claims
-from granular_response.paper.claims.claim import Data
-from granular_response.paper.groups.sensitivity import simulate as sensitivity
-from granular_response.paper.report import against, benchmarks, beyond, explorer, pictures, readings
-from granular_response.paper.report.typeset import typeset
 from granular_response.store import files as store
 from granular_response.store import generated
 from granular_response.store.result import variable
+from granular_response_paper import groups, report
+from granular_response_paper.claims import table as claims
+from granular_response_paper.claims.claim import Data
+from granular_response_paper.groups.sensitivity import simulate as sensitivity
+from granular_response_paper.report import against, benchmarks, beyond, explorer, pictures, readings
+from granular_response_paper.report.typeset import typeset
 
 ROOT = Path(__file__).parents[2]
 FORCES = (0.0, 1.0, 4.0, 90.0)

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.paper import slab_response
-from granular_response.paper.groups.symmetry_breaking import simulate as symmetry_breaking
-from granular_response.paper.slab_response import (
+from granular_response.state import OPEN, SLIDING, STICKING
+from granular_response.state import Event as PathEvent
+from granular_response_paper import slab_response
+from granular_response_paper.groups.symmetry_breaking import simulate as symmetry_breaking
+from granular_response_paper.slab_response import (
     EXACT,
     NARROW,
     SCALARS,
@@ -29,8 +31,6 @@ from granular_response.paper.slab_response import (
     measured_dataset,
     states_picture,
 )
-from granular_response.state import OPEN, SLIDING, STICKING
-from granular_response.state import Event as PathEvent
 
 UNIT_LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 

@@ -7,15 +7,15 @@ import pytest
 from observe_states import slab, with_pairs
 
 from granular_response.observe import stress as coarse
-from granular_response.paper.groups.friction_fields.simulate import axis_measures, harmonic_lattice
-from granular_response.paper.groups.pile_dip.simulate import mirrored
-from granular_response.paper.groups.stiffness_ratio_crossover.simulate import elastic_bodies
-from granular_response.paper.groups.torque.simulate import ring_ratio
 from granular_response.scene import PilePacking, Scene, SlabPacking
 from granular_response.solve import Problem
 from granular_response.theory.lattice import poisson_ratio
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
+from granular_response_paper.groups.friction_fields.simulate import axis_measures, harmonic_lattice
+from granular_response_paper.groups.pile_dip.simulate import mirrored
+from granular_response_paper.groups.stiffness_ratio_crossover.simulate import elastic_bodies
+from granular_response_paper.groups.torque.simulate import ring_ratio
 
 
 def test_harmonic_lattice_is_in_balance() -> None:

@@ -8,14 +8,14 @@ import pytest
 import reduced
 import yaml
 
-from granular_response.paper.datasets import labelled
-from granular_response.paper.ensembles import AT_REST
-from granular_response.paper.pipeline import group_member
-from granular_response.paper.survey import larger, packings
-from granular_response.paper.survey import simulate as survey
 from granular_response.scene import SceneError
 from granular_response.store import files as store
 from granular_response.sweeps.resources import using
+from granular_response_paper.datasets import labelled
+from granular_response_paper.ensembles import AT_REST
+from granular_response_paper.pipeline import group_member
+from granular_response_paper.survey import larger, packings
+from granular_response_paper.survey import simulate as survey
 
 ROOT = Path(__file__).parents[2]
 
@@ -101,12 +101,12 @@ def test_the_survey_extends_the_ensembles_of_the_pipeline():
 
 def test_its_pipeline_names_a_stage_and_the_sources_of_every_block():
     stage = yaml.safe_load((ROOT / "survey" / "dvc.yaml").read_text())["stages"]["simulate"]
-    declared = {path.removeprefix("../src/granular_response/") for path in stage["do"]["deps"]}
-    assert {*survey.SOURCES, "paper/survey"} <= declared
+    declared = {path.removeprefix("../src/").removeprefix("granular_response/") for path in stage["do"]["deps"]}
+    assert {*survey.SOURCES, "granular_response_paper/survey"} <= declared
     assert stage["foreach"] == "${blocks}"
     stage = yaml.safe_load((ROOT / "survey" / "dvc.yaml").read_text())["stages"]["packings"]
-    declared = {path.removeprefix("../src/granular_response/") for path in stage["do"]["deps"]}
-    assert {*larger.sources_of("${item}"), "paper/survey"} <= declared
+    declared = {path.removeprefix("../src/").removeprefix("granular_response/") for path in stage["do"]["deps"]}
+    assert {*larger.sources_of("${item}"), "granular_response_paper/survey"} <= declared
     assert stage["foreach"] == list(larger.GROUPS)
 
 

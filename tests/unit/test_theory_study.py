@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.stiffness_ratio_crossover import spring_model
-from granular_response.paper.groups.theory import draw as figures
-from granular_response.paper.groups.theory import simulate as theory
 from granular_response.plot import style
 from granular_response.store import files as store
+from granular_response_paper.groups.stiffness_ratio_crossover import spring_model
+from granular_response_paper.groups.theory import draw as figures
+from granular_response_paper.groups.theory import simulate as theory
 
 PARAMETERS = reduced.parameters("theory")
 

@@ -5,8 +5,8 @@ import pytest
 from small_scenes import free_disks, scene
 
 from granular_response.contact import LAWS
-from granular_response.paper.trials.closed_forms import collision, mechanical_energy
 from granular_response.solve import Dynamics, NotSettled, Problem, Stop, relax, solve_scene
+from granular_response_paper.trials.closed_forms import collision, mechanical_energy
 
 
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.5])

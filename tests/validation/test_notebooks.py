@@ -10,9 +10,9 @@ from jupyter_client import KernelManager
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell
 
-from granular_response.paper import notebooks
-from granular_response.paper.groups import NAMES
-from granular_response.paper.pipeline import GroupError, group_member, simulation
+from granular_response_paper import notebooks
+from granular_response_paper.groups import NAMES
+from granular_response_paper.pipeline import GroupError, group_member, simulation
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "params.yaml"

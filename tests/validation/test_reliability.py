@@ -16,12 +16,11 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from commands import call
+from commands import PAPER, call, package_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from granular_response.cli import main as cli
-from granular_response.paper.pipeline import GroupError, simulation
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import (
     Dynamics,
@@ -35,6 +34,8 @@ from granular_response.solve import (
 )
 from granular_response.store import files as store
 from granular_response.store.result import ResultError, solution_from, state_from, states_dataset, to_dataset
+from granular_response_paper import cli as paper
+from granular_response_paper.pipeline import GroupError, simulation
 
 ROOT = Path(__file__).parents[2]
 KILLS = int(os.environ.get("GRANULAR_RESPONSE_KILLS", "20"))
@@ -52,7 +53,7 @@ def command(folder: str, arguments: list[str]) -> None:
     os.chdir(folder)
     sys.argv = ["granular-response", *arguments]
     with contextlib.redirect_stdout(io.StringIO()):
-        cli.main()
+        (paper if package_of(*arguments) == PAPER else cli).main()
 
 
 @pytest.fixture(scope="module")
@@ -312,15 +313,22 @@ def test_a_settled_packing_stays_where_it_is(solution):
 # The wheel
 
 
-def test_the_wheel_holds_every_module(tmp_path):
+@pytest.mark.parametrize(
+    ("project", "package"),
+    [(ROOT, "granular_response"), (ROOT / "src" / "granular_response_paper", "granular_response_paper")],
+    ids=["library", "reproduction"],
+)
+def test_the_wheel_holds_every_module_of_its_package(tmp_path, project, package):
     pytest.importorskip("hatchling")
     subprocess.run(
         [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)],
-        cwd=ROOT, check=True, capture_output=True,
+        cwd=project, check=True, capture_output=True,
     )  # fmt: skip
     (wheel,) = tmp_path.glob("*.whl")
     names = set(zipfile.ZipFile(wheel).namelist())
     source = ROOT / "src"
-    modules = {str(path.relative_to(source)) for path in source.rglob("*.py") if "__pycache__" not in path.parts}
-    assert modules <= names
+    files = [path for path in (source / package).rglob("*") if path.is_file() and path.suffix not in (".pyc", ".toml")]
+    files = [path for path in files if "__pycache__" not in path.parts]
+    assert {str(path.relative_to(source)) for path in files} <= names
+    assert {name.partition("/")[0].partition("-")[0] for name in names} == {package}
     assert not [name for name in names if "test" in name.lower() or name.endswith((".nc", ".pyc"))]

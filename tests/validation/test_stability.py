@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.paper.groups.stability import draw as figures
-from granular_response.paper.groups.stability import simulate as stability
-from granular_response.paper.pipeline import simulation
-from granular_response.paper.trials import closed_forms, random_scenes, time_steps
-from granular_response.paper.trials.rounding import disturb
-from granular_response.paper.trials.time_steps import SETTLES, StepTrial, scene_of
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
 from granular_response.state import Reached
+from granular_response_paper.groups.stability import draw as figures
+from granular_response_paper.groups.stability import simulate as stability
+from granular_response_paper.pipeline import simulation
+from granular_response_paper.trials import closed_forms, random_scenes, time_steps
+from granular_response_paper.trials.rounding import disturb
+from granular_response_paper.trials.time_steps import SETTLES, StepTrial, scene_of
 
 PARAMETERS = simulation.parameters("stability", Path(__file__).parents[2] / "params.yaml")[0]
 SEED = PARAMETERS["seed"]

@@ -10,11 +10,11 @@ import pytest
 import yaml
 
 from granular_response.observe.floor import smoothed_response
-from granular_response.paper.ensembles import AT_REST, NOT_REACHED
-from granular_response.paper.pipeline import simulation
-from granular_response.paper.survey import larger, packings
-from granular_response.paper.survey import simulate as survey
 from granular_response.store import files as store
+from granular_response_paper.ensembles import AT_REST, NOT_REACHED
+from granular_response_paper.pipeline import simulation
+from granular_response_paper.survey import larger, packings
+from granular_response_paper.survey import simulate as survey
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "survey"
@@ -91,7 +91,7 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
 )
 def test_a_packing_of_a_figure_group_is_found_again(group, key):
     """``key`` may be the beginning of one."""
-    simulate = import_module(f"granular_response.paper.groups.{group}.simulate")
+    simulate = import_module(f"granular_response_paper.groups.{group}.simulate")
     tasks = simulate.survey(OF_GROUPS[group])
     key = next(one for one in tasks if one[: len(key)] == key)
     kept = packings.read(FOLDER / "data" / f"{group}.nc", simulate.STORED)[key]
@@ -114,7 +114,7 @@ def test_a_packing_of_a_figure_group_is_found_again(group, key):
 
 @pytest.mark.parametrize("group", larger.GROUPS)
 def test_the_packings_of_a_figure_group_are_those_that_its_parameters_leave_to_the_survey(group):
-    simulate = import_module(f"granular_response.paper.groups.{group}.simulate")
+    simulate = import_module(f"granular_response_paper.groups.{group}.simulate")
     path = FOLDER / "data" / f"{group}.nc"
     assert (ROOT / OF_GROUPS[group].survey_file) == path
     assert set(packings.read(path, simulate.STORED)) == set(simulate.survey(OF_GROUPS[group]))

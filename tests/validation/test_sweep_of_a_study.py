@@ -15,10 +15,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from granular_response.cli import main as cli
-from granular_response.paper.pipeline import simulation
 from granular_response.store import files as store
 from granular_response.sweeps import tasks
+from granular_response_paper import cli
+from granular_response_paper.pipeline import simulation
 
 GROUP = "superposition"
 SECTIONS = {
@@ -88,7 +88,7 @@ def only_dask(monkeypatch):
 
 def command(monkeypatch, *arguments: str) -> bytes:
     """The file that the command wrote."""
-    monkeypatch.setattr(sys, "argv", ["granular-response", "simulate", GROUP, "-o", "here.nc", *arguments])
+    monkeypatch.setattr(sys, "argv", ["granular-response-paper", "simulate", GROUP, "-o", "here.nc", *arguments])
     with contextlib.redirect_stdout(io.StringIO()), pytest.raises(SystemExit) as ended:
         cli.main()
     assert ended.value.code == 0
@@ -134,7 +134,7 @@ def test_a_killed_run_continues_from_its_checkpoint(folder, expected) -> None:
     arguments = ["simulate", GROUP, "-o", "here.nc", "--workers", "1"]
     (folder / ".rest_states").write_text("no folder, so that every rest state takes its time")
     run = subprocess.Popen(
-        [sys.executable, "-m", "granular_response", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        [sys.executable, "-m", "granular_response_paper", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
     deadline = time.monotonic() + 60
     while len(list(kept.rglob("*.kept"))) < 6 and run.poll() is None:

@@ -1,1 +1,0 @@
-"""The reproduction of the paper, on top of the library: figure groups, claims, report, stress trials."""

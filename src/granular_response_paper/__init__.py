@@ -1,0 +1,4 @@
+"""The reproduction of the paper, on top of the library: figure groups, claims, report, stress trials."""
+
+#: Whose code makes what tasks hand back, and whose classes hold it: see ``granular_response.sweeps.resources``.
+PACKAGE = __name__

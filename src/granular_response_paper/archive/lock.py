@@ -1,0 +1,168 @@
+"""The stages as they were run, with the hashes of what they read and wrote (``dvc.lock``), and files against these."""
+
+from __future__ import annotations
+
+import fnmatch
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from granular_response.inputs import read_text
+from granular_response.scene import SceneError, text
+from granular_response_paper.archive import ArchiveError
+from granular_response_paper.groups import NAMES
+
+LOCK, PIPELINE, IGNORED = "dvc.lock", "dvc.yaml", ".dvcignore"
+
+
+@dataclass(frozen=True)
+class Item:
+    """A file or a folder that a stage read or wrote, by its path in the project."""
+
+    path: str
+    md5: str
+    size: int
+
+    @property
+    def folder(self) -> bool:
+        return self.md5.endswith(".dir")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage as it was run. ``parameters`` maps a parameter file to the values that were read from it, by key."""
+
+    name: str
+    command: str
+    read: tuple[Item, ...]
+    written: tuple[Item, ...]
+    parameters: dict[str, dict[str, Any]]
+
+
+def stages(root: Path) -> list[Stage]:
+    """Every stage of the pipeline below ``root``, in the order of their names.
+
+    Raises ArchiveError if a file of the pipeline cannot be read, or a stage has not been run.
+    """
+    locked = _section(root / LOCK)
+    names = sorted(
+        name
+        for kind, definition in _section(root / PIPELINE).items()
+        for name in ([f"{kind}@{group}" for group in NAMES] if "foreach" in definition else [kind])
+    )
+    missing = [name for name in names if name not in locked]
+    if missing:
+        raise ArchiveError(f"{root / LOCK}: stage {missing[0]} has not been run; make it with make reproduce")
+    try:
+        return [
+            Stage(
+                name,
+                str(locked[name]["cmd"]),
+                tuple(_item(entry) for entry in locked[name].get("deps", ())),
+                tuple(_item(entry) for entry in locked[name].get("outs", ())),
+                locked[name].get("params", {}),
+            )
+            for name in names
+        ]
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise ArchiveError(f"{root / LOCK}: is not a lock file of DVC 3: {error!r}") from None
+
+
+def _section(path: Path) -> dict[str, Any]:
+    try:
+        found = text.read(read_text(path))["stages"]
+    except OSError as error:
+        raise ArchiveError(f"{path}: cannot be read: {error.strerror}") from None
+    except (SceneError, UnicodeDecodeError, KeyError, TypeError):
+        found = None
+    if not isinstance(found, dict):
+        raise ArchiveError(f"{path}: is not a file of DVC with stages")
+    return found
+
+
+def _item(entry: dict[str, Any]) -> Item:
+    return Item(str(entry["path"]), str(entry["md5"]), int(entry["size"]))
+
+
+def files(root: Path, path: str) -> list[str]:
+    """The file at a path, or the files in that folder but those that ``.dvcignore`` names, by their paths in ``root``.
+
+    Raises ArchiveError if nothing is there.
+    """
+    place = root / path
+    if place.is_file():
+        return [path]
+    if not place.is_dir():
+        raise ArchiveError(f"{place}: is missing; make reproduce makes it, or restore from an archive")
+    return sorted(
+        PurePosixPath(folder, name).relative_to(root.as_posix()).as_posix()
+        for folder, names in _walk(place, _ignored(root))
+        for name in names
+    )
+
+
+def _walk(place: Path, ignored: tuple[str, ...]) -> Iterator[tuple[str, list[str]]]:
+    def kept(names: list[str]) -> list[str]:
+        return [name for name in names if not any(fnmatch.fnmatchcase(name, pattern) for pattern in ignored)]
+
+    for folder, folders, names in os.walk(place):
+        folders[:] = kept(folders)
+        yield Path(folder).as_posix(), kept(names)
+
+
+def _ignored(root: Path) -> tuple[str, ...]:
+    """The patterns of ``.dvcignore``, each of which is one of names there."""
+    try:
+        lines = read_text(root / IGNORED).splitlines()
+    except OSError:
+        return ()
+    return tuple(line.strip() for line in lines if line.strip() and not line.startswith("#"))
+
+
+def md5(root: Path, path: str) -> str:
+    """The hash of a file or a folder, as DVC makes it. Raises ArchiveError if nothing is there."""
+    if (root / path).is_file():
+        return _md5_of_file(root / path)
+    inside = [
+        {"md5": _md5_of_file(root / name), "relpath": PurePosixPath(name).relative_to(path).as_posix()}
+        for name in files(root, path)
+    ]
+    inside.sort(key=lambda entry: entry["relpath"])
+    return hashlib.md5(json.dumps(inside, sort_keys=True).encode()).hexdigest() + ".dir"
+
+
+def _md5_of_file(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "md5").hexdigest()
+
+
+def check(root: Path, stages: list[Stage]) -> None:
+    """Raise ArchiveError, naming the first file and stage, unless all files and parameters are those of the stages."""
+    known: dict[str, str] = {}
+    now: dict[str, dict[str, Any]] = {}
+    for stage in stages:
+        for item in (*stage.read, *stage.written):
+            if item.path not in known:
+                known[item.path] = md5(root, item.path)
+            if known[item.path] != item.md5:
+                raise ArchiveError(f"{root / item.path}: is not what stage {stage.name} had; make reproduce first")
+        for name, values in stage.parameters.items():
+            if name not in now:
+                now[name] = _parameters(root / name)
+            for key, value in values.items():
+                if now[name].get(key) != value:
+                    raise ArchiveError(f"{root / name}: {key} is not what stage {stage.name} had; make reproduce first")
+
+
+def _parameters(path: Path) -> dict[str, Any]:
+    try:
+        found = text.read(read_text(path))
+    except OSError as error:
+        raise ArchiveError(f"{path}: cannot be read: {error.strerror}") from None
+    except (SceneError, UnicodeDecodeError) as error:
+        raise ArchiveError(f"{path}: {error}") from None
+    return found if isinstance(found, dict) else {}

@@ -1,0 +1,89 @@
+"""Datasets out of an archive, if they are those of this checkout."""
+
+from __future__ import annotations
+
+import hashlib
+import lzma
+import stat
+import zipfile
+import zlib
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from granular_response.inputs import check_regular
+from granular_response.store import atomic
+from granular_response.store import files as store
+from granular_response_paper.archive import ArchiveError, lock
+from granular_response_paper.archive.lock import Item
+
+
+def restore(archive: Path, root: Path = Path(".")) -> list[str]:
+    """Bring the datasets that ``dvc.lock`` names from an archive; returns the paths of those that were not there.
+
+    Nothing is written before all of them have been checked. A dataset that is there already stays.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive is damaged or holds a path that leads elsewhere, if a dataset is missing from it or is not the
+        one that ``dvc.lock`` names, or if another one stands in its place.
+    OSError
+        If the archive cannot be read or a dataset not be written.
+    """
+    items = [item for stage in lock.stages(root) for item in stage.written if item.path.endswith(store.SUFFIX)]
+    check_regular(archive)
+    try:
+        with zipfile.ZipFile(archive) as file:
+            _check_names(archive, file)
+            wanted = [item for item in items if not _is_there(root, item)]
+            for item in items:
+                _content(archive, file, item)
+            for item in wanted:
+                target = root / item.path
+                target.parent.mkdir(parents=True, exist_ok=True)
+                atomic.write_bytes(target, _content(archive, file, item))
+    except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError) as error:
+        raise ArchiveError(f"{archive}: is no zip file, or a damaged one: {error}") from error
+    return [item.path for item in wanted]
+
+
+def _check_names(archive: Path, file: zipfile.ZipFile) -> None:
+    """Refuse an archive with a member that is no file below the folder where it is unpacked, or is there twice."""
+    seen: set[str] = set()
+    for member in file.infolist():
+        name = member.orig_filename
+        parts = PurePosixPath(name)
+        if parts.is_absolute() or ".." in parts.parts or "\0" in name or "\\" in name or PureWindowsPath(name).drive:
+            raise ArchiveError(f"{archive}: member {name!r}: leads out of the archive")
+        kind = stat.S_IFMT(member.external_attr >> 16)
+        if kind not in (0, stat.S_IFREG, stat.S_IFDIR):
+            raise ArchiveError(f"{archive}: member {name!r}: is a link or a device, must be a file")
+        if name in seen:
+            raise ArchiveError(f"{archive}: member {name!r}: is there twice")
+        seen.add(name)
+
+
+def _is_there(root: Path, item: Item) -> bool:
+    if not (root / item.path).exists():
+        return False
+    if lock.md5(root, item.path) != item.md5:
+        raise ArchiveError(
+            f"{root / item.path}: is there already and is not the one of {lock.LOCK}; move it away to restore that one"
+        )
+    return True
+
+
+def _content(archive: Path, file: zipfile.ZipFile, item: Item) -> bytes:
+    """What a member holds, which is what ``dvc.lock`` names; no more of it than that is unpacked."""
+    try:
+        member = file.getinfo(item.path)
+    except KeyError:
+        raise ArchiveError(f"{archive}: holds no {item.path}") from None
+    with file.open(member) as opened:
+        content = opened.read(item.size + 1)
+    found = hashlib.md5(content).hexdigest()
+    if len(content) != item.size or found != item.md5:
+        raise ArchiveError(
+            f"{archive}: {item.path}: is not the one of {lock.LOCK}, which has {item.size} bytes with md5 {item.md5}; "
+            "the archive is of another state of the project, or damaged"
+        )
+    return content

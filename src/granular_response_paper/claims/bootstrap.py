@@ -1,0 +1,50 @@
+"""Confidence of a statistic of a few realizations: 95 % of the bootstrap draws over them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from granular_response.state import FloatArray
+
+from .claim import NotMeasured, Quantity
+
+Statistic = Callable[..., FloatArray]
+
+#: Draws, and the part of them that an interval leaves out on both sides together.
+DRAWS, OUTSIDE = 2000, 0.05
+
+
+def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Quantity:
+    """``statistic`` (np.median, np.mean, ...: called with ``axis``) of finite ``values`` (r,) with its interval.
+
+    Raises NotMeasured with fewer than three values: nothing can be said about their spread.
+    """
+    found = np.asarray(values, dtype=float)
+    found = found[np.isfinite(found)]
+    if found.size < 3:
+        raise NotMeasured(f"{found.size} realizations: an interval needs three or more")
+    picked = np.random.default_rng(0).integers(0, found.size, (DRAWS, found.size))
+    low, high = np.quantile(statistic(found[picked], axis=1), [0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE])
+    return Quantity(float(statistic(found, axis=0)), float(low), float(high), "confidence")
+
+
+def over_brackets(each: Sequence[Quantity]) -> Quantity:
+    """Median of realizations of which each is known within an interval of its own, some without an upper end.
+
+    The interval is that of the draws, from the medians of lower ends to those of upper ends: it holds what realizations
+    differ by and what is not known of each.
+
+    Raises NotMeasured with fewer than three.
+    """
+    if len(each) < 3:
+        raise NotMeasured(f"{len(each)} realizations: an interval needs three or more")
+    low, high = (np.array([getattr(one, end) for one in each]) for end in ("low", "high"))
+    middle = float(np.median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each]))
+    picked = np.random.default_rng(0).integers(0, len(each), (DRAWS, len(each)))
+    least, most = (np.median(ends[picked], axis=1) for ends in (low, high))
+    lowest = np.quantile(least, 0.5 * OUTSIDE, method="inverted_cdf")
+    highest = np.quantile(most, 1.0 - 0.5 * OUTSIDE, method="inverted_cdf")
+    return Quantity(middle if np.isfinite(middle) else float("nan"), float(lowest), float(highest), "confidence")

@@ -1,0 +1,302 @@
+"""What a claim of the paper is: stored numbers with their uncertainty, compared with bounds in one or more readings.
+
+A claim is measured by a function that reads datasets and returns a :class:`Finding`: *readings* of what the paper
+leaves open, each with *conditions*, each a :class:`Quantity` against a bound. :mod:`verdict` alone turns them into a
+verdict.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+from granular_response.errors import GranularError
+
+from .words import Bounds
+
+#: What an interval means: none (a number of one deterministic run); the event lies inside; 95 % of the bootstrap draws;
+#: the smallest to the largest value.
+Kind = Literal["none", "bracket", "confidence", "range"]
+
+Outcome = Literal["holds", "fails", "open"]
+
+#: Labels are the same if they differ by less than this part of them.
+_SAME = 1e-9
+
+
+class NotMeasured(GranularError):
+    """What a claim needs is not stored. The message names it."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number, the interval it lies in, and what kind of interval that is; ``high`` is inf for a lower bound."""
+
+    value: float
+    low: float
+    high: float
+    kind: Kind = "none"
+
+    @classmethod
+    def exact(cls, value: float) -> Quantity:
+        return cls(float(value), float(value), float(value))
+
+    @classmethod
+    def bracket(cls, low: float, high: float) -> Quantity:
+        """An event above ``low`` and not above ``high``; ``high`` nan means that it does not happen up to ``low``."""
+        if math.isnan(high):
+            return cls(float("nan"), float(low), float("inf"), "bracket")
+        return cls(0.5 * float(low + high), float(low), float(high), "bracket")
+
+    @classmethod
+    def range(cls, values: Iterable[float], value: float | None = None) -> Quantity:
+        found = [float(v) for v in values]
+        return cls(found[0] if value is None else value, min(found), max(found), "range")
+
+    def per(self, other: Quantity) -> Quantity:
+        """The ratio, with the interval that both intervals leave; both positive. NotMeasured if that is 0."""
+        if other.high == 0.0:
+            raise NotMeasured("nothing to compare with")
+        kind: Kind = other.kind if self.kind == "none" else self.kind
+        low, high = self.low / other.high, self.high / other.low if other.low > 0.0 else float("inf")
+        return Quantity(self.value / other.value if other.value else float("nan"), low, high, kind)
+
+    @property
+    def happens(self) -> bool:
+        return math.isfinite(self.high)
+
+    def text(self, unit: str = "") -> str:
+        """For readers; ``unit`` "%" shows parts as per cent."""
+        low, high = _number(self.low, unit), _number(self.high, unit)
+        if self.kind == "none" or (self.happens and low == high):  # in as many digits as are shown
+            return _number(self.value, unit)
+        ends = f"{low} to {high}" if self.happens else f"above {low}"
+        if self.kind == "bracket":
+            return ends
+        return f"{_number(self.value, unit)} ({ends})" if math.isfinite(self.value) else ends
+
+
+def rounded(value: float) -> float | None:
+    """As it is stored: to six digits, so that the last ones of a machine do not show; None for nan and inf, which JSON
+    lacks."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None
+
+
+def _number(value: float, unit: str) -> str:
+    return f"{100.0 * value:.3g} %" if unit == "%" else f"{value:.4g}{' ' + unit if unit else ''}"
+
+
+@dataclass(frozen=True)
+class Condition:
+    """``found`` must lie from ``least`` to ``most``, or with ``strict`` between them.
+
+    ``words`` are those of the table that set these bounds.
+    """
+
+    what: str
+    found: Quantity
+    least: float = -math.inf
+    most: float = math.inf
+    words: tuple[str, ...] = ()
+    unit: str = ""
+    strict: bool = False
+
+    def __post_init__(self) -> None:
+        if not (self.least > -math.inf or self.most < math.inf):
+            raise ValueError(f"{self.what}: a condition needs a bound")
+
+    @property
+    def outcome(self) -> Outcome:
+        """Holds with the whole interval inside the bounds, fails with all of it outside, open otherwise."""
+        if math.isnan(self.found.low) or math.isnan(self.found.high):
+            raise NotMeasured(f"{self.what}: no number is stored")
+        low, high = self.found.low, self.found.high
+        if self.strict:
+            if self.least < low and (high < self.most or self.most == math.inf):
+                return "holds"
+            return "fails" if high <= self.least or low >= self.most else "open"
+        if self.least <= low and high <= self.most:
+            return "holds"
+        return "fails" if high < self.least or low > self.most else "open"
+
+    @property
+    def asked(self) -> str:
+        if not math.isfinite(self.most):
+            return f"{'more than' if self.strict else 'at least'} {_number(self.least, self.unit)}"
+        if not math.isfinite(self.least):
+            return f"{'less than' if self.strict else 'at most'} {_number(self.most, self.unit)}"
+        if self.least == self.most:
+            return _number(self.least, self.unit)
+        return f"{_number(self.least, self.unit)} to {_number(self.most, self.unit)}"
+
+    @property
+    def measured(self) -> str:
+        return f"{self.what}: {self.found.text(self.unit)}"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One way to read the paper's set-up or words, and what the claim asks for in it."""
+
+    name: str
+    conditions: tuple[Condition, ...]
+
+    def __init__(self, name: str, *conditions: Condition) -> None:
+        if not conditions:
+            raise ValueError(f"{name}: a reading needs conditions")
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "conditions", conditions)
+
+    @property
+    def outcome(self) -> Outcome:
+        outcomes = {condition.outcome for condition in self.conditions}
+        return "fails" if "fails" in outcomes else "open" if "open" in outcomes else "holds"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was measured for a claim; the first reading is the one this project uses.
+
+    ``summary`` is for readers; ``quantity`` the number that stands for the claim, by default that of the first
+    condition over all readings; ``remark`` is shown beside the verdict.
+    """
+
+    summary: str
+    readings: Sequence[Reading]
+    remark: str = ""
+
+    @property
+    def quantity(self) -> Quantity:
+        """The first condition's number: its own interval, or the range over the readings that measure the same."""
+        first = self.readings[0].conditions[0]
+        same = [r.conditions[0].found for r in self.readings if r.conditions[0].what == first.what]
+        if len(same) < 2:
+            return first.found
+        return Quantity(first.found.value, min(q.low for q in same), max(q.high for q in same), "range")
+
+
+Measure = Callable[["Data", Bounds], Finding]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of the paper and how it is measured. A ``derivation`` is algebra that no simulation can fail."""
+
+    id: str
+    place: str
+    measured: str
+    paper: str
+    measure: Measure = field(repr=False)
+    figures: tuple[int, ...] = ()
+    group: str = ""
+    derivation: bool = False
+
+    @property
+    def beyond(self) -> bool:
+        """Whether the paper leaves the question to words, so that it is counted apart."""
+        return self.id.startswith("B")
+
+
+class Claims(list[Claim]):
+    """The claims of a figure group, each said above the function that measures it."""
+
+    def __init__(self, group: str) -> None:
+        self.group = group
+
+    def add(
+        self,
+        id: str,
+        place: str,
+        measured: str,
+        paper: str,
+        figures: int | tuple[int, ...] | None = None,
+        *,
+        derivation: bool = False,
+    ) -> Callable[[Measure], Measure]:
+        """``figures`` that show it; those that ``place`` names if None."""
+        shown = _figures(place) if figures is None else (figures,) if isinstance(figures, int) else figures
+
+        def said(measure: Measure) -> Measure:
+            self.append(Claim(id, place, measured, paper, measure, shown, self.group, derivation))
+            return measure
+
+        return said
+
+
+def _figures(place: str) -> tuple[int, ...]:
+    """The figures in a place of the paper such as "V.F, Fig. 17e, f"."""
+    named = "".join(re.findall(r"Figs?\. (.*)", place))
+    return tuple(int(number) for number in re.findall(r"\d+", named))
+
+
+class Data:
+    """Stored datasets by figure group; asking for what is not there raises NotMeasured.
+
+    ``groups`` maps a figure group to its datasets by name, as ``store.read`` returns them.
+    """
+
+    def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]]) -> None:
+        self.groups = groups
+
+    def get(self, group: str, name: str, *variables: str) -> xr.Dataset:
+        """Dataset ``name`` of ``group`` with at least ``variables``."""
+        if group not in self.groups:
+            raise NotMeasured(f"data/{group}.nc is missing")
+        if name not in self.groups[group]:
+            raise NotMeasured(f"data/{group}.nc holds no dataset {name}")
+        dataset = self.groups[group][name]
+        missing = [variable for variable in variables if variable not in dataset.variables]
+        if missing:
+            raise NotMeasured(f"data/{group}.nc: {name} holds no {', '.join(missing)}")
+        return dataset
+
+    def event(self, group: str, name: str, friction: float | None = None) -> Quantity:
+        """The bracket of an event; ``friction`` None takes the first event of that name."""
+        events = self.get(group, "events", "name", "low", "high")
+        at = events["name"].values == name
+        if friction is not None and "friction" in events.variables:
+            at = at & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
+        if not at.any():
+            with_friction = "" if friction is None else f" at friction {friction:g}"
+            raise NotMeasured(f"data/{group}.nc: events holds no {name}{with_friction}")
+        k = int(np.flatnonzero(at)[0])
+        return Quantity.bracket(float(events["low"].values[k]), float(events["high"].values[k]))
+
+
+def at(dataset: xr.Dataset, **labels: float) -> xr.Dataset:
+    """The entries at the given labels, up to rounding; NotMeasured if a label is not stored."""
+    for name, label in labels.items():
+        stored = np.asarray(dataset[name].values, dtype=float)
+        near = np.flatnonzero(np.abs(stored - label) <= _SAME * abs(label))
+        if not near.size:
+            raise NotMeasured(f"nothing is stored at {name} = {label:g}")
+        dataset = dataset.isel({name: int(near[0])})
+    return dataset
+
+
+def sampled(what: str, event: Quantity, paper: float, words: Bounds) -> Condition:
+    """The paper's number is the first of its sampled forces at or above the event (mean disk weights)."""
+    return Condition(what, event, (1.0 - words["about"]) * paper, paper, ("about",), "mg")
+
+
+def about(what: str, found: Quantity, paper: float, words: Bounds, unit: str = "") -> Condition:
+    """The paper gives the number with "about"."""
+    return Condition(what, found, (1.0 - words["about"]) * paper, (1.0 + words["about"]) * paper, ("about",), unit)
+
+
+def rises(what: str, values: Sequence[Quantity]) -> Condition:
+    """Each of positive ``values`` is larger than the one before: their smallest ratio is above 1."""
+    steps = [after.per(before) for before, after in pairwise(values)]
+    if not steps:
+        raise NotMeasured(f"{what}: fewer than two values to compare")
+    smallest = Quantity(
+        min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), steps[0].kind
+    )
+    return Condition(f"{what}, smallest ratio of neighbours", smallest, least=1.0, strict=True)

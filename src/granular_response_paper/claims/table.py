@@ -1,0 +1,283 @@
+"""The paper's claims against the stored datasets: the table with a verdict for each, and how firm the counts are.
+
+``collect`` reads what is stored, ``evaluate`` judges, ``document`` makes the JSON that ``dvc metrics show``, the
+report and the README quote.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Sequence
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from granular_response.errors import GranularError
+from granular_response.inputs import read_json
+from granular_response.store import atomic, generated
+from granular_response.store import files as store
+
+from ..groups import NAMES
+from . import preparations
+from .claim import Claim, Condition, Data, Quantity, rounded
+from .verdict import MEANINGS, Entry, Verdict, judge
+from .words import TABLE, bounds
+
+#: Kinds of claims by the first letter, in the order of the table.
+_ORDER = "AFRKSPTDUNB"
+
+
+def _place(claim: Claim) -> tuple[int, int, str]:
+    letter, number, part = re.fullmatch(r"([A-Z])(\d+)([a-z]?)", claim.id).groups()  # type: ignore[union-attr]
+    return _ORDER.index(letter), int(number), part
+
+
+def _claims_of(group: str) -> Sequence[Claim]:
+    """The claims of a group; none if it has no ``claims.py``."""
+    name = f"granular_response_paper.groups.{group}.claims"
+    return import_module(name).CLAIMS if find_spec(name) else ()
+
+
+#: All claims in the order of the table.
+CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in NAMES for claim in _claims_of(group)), key=_place))
+
+#: Figure groups whose datasets the claims read.
+GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING}))
+
+#: Where the table of claims is kept.
+OUTPUT = Path("figures") / "claims.json"
+
+#: Name of the generated lines in the README.
+BLOCK = "claims"
+
+#: How the bounds of words are changed to see how the counts move.
+FACTORS = (0.5, 2.0)
+
+#: Intervals as they are named for readers.
+KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "range": "range over readings"}
+
+
+#: What a stored table holds.
+KEYS = {"counts", "verdicts", "verdict_kinds", "words", "sensitivity", "table"}
+
+
+class ClaimsError(GranularError):
+    """Nothing to judge, or no stored table. The message is one line."""
+
+
+def collect(folder: str | os.PathLike[str] = "data") -> Data:
+    """The stored datasets that claims read; a group without a file is left out.
+
+    Raises StoreError if a file that is there cannot be read.
+    """
+    return Data({path.stem: store.read(path) for path in _paths(folder) if path.exists()})
+
+
+def _paths(folder: str | os.PathLike[str]) -> list[Path]:
+    return [Path(folder) / f"{group}.nc" for group in GROUPS]
+
+
+def evaluate(data: Data, claims: Sequence[Claim] = CLAIMS) -> list[Entry]:
+    """The verdict on each claim."""
+    return [judge(claim, data) for claim in claims]
+
+
+def counts(verdicts: Sequence[Verdict]) -> dict[str, int]:
+    """How many claims have each verdict."""
+    return {_key(verdict): sum(one == verdict for one in verdicts) for verdict in MEANINGS}
+
+
+def _key(verdict: str) -> str:
+    return verdict.replace(" ", "_")
+
+
+def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
+    """For each word with its bound halved and doubled: the counts, and the claims whose verdict changes.
+
+    Only claims with a condition that names the word are judged again.
+    """
+    rows = []
+    for word in TABLE:
+        for factor in FACTORS:
+            changed = bounds(word.name, factor)
+            verdicts = {entry.claim.id: entry.verdict for entry in entries if not entry.claim.beyond}
+            moved = {}
+            for entry in entries:
+                named = any(word.name in c.words for c in _conditions(entry))
+                if entry.claim.beyond or not named:
+                    continue
+                now = judge(entry.claim, data, changed).verdict
+                if now != entry.verdict:
+                    moved[entry.claim.id] = now
+            verdicts.update(moved)
+            rows.append(
+                {
+                    "word": word.name,
+                    "bound": changed[word.name],
+                    "factor": factor,
+                    "counts": counts(list(verdicts.values())),
+                    "changed": moved,
+                }
+            )
+    return rows
+
+
+def _conditions(entry: Entry) -> list[Condition]:
+    return [c for reading in entry.finding.readings for c in reading.conditions] if entry.finding else []
+
+
+def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
+    """Everything about the verdicts, as it is stored.
+
+    ``counts`` and ``verdicts`` are scalars for ``dvc metrics show``, which passes over lists.
+    """
+    verdicts = {
+        entry.claim.id: {
+            "verdict": entry.verdict,
+            **({"value": rounded(entry.finding.quantity.value)} if entry.finding else {}),
+        }
+        for entry in entries
+    }
+    papers = [entry.verdict for entry in entries if not entry.claim.beyond]
+    return {
+        "counts": {**counts(papers), "total": len(papers), "beyond": len(entries) - len(papers)},
+        "verdicts": verdicts,
+        "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
+        "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
+        "sensitivity": sensitivity(data, entries),
+        "table": [_row(entry) for entry in entries],
+    }
+
+
+def _row(entry: Entry) -> dict[str, Any]:
+    claim, finding = entry.claim, entry.finding
+    row: dict[str, Any] = {
+        "id": claim.id,
+        "place": claim.place,
+        "measured": claim.measured,
+        "paper": claim.paper,
+        "verdict": entry.verdict,
+        "reason": entry.reason,
+        "figures": list(claim.figures),
+        "group": claim.group,
+        "beyond": claim.beyond,
+        "ours": finding.summary if finding else "",
+        "value": None,
+        "interval": None,
+        "interval_kind": "",
+        "readings": [],
+    }
+    if finding:
+        row.update(_interval(finding.quantity))
+        row["readings"] = [
+            {
+                "name": reading.name,
+                "outcome": reading.outcome,
+                "conditions": [
+                    {
+                        "measured": c.measured,
+                        "asked": c.asked,
+                        "outcome": c.outcome,
+                        "words": list(c.words),
+                        **_interval(c.found),
+                    }
+                    for c in reading.conditions
+                ],
+            }
+            for reading in finding.readings
+        ]
+    return row
+
+
+def _interval(quantity: Quantity) -> dict[str, Any]:
+    """A value with its interval and the kind of it; an end that is open is null."""
+    bare = quantity.kind == "none"
+    return {
+        "value": rounded(quantity.value),
+        "interval": None if bare else [rounded(quantity.low), rounded(quantity.high)],
+        "interval_kind": KINDS[quantity.kind],
+    }
+
+
+def write(
+    output: str | os.PathLike[str] = OUTPUT,
+    folder: str | os.PathLike[str] = "data",
+    keep: Sequence[str | os.PathLike[str]] = (),
+) -> dict[str, Any]:
+    """Judge all claims on the datasets in ``folder`` and store the result; returns it.
+
+    Raises ClaimsError if there are none, StoreError if one cannot be read, OSError if the output cannot be written
+    or is one of the datasets or of the files to ``keep``.
+    """
+    target = Path(output)
+    atomic.check_output(target, [*_paths(folder), *keep])
+    data = collect(folder)
+    if not data.groups:
+        raise ClaimsError(f"{folder}: holds none of the datasets that claims read; make them with dvc repro")
+    found = document(data, evaluate(data))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
+    return found
+
+
+def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
+    """The stored table. Raises ClaimsError if it is missing or damaged."""
+    try:
+        found = read_json(Path(path))
+    except (OSError, ValueError) as error:
+        raise ClaimsError(
+            f"{path}: {getattr(error, 'strerror', None) or error}; make it with granular-response-paper claims"
+        ) from None
+    if not isinstance(found, dict) or not set(found) >= KEYS:
+        raise ClaimsError(f"{path}: is not a table of claims")
+    try:
+        sentence(found), firmness(found)
+        whole = all(set(row) >= _LISTED for row in found["table"])
+    except (AttributeError, KeyError, TypeError, ValueError):
+        whole = False
+    if not whole:
+        raise ClaimsError(f"{path}: is not a whole table of claims; make it with granular-response-paper claims")
+    return found
+
+
+#: What is listed of each claim.
+_LISTED = {"id", "verdict", "ours", "reason", "interval_kind"}
+
+
+def sentence(found: dict[str, Any]) -> str:
+    """The counts in words; derivations are counted apart."""
+    number = found["counts"]
+    named = [(number[_key(v)], v) for v in MEANINGS if v not in ("derivation", "not measured")]
+    judged = sum(n for n, _ in named)
+    parts = [
+        f"{n} {'depend' if n != 1 else 'depends'} on the reading" if v.startswith("depends") else f"{n} {v}"
+        for n, v in named
+        if n
+    ]
+    text = f"Of {judged} claims of the paper that were measured: {', '.join(parts)}."
+    algebra, missing, beyond = number["derivation"], number["not_measured"], number.get("beyond", 0)
+    if algebra:
+        text += f" {algebra} more {'are' if algebra != 1 else 'is'} algebra that no simulation can fail."
+    if beyond:
+        text += f" {beyond} more {'goes' if beyond == 1 else 'go'} beyond what the paper measured."
+    if missing:
+        text += f" {missing} {'are' if missing != 1 else 'is'} not measured."
+    return text
+
+
+def firmness(found: dict[str, Any]) -> str:
+    """How far the counts move with the words, in a sentence."""
+    reproduced = [row["counts"]["reproduced"] for row in found["sensitivity"]]
+    moved = {name for row in found["sensitivity"] for name in row["changed"]}
+    return (
+        f"With the bound of any one word halved or doubled, {min(reproduced)} to {max(reproduced)} are reproduced "
+        f"({found['counts']['reproduced']} as it stands); {len(moved)} claims change their verdict in some of these."
+    )
+
+
+def renew(readme: str | os.PathLike[str], found: dict[str, Any]) -> None:
+    """Renew the counts that a file quotes. Raises GeneratedError if it cannot be read or has no place for them."""
+    generated.renew(readme, BLOCK, f"{sentence(found)}\n{firmness(found)}")

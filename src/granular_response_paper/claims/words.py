@@ -1,0 +1,65 @@
+"""What the paper's words mean as numbers: one table, used by every claim.
+
+The paper says "about 20 mg", "almost an order of magnitude", "holds quite well". A verdict needs a bound. These are our
+readings of the words, written when an earlier table of values was known; none is chosen for a claim, and
+:func:`granular_response_paper.claims.table.sensitivity` says how the verdicts move with each bound halved and doubled.
+Numbers that the paper states itself (1 %, 1e-22) are no words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word of the paper and its bound, a part of what is compared."""
+
+    name: str
+    bound: float
+    sentence: str
+
+
+TABLE: tuple[Word, ...] = (
+    Word(
+        "about",
+        0.25,
+        "About 20 is within a quarter of 20: what rounds to a number of one digit. Of a sampled force, the event "
+        "itself lies at most that much below it.",
+    ),
+    Word(
+        "almost",
+        0.5,
+        "Almost ten times is from half of ten up to ten: the paper itself calls 4/0.75 and 6/0.75 almost an order of "
+        "magnitude.",
+    ),
+    Word("slightly", 0.25, "Slightly smaller, a little below, is at most a quarter less."),
+    Word("small", 0.25, "Small is at most a quarter of what it is compared with."),
+    Word("nearly", 0.1, "Nearly the same, nearly independent, saturated: changed by at most a tenth."),
+    Word("similar", 0.5, "Similar, resembling: the larger exceeds the smaller, or they differ, by at most half."),
+    Word("few per cent", 0.05, "Only a few per cent is at most five."),
+    Word(
+        "visible",
+        0.01,
+        "What a printed curve shows: a dip, a peak or a change of a hundredth of the largest value. No effect is less.",
+    ),
+    Word("holds", 0.05, "Holds, reflects exactly, agrees: the symbols of a plot, a twentieth of its height, overlap."),
+    Word("quite well", 0.2, "Quite well: seen to differ, and by at most a fifth."),
+    Word("gradual", 0.5, "Gradual: no step between neighbouring forces by half of the largest response; sharp: one."),
+    Word("marked", 0.5, "Marked, significant, strong, considerable: changed by at least half."),
+    Word("several", 3.0, "Several hundred is at least three hundred."),
+)
+
+WORDS: dict[str, Word] = {word.name: word for word in TABLE}
+
+#: Bounds by word.
+Bounds = Mapping[str, float]
+
+
+def bounds(word: str | None = None, factor: float = 1.0) -> dict[str, float]:
+    """The bounds of all words, with that of ``word`` multiplied by ``factor``. Raises KeyError for an unknown word."""
+    found = {name: entry.bound for name, entry in WORDS.items()}
+    if word is not None:
+        found[word] *= factor
+    return found

@@ -1,0 +1,235 @@
+"""The command line of the reproduction; what is heavy is imported inside the commands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from granular_response import __version__
+from granular_response.cli.command_line import CommandLine, loaded
+
+commands = CommandLine(
+    "granular-response-paper",
+    "The reproduction of the paper: simulations, figures, claims, the report.",
+    "simulate pile_dip && granular-response-paper draw pile_dip",
+    "claims --list",
+)
+
+Group = Annotated[str, typer.Argument(help="Figure group.", show_default=False)]
+#: Folders and files that several commands take.
+LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
+GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
+
+
+@commands.command(
+    "simulate frictionless_crossover",
+    "simulate polydisperse_averages --workers 8",
+    "simulate phase_diagram --scheduler tcp://10.0.0.5:8786",
+    "simulate pile_dip --params other.yaml -o other.nc",
+)
+def simulate(
+    group: Group,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, envvar="GRANULAR_RESPONSE_WORKERS", help="Local processes; all cores if not given."),
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a running Dask scheduler, in place of local processes.")
+    ] = None,
+    params: Annotated[Path, typer.Option(help="Parameter file with the sections common and GROUP.")] = Path(
+        "params.yaml"
+    ),
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Datasets (netCDF); data/GROUP.nc if not given.")
+    ] = None,
+) -> None:
+    """Run the simulations of a figure group.
+
+    A run that was interrupted continues where it was.
+    """
+    from granular_response.api.terminal import TerminalProgress
+
+    from .pipeline import simulation
+
+    loaded()
+
+    if before := simulation.finished(group, output):
+        commands.say(f"{group} goes on from {before} finished tasks of an earlier run")
+    try:
+        with TerminalProgress() as progress:
+            path = simulation.simulate(
+                group,
+                output,
+                parameter_file=params,
+                workers=workers,
+                scheduler=scheduler,
+                progress=progress,
+            )
+    except KeyboardInterrupt:
+        if count := simulation.finished(group, output):
+            commands.say(f"interrupted; run again, it goes on from {count} finished tasks")
+        raise
+    typer.echo(str(path))
+
+
+@commands.command("draw pile_dip", "draw pile_dip --measure", "draw pile_dip --data other.nc -o other-figures")
+def draw(
+    group: Group,
+    data: GroupData = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder of the figures; figures/GROUP if not given.")
+    ] = None,
+    measured: Annotated[
+        bool, typer.Option("--measure", help="Write its numbers too, to figures/metrics/GROUP.json.")
+    ] = False,
+) -> None:
+    """Draw the figures of a group."""
+    from .pipeline import drawing, measuring
+
+    loaded()
+
+    numbers = measuring.measure(group, data) if measured else None  # first: they do not wait for pictures
+    for path in drawing.draw(group, data, output):
+        typer.echo(str(path))
+    if numbers is not None:
+        typer.echo(str(numbers))
+
+
+@commands.command("measure pile_dip", "measure pile_dip --data other.nc -o other.json")
+def measure(
+    group: Group,
+    data: GroupData = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Numbers (JSON); figures/metrics/GROUP.json if not given.")
+    ] = None,
+) -> None:
+    """Write the numbers of a group, as its own datasets have them, for comparing experiments.
+
+    The table of claims (granular-response-paper claims) needs the datasets of all groups.
+    """
+    from .pipeline import measuring
+
+    loaded()
+
+    typer.echo(str(measuring.measure(group, data, output)))
+
+
+@commands.command("claims", "claims --list", "claims --readme README.md")
+def claims(
+    data: Annotated[Path, typer.Option(help="Folder of the datasets.")] = Path("data"),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Table of claims (JSON).")] = Path(
+        "figures/claims.json"
+    ),
+    readme: Annotated[
+        Path | None, typer.Option(help="Renew the counts that this file quotes.", show_default=False)
+    ] = None,
+    every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
+) -> None:
+    """Compare the paper's claims with the stored datasets."""
+    from .claims import table as judging
+
+    loaded()
+
+    found = judging.read(output) if every else judging.write(output, data, keep=[readme] if readme else [])
+    if readme is not None:
+        judging.renew(readme, found)
+    for row in found["table"] if every else ():
+        kind = f" [{row['interval_kind']}]" if row["interval_kind"] else ""
+        typer.echo(f"{row['id']:4} {row['verdict']:22} {row['ours'] or '-'}{kind}")
+        typer.echo(f"{'':27} {row['reason']}")
+    typer.echo(f"{output}: {judging.sentence(found)}")
+    typer.echo(judging.firmness(found))
+
+
+@commands.command(
+    "report", "report -o page.html", "report --notes docs/reproduction-notes.md --figures docs/figures.md"
+)
+def report(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path("figures/report.html"),
+    root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
+    notes: Annotated[
+        Path | None, typer.Option(help="Renew the table of readings in this file.", show_default=False)
+    ] = None,
+    figures: Annotated[
+        Path | None,
+        typer.Option(help="Renew the table of the captions' parameters in this file.", show_default=False),
+    ] = None,
+    beyond: Annotated[
+        Path | None,
+        typer.Option(help="Renew the tables of groups beyond the paper in this file.", show_default=False),
+    ] = None,
+) -> None:
+    """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
+    from . import report as reporting
+
+    loaded()
+
+    typer.echo(str(reporting.write(output, root, keep=[file for file in (notes, figures, beyond) if file])))
+    renewed = (notes, reporting.renew_notes), (figures, reporting.renew_figures), (beyond, reporting.renew_beyond)
+    for file, renew in renewed:
+        if file is not None:
+            renew(file, root)
+
+
+@commands.command("notebooks", "notebooks pile_dip -o elsewhere")
+def notebooks(
+    groups: Annotated[list[str] | None, typer.Argument(help="Figure groups; all of them if none is given.")] = None,
+    params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
+    reduced: Annotated[Path, typer.Option(help="Parameters that the notebooks begin with.")] = Path(
+        "notebooks/reduced.yaml"
+    ),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the notebooks.")] = Path("notebooks"),
+) -> None:
+    """Write a notebook for each figure group: its parameters, simulation, figures and captions."""
+    from . import notebooks as writing
+    from .groups import NAMES
+
+    loaded()
+
+    for path in writing.write(output, groups or NAMES, own=params, reduced=reduced):
+        typer.echo(str(path))
+
+
+@commands.command("archive", "archive -o slabs.zip")
+def archive(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Archive to make (RO-Crate, zip).")] = Path(
+        f"granular-response-{__version__}.zip"
+    ),
+    root: LockFolder = Path("."),
+) -> None:
+    """Archive the reproduction: datasets, figures, claims, sources and how each was made.
+
+    Only what is as dvc.lock says goes in, so everything must be up to date.
+    """
+    from .archive import crate
+
+    loaded()
+
+    names = crate.write(output, root)
+    typer.echo(f"{output}: {len(names)} files, {output.stat().st_size / 1e6:.1f} MB")
+
+
+@commands.command("restore granular-response-0.1.0.zip")
+def restore(
+    archive: Annotated[Path, typer.Argument(help="An archive of this project.", show_default=False)],
+    root: LockFolder = Path("."),
+) -> None:
+    """Take the datasets out of an archive, in place of computing them.
+
+    They must be those of dvc.lock; one that is there already stays.
+    """
+    from .archive import restore as restoring
+
+    loaded()
+
+    restored = restoring.restore(archive, root)
+    for path in restored:
+        typer.echo(str(root / path))
+    typer.echo(f"{archive}: {len(restored)} datasets restored, those there already are the same")
+
+
+def main() -> None:
+    """Entry point."""
+    commands.run()

@@ -1,0 +1,244 @@
+"""The crossover against the size of a slab, regions of open contacts scaled, and what else sets the crossover."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from granular_response.plot import style
+from granular_response_paper.captions import Caption, of_scene, values
+
+from .parameters import Parameters
+
+#: Height of a row of the lattice (radii).
+ROW = float(np.sqrt(3.0))
+
+#: Over symbols of slabs of the survey.
+SURVEYED: dict[str, Any] = {
+    "markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.9, "zorder": 3,
+}  # fmt: skip
+
+#: Least ratio of numbers of layers that are labelled.
+NEXT_LABEL = 1.25
+
+#: Events of the first figure.
+NAMES = {
+    "crossover": "two peaks from",
+    "reaches_floor": "open region at the floor",
+    "first_opening": "first contact opens",
+}
+
+#: What is varied beside the layers, and its label.
+APART = {
+    "disks_per_layer": "disks in a row / layers",
+    "stiffness_per_layer": rf"stiffness per layer $k_N{style.RADIUS}/(N{style.WEIGHT})$",
+    "confinement": rf"confinement $P/{style.WEIGHT}$",
+}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``crossover_scaling``, ``crossover_scaling_regions`` and ``crossover_scaling_apart``."""
+    slabs, paths, powers = datasets["slabs"], datasets["paths"], datasets["powers"]
+    return {
+        "crossover_scaling": _against_layers(slabs, powers),
+        "crossover_scaling_regions": _regions(slabs, paths, powers),
+        "crossover_scaling_apart": _apart(slabs, powers),
+    }
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    slabs = datasets["slabs"]
+    layers = values(sorted(set(slabs["layers"].values.tolist())))
+    frictions = sorted(set(slabs["friction"].values.tolist()))
+    said = of_scene(parameters.base, friction=frictions, normal_stiffness=None, packing=None)
+    stiffness = values(parameters.series[0].stiffness_per_layer)
+    deep = {layers for one in parameters.series for layers in one.surveyed}
+    survey = " Black edges: slabs of the survey, simulated apart from the pipeline." if deep else ""
+    return {
+        "crossover_scaling": Caption(
+            "Not in the paper: what the number of layers N does. (a) Force from which the floor response has two "
+            f"peaks, a dip at x = 0 of {parameters.visible:g} of its largest value; (b) force at which the region of "
+            "open contacts reaches the floor; (c) force at which the first contact opens in the central third. Bars "
+            "are brackets; lines and numbers powers of N, with the range over the fits with and without the smallest "
+            "slab and over the brackets. P is the force of horizontal contacts at rest: constant, in proportion to N "
+            "as the weight, or what the paper's walls make it. Periodic sides but where walls are named; "
+            f"{layers} layers; k_N = {stiffness} N, so that gravity makes the same overlaps in all.{survey}",
+            "Double logarithmic panels. Two peaks come along straight lines, about twice as steep with friction as "
+            "without; the region's lines are as steep where P grows with N; the first opening rises least.",
+            said,
+        ),
+        "crossover_scaling_regions": Caption(
+            "Depth of the region of open contacts below the load over that of the slab, against the force over what it "
+            "is scaled by: (a) without friction layers times the force P of horizontal contacts at rest, (b) and (c) "
+            "with friction layers squared.",
+            "Curves of slabs of different depths that fall on one another where the force is scaled.",
+            said,
+        ),
+        "crossover_scaling_apart": Caption(
+            "What else sets the force from which there are two peaks, each varied alone: (a) width, (b) stiffness at "
+            "the same P, (c) force P of horizontal contacts at rest. Numbers are powers with ranges, as for layers; "
+            "with friction the force levels off where P is small.",
+            "Nearly level lines for width and stiffness; against the confinement a straight rise without friction "
+            "and hardly any with friction.",
+            said,
+        ),
+    }
+
+
+def of_layers(powers: xr.Dataset) -> list[int]:
+    """The series whose slabs differ in their layers."""
+    return np.flatnonzero(powers["varied"].values == "layers").tolist()
+
+
+def _slabs_of(slabs: xr.Dataset, powers: xr.Dataset, series: int) -> np.ndarray:
+    return np.flatnonzero(slabs["series"].values == str(powers["series"].values[series]))
+
+
+def name(powers: xr.Dataset, series: int) -> str:
+    """Of a series of layers, for legends."""
+    friction, kind = float(powers["friction"][series]), str(powers["confined"].values[series])
+    sides = {"walls": "walls", "constant": "$P$ constant"}.get(kind, "$P\\propto N$")
+    return f"$\\mu = {friction:g}$, {sides}"
+
+
+def said(power: float) -> str:
+    """To two decimals, with a minus that is one and no sign of a zero."""
+    return f"{round(power, 2) + 0.0:.2f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
+    """Middles and half widths."""
+    low, high = one[f"{event}_bracket"].values.T
+    return 0.5 * (low + high), 0.5 * (high - low)
+
+
+def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
+    """(a) crossover, (b) region at the floor, (c) first opening against layers, with power laws; names beside them."""
+    figure, panels = style.figure(2, 2, width="double", height=5.6)
+    shown = dict(zip(("crossover", "reaches_floor", "first_opening"), panels.ravel(), strict=False))
+    for letter, (event, axes) in zip("abc", shown.items(), strict=True):
+        for look, series in enumerate(of_layers(powers)):
+            one = slabs.isel(slab=_slabs_of(slabs, powers, series))
+            layers = one["layers"].values.astype(float)
+            middle, half = _brackets(one, event)
+            power, least, largest = powers["exponent"].isel(series=series).sel(event=event).values
+            label = f"{said(power)} ({said(least)} to {said(largest)})"
+            axes.errorbar(layers, middle, half, capsize=2, label=label, **_symbol(look))
+            stored = one["surveyed"].values > 0
+            axes.plot(layers[stored], middle[stored], **_symbol(look) | SURVEYED)
+            ends = np.array([layers.min(), layers.max()])
+            through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
+            axes.plot(ends, through, color=_symbol(look)["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
+        style.logarithmic(axes)
+        axes.set(xlabel="layers $N$", ylabel=style.FORCE)
+        _plain(axes, apart(slabs["layers"].values.tolist()))
+        low, high = axes.get_ylim()
+        if low > 0.0:
+            axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
+        axes.legend(loc="upper left", title="power of $N$", fontsize=7, ncols=2, columnspacing=1.0)
+        style.letter(axes, letter, place="above", text=NAMES[event])
+    key = panels[1, 1]
+    key.set_axis_off()
+    for look, series in enumerate(of_layers(powers)):
+        key.plot([], [], label=name(powers, series), **_symbol(look))
+    key.legend(loc="center")
+    return figure
+
+
+def _symbol(look: int) -> dict[str, Any]:
+    return style.marked_line(look) | {"linestyle": "none", "markersize": 4.5}
+
+
+def apart(layers: Iterable[int]) -> list[int]:
+    """Of ``layers`` those whose labels do not meet on a logarithmic axis, from the least on."""
+    chosen: list[int] = []
+    for number in sorted(set(layers)):
+        if not chosen or number > NEXT_LABEL * chosen[-1]:
+            chosen.append(number)
+    return chosen
+
+
+def _plain(axes: Axes, ticks: list[int]) -> None:
+    """Layers as they are, on a logarithmic axis."""
+    axes.set_xticks(ticks, labels=[str(t) for t in ticks])
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.minorticks_off()
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
+    """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
+    chosen = regions_of(powers)
+    figure, panels = style.figure(1, max(1, len(chosen)), width="double", height=2.7, sharey=True)
+    for letter, axes, series in zip("abcdef", panels[0], chosen, strict=False):
+        rows = _slabs_of(slabs, powers, series)
+        colours = style.ordered_colours(len(rows))
+        weight = float(powers["friction"][series]) > 0.0
+        for at, (k, colour) in enumerate(zip(rows, colours, strict=True)):
+            layers, confinement = float(slabs["layers"][k]), float(slabs["confinement"][k])
+            force = paths["force"].values[k] / (layers**2 if weight else layers * confinement)
+            depth = paths["depth"].values[k] / (ROW * (layers - 1.0))
+            look = style.marked_line(at, colour=colour) | {"markersize": 3.2}
+            axes.plot(force, depth, label=f"{layers:.0f}", **look)
+        unit = rf"$N^2\,{style.WEIGHT}$" if weight else "$NP$"
+        axes.set(xlabel=rf"${style.F_EXT}\,/\,$({unit})", ylim=(-0.03, 1.35), xscale="log")
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.legend(title="layers", loc="upper left", ncols=3, columnspacing=1.0)
+        style.letter(axes, letter, place="above", text=name(powers, series))
+    panels[0, 0].set_ylabel("depth of the open region / slab")
+    return figure
+
+
+def regions_of(powers: xr.Dataset) -> list[int]:
+    """The series whose regions are drawn: the first without friction, and the least and the most friction.
+
+    With friction only those whose confinement grows with the weight: others need not fall on one another.
+    """
+    layers = of_layers(powers)
+    friction, confined = powers["friction"].values, powers["confined"].values
+    without = [k for k in layers if friction[k] == 0.0][:1]
+    weight = [k for k in layers if friction[k] > 0.0 and str(confined[k]) == "as weight"]
+    rough = sorted(weight, key=lambda k: float(friction[k]))
+    return list(dict.fromkeys([*without, *rough[:1], *rough[-1:]]))
+
+
+def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
+    """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
+    varied = powers["varied"].values
+    kinds = [kind for kind in APART if (varied == kind).any()]
+    figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
+    for letter, axes, kind in zip("abc", panels[0], kinds, strict=False):
+        for look, series in enumerate(np.flatnonzero(varied == kind).tolist()):
+            one = slabs.isel(slab=_slabs_of(slabs, powers, series))
+            x = {
+                "disks_per_layer": one["disks_per_row"] / one["layers"],
+                "stiffness_per_layer": one["normal_stiffness"] / one["layers"],
+                "confinement": one["confinement"],
+            }[kind].values
+            middle, half = _brackets(one, "crossover")
+            power, least, largest = powers["exponent"].isel(series=series).sel(event="crossover").values
+            friction, layers = float(powers["friction"][series]), int(one["layers"][0])
+            label = f"$\\mu = {friction:g}$, $N = {layers}$:\n{said(power)} ({said(least)} to {said(largest)})"
+            axes.errorbar(x, middle, half, capsize=2, label=label, **style.marked_line(look) | {"markersize": 4.5})
+        style.logarithmic(axes)
+        axes.set(xlabel=APART[kind])
+        low, high = axes.get_ylim()
+        if low > 0.0:
+            axes.set_ylim(low / 1.3, high * max((high / low) ** 0.7, 3.0))
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+        if kind == "disks_per_layer":  # within a decade
+            axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
+        axes.legend(loc="upper left", fontsize=7)
+        style.letter(axes, letter, place="above")
+    panels[0, 0].set_ylabel(rf"two peaks from ${style.F_EXT}/{style.WEIGHT}$")
+    return figure

@@ -1,0 +1,119 @@
+"""Parameters of the crossover force against the size of a slab."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Description, Positive, Ratio, Sides, allowed
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, growing, over, some
+
+#: Rest without friction is found by statics at every size, and is the same preparation for all.
+_SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
+
+#: What may differ along a series.
+VARIED = ("layers", "disks_per_layer", "stiffness_per_layer", "confinement")
+
+Layers = Annotated[
+    tuple[Annotated[int, Field(strict=True, ge=5)], ...],
+    Field(min_length=1),
+    AfterValidator(growing),
+    allowed("must be a list of growing odd whole numbers from 5 on"),
+]
+
+
+class Series(Description):
+    """Slabs that differ in one quantity: the list that has several entries."""
+
+    name: Annotated[str, Field(strict=True, min_length=1), allowed("must be a name")]
+    friction: Ratio = Field(description="Between disks; floor and walls are smooth.")
+    sides: Sides = "periodic"
+    layers: Layers = Field(description="Odd, so that a disk of the floor is below the loaded one.")
+    surveyed: tuple[Annotated[int, Field(strict=True, ge=5)], ...] = Field(
+        (), description="Further numbers of layers, growing on, that the survey simulates."
+    )
+    disks_per_layer: Growing = Field(
+        (3.0,), description="Disks in a row over layers; rows have the next odd number, for a disk in the middle."
+    )
+    stiffness_per_layer: Growing = Field((200.0,), description="Normal stiffness over layers.")
+    confinement: Growing = Field(
+        (0.15,),
+        description="Force of horizontal contacts before gravity acts, in mean disk weights; periodic sides only.",
+    )
+    confined: Literal["constant", "as weight"] = Field(
+        "constant", description="as weight: this force is that of 15 layers, and in proportion to layers."
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> Series:
+        for key, numbers in (("layers", self.layers), ("surveyed", self.heights)):
+            if any(layers % 2 == 0 for layers in numbers):
+                raise Problem("must be odd", key=(key,), value=list(getattr(self, key)))
+        try:
+            growing(self.heights)
+        except Problem:
+            raise Problem("must be growing numbers", key=("surveyed",), value=list(self.surveyed)) from None
+        several = [name for name in VARIED if self._several(name)]
+        if len(several) != 1:
+            raise Problem(f"must have several entries in one of {', '.join(VARIED)}", key=("name",), value=self.name)
+        return self
+
+    @property
+    def varied(self) -> str:
+        """The quantity that has several entries."""
+        return next(name for name in VARIED if self._several(name))
+
+    @property
+    def heights(self) -> tuple[int, ...]:
+        """All numbers of layers."""
+        return (*self.layers, *self.surveyed)
+
+    def _several(self, name: str) -> bool:
+        return len(self.heights if name == "layers" else getattr(self, name)) > 1
+
+
+def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
+    names = [one.name for one in series]
+    if len(set(names)) < len(names):
+        raise Problem("must have different names")
+    return series
+
+
+class Parameters(SurveyedGroup):
+    """Section ``crossover_scaling``."""
+
+    scene: Annotated[
+        Scene,
+        over(
+            _SLAB,
+            "packing.layers",
+            "packing.disks_per_row",
+            "packing.sides",
+            "packing.lattice_constant",
+            "packing.polydispersity",
+            "contact.friction",
+            "contact.normal_stiffness",
+            "wall.normal_stiffness",
+            "loads",
+        ),
+    ] = Field(_SLAB, description="Base scene; walls are twice as stiff as the disks.")
+    series: Annotated[tuple[Series, ...], AfterValidator(some), AfterValidator(_different_names)] = Field(
+        description="Slabs that are compared."
+    )
+    visible: Positive = Field(description="Dip of the floor response at x = 0, per largest value, that is two peaks.")
+    first_force: Positive = Field(description="Least force, over the force of horizontal contacts at rest.")
+    factor: Annotated[float, Field(strict=True, gt=1, le=2), allowed("must be a number above 1, at most 2")] = Field(
+        description="Each force over the one before."
+    )
+    most_forces: Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")] = Field(
+        description="Forces after which a slab is given up."
+    )
+    tolerance: Positive = Field(description="Width of brackets without friction, per force.")
+    extrapolated: Positive = Field(description="Layers to which crossovers are extrapolated.")
+
+    @property
+    def surveyed(self) -> bool:
+        return any(one.surveyed for one in self.series)

@@ -1,0 +1,446 @@
+"""How the crossover from one peak to two depends on the size of a slab (Secs. IV.B and VIII), with friction too.
+
+The paper calls the crossover a finite-size effect: gravity presses contacts together, a force opens them, and the
+deeper a slab the more force it takes. What scales here is said apart. The *series* are slabs that differ in one
+quantity: the number of layers, the width over the depth, the stiffness, or the *confinement*, the force that horizontal
+contacts bear at rest. On a lattice with periodic sides gravity gives them none: all distances in a row are those of the
+period, so the confinement is chosen, by a lattice constant a little below two radii. In series of layers the stiffness
+grows with the layers, so that gravity makes the same overlaps at every depth, and the confinement is constant, as
+between the paper's walls, or grows with the weight as well.
+
+Forces grow by one factor until the response has two peaks and the region of open contacts has reached the floor; events
+are then those of the path, or narrowed between two of them. Without friction every state is a minimum of the energy,
+and what happens is narrowed by bisection.
+
+The deepest slabs are simulated by the survey (:mod:`granular_response_paper.survey.larger`), as the others are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import astuple, dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from granular_response.observe import network
+from granular_response.scene import Scene
+from granular_response.state import FloatArray, State
+from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.sweeps.tasks import map_tasks
+from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.crossover_scaling.parameters import VARIED, Parameters, Series
+from granular_response_paper.slab_response import NARROW, Happening, LoadPath, Measures, by_motion, locate
+from granular_response_paper.survey.packings import Key, Layout, chosen
+
+#: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
+PAPERS_LAYERS = 15
+
+#: Force over the confinement, from which the answers of contacts to small forces are taken.
+SMALL = 0.1
+
+EVENTS = {
+    "first_opening": "a contact of disks in the central third of the slab is open that touches at rest",
+    "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
+    "two_peaks": "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
+    "reaches_floor": "the region of opened contacts below the load contains a contact of the bottom row",
+}
+#: Those that are decided by which disks touch.
+OF_CONTACTS = ("first_opening", "reaches_floor")
+
+
+@dataclass(frozen=True)
+class Slab:
+    """One slab; series share what they have in common."""
+
+    layers: int
+    disks_per_row: int
+    friction: float
+    normal_stiffness: float
+    confinement: float  #: asked for; of no meaning between walls
+    periodic: bool
+
+    @property
+    def key(self) -> Key:
+        """As :data:`STORED` names it."""
+        return astuple(self)
+
+    def scene(self, base: Scene) -> Scene:
+        """``base`` with this slab; between walls disks just touch, as in the paper."""
+        packing: dict[str, int | float | str] = {"layers": self.layers, "disks_per_row": self.disks_per_row}
+        if self.periodic:
+            packing |= {"sides": "periodic", "lattice_constant": 2.0 - self.confinement / self.normal_stiffness}
+        return base.updated(
+            {
+                "packing": packing,
+                "contact.friction": self.friction,
+                "contact.normal_stiffness": self.normal_stiffness,
+            }
+        )
+
+
+@dataclass(frozen=True)
+class Task:
+    slab: Slab
+    scene: Scene
+    visible: float
+    first_force: float
+    factor: float
+    most_forces: int
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a task leaves behind; arrays along its forces."""
+
+    confinement: float  #: mean force of horizontal contacts in the central third, at rest
+    linear_opening: float  #: force at which the first contact would open, by their answers to a small force
+    brackets: FloatArray  #: (event, 2) of EVENTS; nan above for what was not seen
+    by_motion: float  #: steps of the force to which the motion of the disks led
+    force: FloatArray
+    dip: FloatArray
+    depth: FloatArray
+    width: FloatArray
+    opened: FloatArray
+
+
+#: What is measured at each force, with long names.
+MEASURED = {
+    "force": f"applied force {FORCE}",
+    "dip": "how far the response at x = 0 is below the lower maximum beside it, per largest response",
+    "depth": f"depth of the region of opened contacts below the loaded disk {LENGTH}",
+    "width": f"largest width of the region of opened contacts {LENGTH}",
+    "opened": "contacts of the region",
+}
+CONFINEMENT = f"mean force of horizontal contacts in the central third at rest {FORCE}"
+LINEAR_OPENING = f"force {FORCE} at which the first contact would open if contacts went on as under a small one"
+BY_MOTION = "steps of the force in which the motion of the disks had a part; nan: not recorded"
+
+#: How the survey stores slabs.
+STORED = Layout(
+    Outcome,
+    {
+        "layers": "number of rows of the slab",
+        "disks_per_row": "disks in the bottom row",
+        "friction": "coefficient of friction between disks",
+        "normal_stiffness": "normal stiffness of contacts in mean weights per mean radius",
+        "asked_confinement": f"force of horizontal contacts that is asked for {FORCE}",
+        "periodic": "1 for periodic sides, 0 for walls",
+    },
+    {
+        "confinement": ((), CONFINEMENT),
+        "linear_opening": ((), LINEAR_OPENING),
+        "brackets": (("event", "bracket"), f"forces {FORCE} between which: {'; '.join(EVENTS.values())}"),
+        "by_motion": ((), BY_MOTION),
+        **{name: (("line",), text) for name, text in MEASURED.items()},
+    },
+    later=("by_motion",),
+)
+
+
+def compute(task: Task) -> Outcome:
+    """Raises what ``rest_state`` and load paths raise."""
+    path = LoadPath.of(task.scene)
+    measures = Measures(path)
+    confinement = horizontal_force(measures)
+
+    happened: dict[str, Callable[[State], bool]] = {
+        "first_opening": lambda state: measures.opened(state) > 0,
+        "crossover": lambda state: measures.dip(state) > task.visible,
+        "two_peaks": measures.double_peaked,
+        "reaches_floor": lambda state: measures.region(state).reaches_floor,
+    }
+    forces: list[float] = []
+    left = set(happened)
+    while left and len(forces) < task.most_forces:
+        forces.append(confinement * task.first_force * task.factor ** len(forces))
+        state = path.at(forces[-1])
+        left = {name for name in left if not happened[name](state)}
+    states = path.through(forces)
+    width = NARROW if task.slab.friction else task.tolerance
+    found = [
+        locate(name, path, forces, Happening(happened[name], text, name in OF_CONTACTS), width)
+        for name, text in EVENTS.items()
+    ]
+    regions = [measures.region(state) for state in states]
+    return Outcome(
+        confinement,
+        linear_opening(measures, path.at(SMALL * confinement)),
+        np.array([(event.low, event.high) for event in found]),
+        float(sum(by_motion(state) for state in states)),
+        np.array(forces),
+        np.array([measures.dip(state) for state in states]),
+        np.array([region.depth for region in regions]),
+        np.array([region.width for region in regions]),
+        np.array([region.count for region in regions], float),
+    )
+
+
+def horizontal_force(measures: Measures) -> float:
+    """Mean normal force at rest of the horizontal contacts of disks in the central third (mean disk weights)."""
+    rest = measures.rest
+    chosen = (network.lattice_direction(rest) == network.HORIZONTAL) & measures.near
+    return float(rest.pairs.normal_force[chosen].mean())
+
+
+def linear_opening(measures: Measures, small: State) -> float:
+    """Force at which the first contact in the central third would open if all forces went on as up to ``small``.
+
+    Exact in a slab without friction, where all contacts go on as they are until then, but for the overlaps' effect on
+    directions.
+    """
+    rest = measures.rest.pairs.normal_force
+    change = (small.pairs.normal_force - rest) / abs(small.load_factor)
+    falling = measures.near & measures.rest.pairs.touching & (change < 0.0)
+    return float((rest[falling] / -change[falling]).min())
+
+
+@dataclass(frozen=True)
+class Power:
+    """A power law through brackets of positive numbers.
+
+    Least squares of the middles of the brackets' logarithms. Intervals are ranges: over the fits of all points and
+    of all but the smallest, and over every place that the events may have in their brackets.
+    """
+
+    at: FloatArray  #: (k,) what is varied
+    low: FloatArray  #: (k,)
+    high: FloatArray  #: (k,) nan where the event was not seen
+
+    @cached_property
+    def usable(self) -> NDArray[np.intp]:
+        """Points with both ends."""
+        return np.flatnonzero((self.low > 0.0) & np.isfinite(self.high))
+
+    def exponent(self) -> FloatArray:
+        """(value, least, largest); nan with less than two points."""
+        return self._range(lambda x: (x - x.mean()) / ((x - x.mean()) ** 2).sum())
+
+    def at_size(self, size: float, continuum: float | None = None) -> FloatArray:
+        """(value, least, largest) of the law at ``size``.
+
+        With the power of the ``continuum``, that power from the last point on is one more reading of the interval.
+        """
+
+        def weights(x: FloatArray) -> FloatArray:
+            slope = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
+            return np.asarray(1.0 / len(x) + (np.log(size) - x.mean()) * slope)
+
+        found = np.exp(self._range(weights))
+        if continuum is not None and len(self.usable):
+            last = self.usable[-1]
+            grown = float((size / self.at[last]) ** continuum)
+            found[1] = min(found[1], self.low[last] * grown)
+            found[2] = max(found[2], self.high[last] * grown)
+        return found
+
+    def _range(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Of a sum over the logarithms with ``weights`` (k,) of the logarithms of what is varied."""
+        values, ends = [], []
+        for points in (self.usable, self.usable[1:]):
+            if len(points) < 2:
+                continue
+            least, most = np.log(self.low[points]), np.log(self.high[points])
+            each = weights(np.log(self.at[points]))
+            blur = float(np.abs(each) @ (0.5 * (most - least)))
+            values.append(float(each @ (0.5 * (least + most))))
+            ends += [values[-1] - blur, values[-1] + blur]
+        return np.array([values[0], min(ends), max(ends)]) if values else np.full(3, np.nan)
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """Datasets ``slabs`` (slab), ``paths`` (slab, step) and ``powers`` (series).
+
+    Raises
+    ------
+    SweepError
+        If a slab cannot be solved.
+    """
+    found = slabs(parameters)
+    stored = _surveyed(parameters)
+    # the longest first, so that no worker is left with one at the end
+    order = sorted({slab for _, slab in found if slab not in stored}, key=_work, reverse=True)
+    tasks = [_task(slab, parameters) for slab in order]
+    done = dict(zip(order, map_tasks(compute, tasks, what="slabs"), strict=True))
+    done |= chosen(parameters.survey_file, STORED, {slab: slab.key for slab in stored})
+    outcomes = [done[slab] for _, slab in found]
+    table = slab_table(found, outcomes, stored)
+    table.attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
+    return labelled(
+        {"slabs": table, "paths": path_table(outcomes), "powers": power_table(table, parameters)}, parameters.base
+    )
+
+
+def slabs(parameters: Parameters) -> list[tuple[str, Slab]]:
+    """Names of series, each with one of its slabs; a slab that is in several series is there as often."""
+    return [
+        (
+            series.name,
+            Slab(
+                layers,
+                _odd(layers * across),
+                series.friction,
+                layers * stiffness,
+                confinement * (layers / PAPERS_LAYERS if series.confined == "as weight" else 1.0),
+                series.sides == "periodic",
+            ),
+        )
+        for series in parameters.series
+        for layers in series.heights
+        for across in series.disks_per_layer
+        for stiffness in series.stiffness_per_layer
+        for confinement in series.confinement
+    ]
+
+
+def _surveyed(parameters: Parameters) -> dict[Slab, None]:
+    """The slabs that are left to the survey."""
+    deep = {series.name: series.surveyed for series in parameters.series}
+    return dict.fromkeys(slab for name, slab in slabs(parameters) if slab.layers in deep[name])
+
+
+def survey(parameters: Parameters) -> dict[Key, Task]:
+    """The tasks of these slabs."""
+    return {slab.key: _task(slab, parameters) for slab in _surveyed(parameters)}
+
+
+def _odd(number: float) -> int:
+    """The next odd whole number, so that a row has a disk in the middle."""
+    return 2 * int(np.ceil((number - 1e-9 - 1.0) / 2.0)) + 1
+
+
+def _work(slab: Slab) -> float:
+    """Roughly how long a slab takes."""
+    return slab.layers**2 * slab.disks_per_row * (20.0 if slab.friction else 1.0)
+
+
+def _task(slab: Slab, parameters: Parameters) -> Task:
+    return Task(
+        slab,
+        slab.scene(parameters.base),
+        parameters.visible,
+        parameters.first_force,
+        parameters.factor,
+        parameters.most_forces,
+        parameters.tolerance,
+    )
+
+
+def slab_table(
+    found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome], stored: Collection[Slab] = ()
+) -> xr.Dataset:
+    """What each slab is, and its events."""
+
+    def column(values: list, text: str) -> xr.Variable:
+        return variable(("slab",), np.array(values), text)
+
+    data = {
+        f"{name}_bracket": variable(
+            ("slab", "bracket"),
+            np.array([o.brackets[k] for o in outcomes]),
+            f"forces {FORCE} between which: {text}; nan if not up to the first",
+        )
+        for k, (name, text) in enumerate(EVENTS.items())
+    }
+    data["linear_opening"] = column([o.linear_opening for o in outcomes], LINEAR_OPENING)
+    data["confinement"] = column([o.confinement for o in outcomes], CONFINEMENT)
+    data["by_motion"] = column([o.by_motion for o in outcomes], BY_MOTION)
+    each = [slab for _, slab in found]
+    coordinates = {
+        name: column([getattr(slab, name) for slab in each], STORED.keys[name])
+        for name in ("layers", "disks_per_row", "friction", "normal_stiffness")
+    } | {
+        "series": column([name for name, _ in found], "series"),
+        "periodic": column([int(slab.periodic) for slab in each], STORED.keys["periodic"]),
+        "surveyed": column([int(slab in stored) for slab in each], "1 for slabs of the survey"),
+        "bracket": variable(("bracket",), np.array(["low", "high"]), "ends of a bracket"),
+    }
+    return xr.Dataset(data).assign_coords(coordinates)
+
+
+def path_table(outcomes: Sequence[Outcome]) -> xr.Dataset:
+    """What is measured at the forces of each slab; nan beyond its last one."""
+    steps = max(len(o.force) for o in outcomes)
+
+    def padded(values: FloatArray) -> FloatArray:
+        return np.concatenate([values, np.full(steps - len(values), np.nan)])
+
+    return xr.Dataset(
+        {
+            name: variable(("slab", "step"), np.stack([padded(getattr(o, name)) for o in outcomes]), text)
+            for name, text in MEASURED.items()
+        }
+    )
+
+
+def power_table(table: xr.Dataset, parameters: Parameters) -> xr.Dataset:
+    """Powers of what each series varies, and where its events are at ``extrapolated`` layers."""
+    ends, events = ("value", "least", "largest"), ("first_opening", "crossover", "reaches_floor")
+    shape = (len(parameters.series), len(events), len(ends))
+    exponents, far = np.full(shape, np.nan), np.full(shape, np.nan)
+    for s, series in enumerate(parameters.series):
+        one = table.isel(slab=np.flatnonzero(table["series"].values == series.name))
+        at = _varied(one, series)
+        for e, event in enumerate(events):
+            law = Power(at, *one[f"{event}_bracket"].values.T)
+            exponents[s, e] = law.exponent()
+            if series.varied == "layers":
+                far[s, e] = law.at_size(
+                    parameters.extrapolated, continuum(series) if event != "first_opening" else None
+                )
+    dims = ("series", "event", "end")
+    range_ = "range over the fits with and without the smallest, and over the brackets"
+    data = xr.Dataset(
+        {
+            "exponent": variable(
+                dims, exponents, f"power of what is varied with which the event's force grows; {range_}"
+            ),
+            "extrapolated": variable(
+                dims,
+                far,
+                f"force {FORCE} of the event by this power law; {range_}, and the largest slab with the power of the "
+                "continuum",
+            ),
+        },
+        coords={
+            "series": variable("series", [one.name for one in parameters.series], "series"),
+            "friction": variable("series", [one.friction for one in parameters.series], "coefficient of friction"),
+            "varied": variable("series", [one.varied for one in parameters.series], "what differs along the series"),
+            "confined": variable(
+                "series",
+                ["walls" if one.sides == "walls" else one.confined for one in parameters.series],
+                "what sets the force of horizontal contacts at rest",
+            ),
+            "event": variable("event", list(events), "event"),
+            "end": variable("end", list(ends), "value and ends of the interval"),
+        },
+    )
+    data.attrs["layers"] = parameters.extrapolated
+    return data
+
+
+def continuum(series: Series) -> float | None:
+    """Power of the layers of what happens at the scale of the whole slab, where disks are small.
+
+    Equal slabs of any size are one slab where all that stands against a force grows with the layers squared: weights,
+    and a confinement that grows as they do. Without friction it is the confinement alone, a stress, on a length. With
+    friction and a constant confinement there are two scales, and no such power: None.
+    """
+    if series.confined == "as weight" and series.sides == "periodic":
+        return 2.0
+    return 1.0 if series.friction == 0.0 else None
+
+
+def _varied(one: xr.Dataset, series: Series) -> FloatArray:
+    """(slab,) what differs along a series, as it came to be."""
+    assert series.varied in VARIED
+    values = {
+        "layers": one["layers"],
+        "disks_per_layer": one["disks_per_row"] / one["layers"],
+        "stiffness_per_layer": one["normal_stiffness"] / one["layers"],
+        "confinement": one["confinement"],
+    }
+    return np.asarray(values[series.varied].values, float)

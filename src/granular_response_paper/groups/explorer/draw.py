@@ -1,0 +1,49 @@
+"""The response at x = 0 of the slabs that the page's explorer adds, as in Figs. 6 and 20."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response_paper.captions import RADIUS, Caption
+
+from .parameters import Parameters
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``explorer``: a panel for ordered slabs, one for disordered ones."""
+    figure, (panels,) = style.figure(1, 2, width="double", height=2.9)
+    lines = [0, 0]
+    for slab in datasets.values():
+        disordered = float(slab["polydispersity"]) > 0.0
+        name = f"k_T/k_N = {float(slab['stiffness_ratio']):g}".replace("k_T/k_N", "$k_T/k_N$")
+        if disordered:
+            name = f"δ = {float(slab['polydispersity']):g}"
+        loaded = slab.isel(state=slice(1, None))
+        panels[int(disordered)].plot(
+            loaded["force"], loaded["response_at_centre"], label=f"{name}, µ = {float(slab['friction']):g}",
+            **style.marked_line(lines[disordered]),
+        )  # fmt: skip
+        lines[disordered] += 1
+    for axes, what in zip(panels, (style.RESPONSE, "smoothed response$\\,\\times\\,\\bar R$"), strict=True):
+        axes.set(xscale="log", xlabel=style.FORCE, ylabel=f"{what} at $x = 0$")
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
+    style.letters(panels, place="above")
+    return {"explorer": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    return {
+        "explorer": Caption(
+            "Not in the paper: response at x = 0 of the slabs of the explorer that no other figure shows. (a) Ordered "
+            "slabs with a small k_T/k_N, and (b) single disordered slabs, smoothed with "
+            f"w = {parameters.width:g} {RADIUS}, up to the last force before they collapse.",
+            "Two plots of the response at x = 0 against the force, a curve for each slab.",
+        )
+    }

@@ -1,0 +1,126 @@
+"""Slabs for the page's explorer that no figure of the paper shows: small k_T/k_N (Sec. V.B), and disorder (Sec. VI).
+
+One dataset for each slab, as ``friction_linear_range`` stores its states, but with single precision: at rest first,
+then under each force. Disordered slabs are single realizations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
+from granular_response.observe.peaks import peak_count
+from granular_response.scene import Scene
+from granular_response.solve import SOLVE_ERRORS
+from granular_response.solve.path import Collapsed
+from granular_response.state import State
+from granular_response.store.result import LENGTH, certificates_dataset, variable
+from granular_response.sweeps.tasks import map_tasks
+from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.explorer.parameters import Parameters
+from granular_response_paper.slab_response import LoadPath, states_picture, wall_margin
+
+
+@dataclass(frozen=True)
+class Task:
+    """One slab under growing forces."""
+
+    scene: Scene  #: with one load, of unit force
+    forces: tuple[float, ...]
+    collapse_depth: float
+    width: float  #: of the smoothing Gaussian; 0 for a lattice, whose response is not smoothed
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """One dataset for each slab."""
+    found = map_tasks(states, _tasks(parameters), what="slabs")
+    return labelled({f"slab_{k}": dataset for k, dataset in enumerate(found)}, parameters.base)
+
+
+def _tasks(parameters: Parameters) -> list[Task]:
+    base, depth, forces = parameters.base, parameters.collapse_depth, parameters.forces
+    tasks = [
+        Task(
+            base.updated({"contact.friction": one.friction, "contact.stiffness_ratio": one.stiffness_ratio}),
+            forces,
+            depth,
+            0.0,
+        )
+        for one in parameters.lattices
+    ]
+    for one in parameters.disordered:
+        scene = base.updated(
+            {
+                "packing.polydispersity": one.polydispersity,
+                "packing.lattice_constant": "touching-largest",
+                "contact.friction": one.friction,
+                "wall.friction": one.friction,
+                "protocol.integrator": "leapfrog",
+                "protocol.time_step": "auto",
+                "protocol.stop_kinetic_energy": parameters.stop_kinetic_energy,
+            }
+        )
+        below = tuple(force for force in forces if force <= one.largest_force)
+        tasks.append(Task(scene, below, depth, parameters.width))
+    return tasks
+
+
+def states(task: Task) -> xr.Dataset:
+    """The states of one slab up to the last force before it collapses or finds no rest.
+
+    Raises what the settling of the slab raises.
+    """
+    path = LoadPath.of(task.scene)
+    found = [path.rest]
+    path.lowest = float(path.rest.position[int(path.problem.load_disk[0]), 1]) - task.collapse_depth
+    for force in task.forces:
+        try:
+            state = path.at(force)
+        except (Collapsed, *SOLVE_ERRORS):
+            break
+        if state.position[int(path.problem.load_disk[0]), 1] < path.lowest:  # a minimum of the energy
+            break
+        found.append(state)
+    return _dataset(task, path, found)
+
+
+def _dataset(task: Task, path: LoadPath, found: list[State]) -> xr.Dataset:
+    scene, packing = task.scene, path.problem.packing
+    pictures = states_picture(found, path.problem).drop_vars("angle")
+    disks = floor_disks(found, np.flatnonzero(packing.row == 0))
+    middle = float(path.rest.position[int(path.problem.load_disk[0]), 0])
+    x = path.rest.position[disks, 0] - middle
+    interior = interior_mask(x, packing.width, wall_margin(packing.width), left_wall=-middle)
+    response, smooth = np.full((2, len(found), len(disks)), np.nan)
+    count = np.zeros(len(found))
+    for k, state in enumerate(found[1:], 1):
+        response[k] = floor_response(path.rest, state, disks, state.load_factor)
+        smooth[k] = smoothed_response(x, x, response[k], task.width) if task.width else response[k]
+        count[k] = peak_count(x, smooth[k], interior=interior)
+    if task.width:
+        centre = smoothed_response([0.0], x, response, task.width)[:, 0]
+        unit = "smoothed with the width w, in 1/mean radius: stress per applied force"
+    else:
+        centre = np.array([np.interp(0.0, x, one) for one in response])
+        unit = "per applied force"
+    for name, values in pictures.data_vars.items():
+        if values.dtype == np.float64 and values.ndim > 1:
+            pictures[name] = values.astype(np.float32)
+    return pictures.merge(certificates_dataset(found)).assign(
+        floor_response=variable(
+            ("state", "floor_disk"), response, "vertical floor force that the load adds, per applied force"
+        ),
+        smoothed_response=variable(("state", "floor_disk"), smooth, f"floor response {unit}"),
+        response_at_centre=variable("state", centre, f"floor response at x = 0 {unit}"),
+        peak_count=variable("state", count, "number of peaks of the smoothed response; 0 at rest"),
+        x=variable("floor_disk", x, f"rest position of a floor disk from the loaded disk {LENGTH}"),
+        smoothing_width=variable((), task.width, f"width w of the smoothing Gaussian {LENGTH}; 0: none"),
+        polydispersity=variable((), scene.packing.model_dump()["polydispersity"], "delta: spread of the radii"),
+        friction=variable((), scene.contact.friction, "coefficient of friction between disks"),
+        wall_friction=variable((), scene.wall.friction, "coefficient of friction of the walls"),
+        stiffness_ratio=variable((), scene.contact.stiffness_ratio, "k_T/k_N"),
+        normal_stiffness=variable((), scene.contact.normal_stiffness, "k_N in mean disk weight per mean radius"),
+    )

@@ -1,0 +1,194 @@
+"""Figs. 13 to 15: force chains, vertical stress and force magnitudes in a slab with and without friction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from granular_response.plot import network, style
+from granular_response.plot.field import draw_field, root_norm
+from granular_response.state import Box
+from granular_response_paper.captions import RADIUS, Caption, lettered, of_scene, values
+
+from .parameters import Parameters
+
+#: Half of the width of the stress maps and of the profiles, in mean radii.
+MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
+#: Contours of the stress maps, per largest stress.
+LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
+#: Contours of the differences, of both signs, per largest difference.
+DIFFERENCE_LEVELS = (0.05, 0.3)
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``fig13_force_chains``, ``fig14_vertical_stress`` and ``fig15_force_profiles``."""
+    drawn = {
+        "fig13_force_chains": _force_chains(datasets["forces"]),
+        "fig14_vertical_stress": _vertical_stress(datasets["stress"]),
+    }
+    if "profiles" in datasets:
+        drawn["fig15_force_profiles"] = _force_profiles(datasets["profiles"])
+    return drawn
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    frictions = list(parameters.frictions)
+    given = of_scene(parameters.scene, force=parameters.force, frictions=frictions)
+    each = [f"µ = µ_wall = {mu:g}" for mu in frictions]
+    below = sorted(float(depth) for depth in datasets["profiles"]["depth"].values) if "profiles" in datasets else []
+    profiles = list(parameters.profiles.frictions)
+    return {
+        "fig13_force_chains": Caption(
+            f"Contact forces that the force adds in ordered slabs, the central third: {lettered(each)}. The effect of "
+            "gravity is subtracted as a vector. Lengths and widths of the lines are proportional to the force, the "
+            "same in all panels, but none is thinner than a hairline. Arrow and circle: the force and its disk; the "
+            "line below is the floor.",
+            "Two force chains along the lattice without friction, chains in many directions with it and a vertical "
+            "one at the largest friction.",
+            given,
+        ),
+        "fig14_vertical_stress": Caption(
+            "Vertical stress of the forces of Fig. 13, coarse-grained with a Gaussian: "
+            f"{lettered([*each, 'the isotropic '])}harmonic lattice, with contours at {values(LEVELS)} of the largest "
+            "stress. (e) to (g) Differences of (a) to (c) to (d), contours broken where it is negative. The colours "
+            "of all maps are in equal steps of the square root. Hatched: the layer of one width w at the floor, in "
+            "which part of the Gaussian lies outside the slab, so that the stress falls short.",
+            "Maps of the stress: two lobes without friction, one broad lobe at the largest friction, nearly that of "
+            "the isotropic lattice.",
+            {**given, "width": parameters.stress_width},
+        ),
+        "fig15_force_profiles": Caption(
+            "Magnitudes of the contact forces between rows that a large force adds, against the horizontal position, "
+            f"at depths of {values([round(depth, 1) for depth in below])} {RADIUS} below the force: "
+            f"{lettered([f'µ = µ_wall = {mu:g}' for mu in profiles])}. Both panels have one scale, of the square root.",
+            "Curves with two sharp peaks without friction, and with a peak in the middle with it.",
+            of_scene(parameters.scene, force=parameters.profiles.force, frictions=profiles),
+        ),
+    }
+
+
+def _force_chains(data: xr.Dataset) -> Figure:
+    """The central third of the slab; one scale for all panels."""
+    frictions = data["friction"].values
+    figure, panels = style.figure(len(frictions), 1, width="single", height=2.4 * len(frictions) + 0.1)
+    width, disk = float(data["width"]), int(data["loaded_disk"])
+    added, at_wall = data["contact_added_force"].values, data["wall_added_force"].values
+    scale = network.force_scale(added.reshape(-1, 2), longest=4.6, widest=4.6)
+    smallest = 1e-3 * float(np.linalg.norm(added, axis=-1).max())
+    radius = data["radius"].values
+    for index, axes in enumerate(panels[:, 0]):
+        position = data["position"].values[index]
+        pairs = data["contact_disk"].values, data["contact_partner"].values
+        walls = data["wall_disk"].values, data["wall_index"].values
+        inside = np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
+        network.draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT)
+        for point, force in (
+            (network.pair_points(position, radius, *pairs), added[index]),
+            (network.wall_points(position, radius, *walls), at_wall[index]),
+        ):
+            shown = np.abs(point[:, 0] - 0.5 * width) <= width / 6.0
+            network.draw_force_chains(axes, point[shown], force[shown], smallest=smallest, **scale)
+        top = (float(position[disk, 0]), float(position[disk, 1]) + 1.0)
+        network.draw_loaded_disk(axes, (top[0], top[1] - 1.0), float(radius[disk]))
+        network.draw_load(axes, top)
+        network.draw_box(axes, Box(width), top[1], between=(width / 3.0, 2.0 * width / 3.0))
+        style.no_axes(axes)
+        axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-0.8, top[1] + 4.2))
+        style.letter(axes, chr(ord("a") + index), text=_friction(frictions[index]))
+        magnitude = _round(float(data["force"]) / 5.0)
+        network.draw_force_key(axes, (2.0 * width / 3.0 - 8.0, top[1] + 2.5), magnitude, **scale)
+    return figure
+
+
+def _vertical_stress(data: xr.Dataset) -> Figure:
+    """Maps on one scale, the harmonic lattice last, and beside them how far they are off it."""
+    frictions = data["friction"].values
+    lattice = data["stress_zz_lattice"].values
+    maps = [(field, _friction(mu)) for field, mu in zip(data["stress_zz"].values, frictions, strict=True)]
+    rows, letters = len(maps) + 1, [chr(ord("a") + k) for k in range(2 * len(maps) + 1)]
+    figure, panels = style.figure(rows, 2, width="double", height=1.62 * rows + 0.3, sharex=True, sharey=True)
+    x, z, width = data["x"].values, data["z"].values, float(data["stress_width"])
+    half = min(MAP_HALF_WIDTH, float(x.max()))
+    largest = max(float(field.max()) for field in (*data["stress_zz"].values, lattice))
+    furthest = max(float(np.abs(field - lattice)[:, np.abs(x) <= half].max()) for field, _ in maps)
+    norm, signed = root_norm(largest), root_norm(furthest, signed=True)
+    for index, (field, name) in enumerate([*maps, (lattice, "isotropic harmonic lattice")]):
+        axes = panels[index, 0]
+        image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=largest * np.array(LEVELS))
+        style.letter(axes, letters[index], place="above", text=name)
+    for index, (field, name) in enumerate(maps):
+        axes = panels[index, 1]
+        # white where there is no difference; lines tell the sign without colours, broken where it is negative
+        off = field - lattice
+        change = draw_field(axes, x, z, off, norm=signed, cmap=style.SIGNED)
+        levels = [sign * level * furthest for sign in (-1.0, 1.0) for level in DIFFERENCE_LEVELS]
+        lines = sorted(level for level in levels if off.min() < level < off.max())
+        if lines:
+            axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
+        style.letter(axes, letters[rows + index], place="above", text=f"{name}, less ({letters[len(maps)]})")
+    for axes in [*panels[:, 0], *panels[:-1, 1]]:
+        axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
+        axes.axhspan(0.0, width, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
+        axes.axhline(width, color=style.MUTED, linewidth=0.5)
+    for axes in (panels[-1, 0], panels[-2, 1]):
+        axes.set_xlabel(style.POSITION)
+        axes.tick_params(labelbottom=True)
+    for axes in panels[:, 0]:
+        axes.set_ylabel(style.HEIGHT)
+    empty = panels[-1, 1]
+    empty.set_axis_off()
+    steps, both = (0.0, 0.005, 0.02, 0.05, 0.1, 0.15), (-0.02, -0.01, -0.002, 0.0, 0.002, 0.01, 0.02)
+    for place, mapped, label, ticks in (
+        (0.62, image, style.STRESS, [t for t in steps if t <= largest]),
+        (0.16, change, f"difference of {style.STRESS}", [t for t in both if abs(t) <= furthest]),
+    ):
+        bar = figure.colorbar(mapped, cax=empty.inset_axes((0.05, place, 0.9, 0.09)), orientation="horizontal")
+        bar.set_label(label)
+        bar.set_ticks(ticks)
+        bar.ax.xaxis.set_major_formatter("{x:g}")
+        bar.ax.tick_params(which="minor", size=0)
+    return figure
+
+
+def _force_profiles(data: xr.Dataset) -> Figure:
+    frictions, depths = data["friction"].values, data["depth"].values
+    figure, panels = style.figure(1, len(frictions), width="double", height=3.1, sharex=True, sharey=True)
+    colours = style.ordered_colours(len(depths))
+    for index, axes in enumerate(panels[0]):
+        for row, depth in enumerate(depths):
+            axes.plot(
+                data["contact_x"].values[index, row],
+                data["magnitude"].values[index, row],
+                linestyle=style.LINE_STYLES[row % len(style.LINE_STYLES)],
+                linewidth=0.8,
+                color=colours[row],
+                marker=style.MARKERS[row % len(style.MARKERS)],
+                markersize=2.8,
+                markeredgewidth=0.0,
+                label=f"${depth:.1f}\\,{style.RADIUS}$",
+            )
+        half = PROFILE_HALF_WIDTH
+        axes.set(xlabel=style.POSITION, xlim=(-half, half))
+        style.letter(axes, chr(ord("a") + index), place="above", text=_friction(frictions[index]))
+    # small forces far from the middle are seen beside the largest ones
+    panels[0, 0].set_yscale("function", functions=(lambda y: np.sqrt(np.maximum(y, 0.0)), np.square))
+    panels[0, 0].set_ylim(0.0, 1.06 * float(np.nanmax(data["magnitude"].values)))
+    panels[0, 0].set_yticks([0.0, 1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0])
+    panels[0, 0].set_ylabel(style.CONTACT_FORCE)
+    panels[0, -1].legend(title="depth", loc="upper right")
+    return figure
+
+
+def _friction(value: float) -> str:
+    return style.equals(style.FRICTION if value == 0.0 else style.BOTH_FRICTIONS, value)
+
+
+def _round(value: float) -> float:
+    """A round number near ``value``."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(min((1.0, 2.0, 5.0, 10.0), key=lambda digit: abs(digit * power - value)) * power)

@@ -1,0 +1,42 @@
+"""Parameters of the forces and the stress inside a slab."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Description, Positive
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Positives, SceneGroup, over
+
+
+class Profiles(Description):
+    """Fig. 15."""
+
+    frictions: tuple[float, ...] = Field(description="Among the others.")
+    force: Positive = Field(description="In mean disk weights, by dynamics from rest.")
+    rows: Positives = Field(description="Below the loaded disk; half-integers are between rows.")
+
+
+class Parameters(SceneGroup):
+    """Section ``friction_fields``."""
+
+    scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "wall.friction", "loads")] = UNIT_LOAD
+    frictions: Coefficients = Field(description="Of the walls too.")
+    force: Positive = Field(description="In mean disk weights.")
+    stress_width: Positive = Field(description="w of the Gaussian, in radii.")
+    stress_spacing: Positive = Field(description="Of the grid, in radii.")
+    stress_half_width: Positive = Field(description="Of the grid, in radii.")
+    profiles: Profiles
+
+    @model_validator(mode="after")
+    def _check_profiles(self) -> Parameters:
+        if not set(self.profiles.frictions) <= set(self.frictions):
+            rule = f"must be among frictions = {list(self.frictions)}"
+            raise Problem(rule, key=("profiles", "frictions"), value=list(self.profiles.frictions))
+        if self.stress_half_width < self.stress_spacing:
+            rule = f"must be at least stress_spacing = {self.stress_spacing:g}"
+            raise Problem(rule, key=("stress_half_width",), value=self.stress_half_width)
+        return self

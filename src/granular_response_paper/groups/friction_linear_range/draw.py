@@ -1,0 +1,274 @@
+"""Figs. 6 to 9, 12 and 16: the response of a slab with friction, and what the force does to its contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+from granular_response.state import SLIDING
+from granular_response_paper.captions import WEIGHT, Caption, of_scene, panels, values
+
+from .parameters import Parameters
+
+#: Forces of the profiles (Fig. 7), of the pictures of contacts (Figs. 8 and 9) and of the large forces (Fig. 16).
+PROFILE_FRICTIONS, PROFILE_FORCES = (0.2, 1.0), (4.0, 10.0, 20.0, 30.0, 50.0)
+LARGE_FRICTION = 0.2
+CONTACT_FORCES = (6.0, 12.0, 20.0)
+LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
+DYNAMIC_FORCES = (91.0, 93.0, 95.0, 100.0)
+#: Frictions of Fig. 12.
+AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
+
+#: Part of the slab that profiles show, to both sides of the load (radii): beyond it the walls matter.
+REACH = 40.0
+
+#: Symbols of a profile stand at every so many disks; half of the width of the enlarged part of Fig. 7b.
+SPREAD, CLOSE = 3, 8.0
+
+#: What the paper says, in mean disk weights: forces that open the first contact, by friction (Sec. V.B), crossover and
+#: third peak at friction 0.2, and the last symmetric response at friction 1 (Sec. V.E).
+PAPER_OPENINGS = {0.0: 0.75, 0.2: 4.0, 1.0: 6.0}
+PAPER_CROSSOVER, PAPER_THIRD_PEAK, PAPER_SYMMETRIC = 20.0, 40.0, 91.0
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """Figures by file stem, from the datasets of the study of the same name."""
+    response = datasets["response"]
+    figures = {
+        "fig06_linear_range": _linear_range(response),
+        "fig12_friction_crossover": _friction_axis(datasets["friction_axis"]),
+    }
+    stored = response["friction"].values
+    if np.isin(PROFILE_FRICTIONS, stored).all():
+        figures["fig07_friction_response"] = _profiles(response)
+    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
+        states = datasets.get(f"states_mu_{friction:g}")
+        if states is not None:
+            figures[stem] = _contacts(states, friction)
+    if "large_forces" in datasets and LARGE_FRICTION in stored:
+        figures["fig16_large_forces"] = _large_forces(response, datasets["large_forces"])
+    return figures
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    response = datasets["response"]
+    frictions = response["friction"].values.tolist()
+    stops = "".join(
+        f" The curve of µ = {end.friction:g} ends at {end.force:g} {WEIGHT} to save time; the slab bears more."
+        for end in parameters.ends
+    )
+    found = {
+        "fig06_linear_range": Caption(
+            "Response at x = 0 of ordered slabs per force, against the force, for several coefficients of friction. "
+            "It is level in the linear range, which friction extends. Dotted: the forces at which the paper sees the "
+            f"first contact open, without friction, at µ = 0.2 and at µ = 1.{stops}",
+            "Curves against the force on a logarithmic axis, level and equal for small forces; they leave the level "
+            "the later the larger the friction, most of them downwards, that of µ = 1 upwards.",
+            of_scene(parameters.scene, force=response["force"].values.tolist(), friction=frictions),
+        ),
+        "fig12_friction_crossover": Caption(
+            "Floor response of ordered slabs at one force, for several coefficients of friction: two peaks at small "
+            "ones, one at large ones.",
+            "Curves from two high peaks without friction over a plateau to one peak.",
+            of_scene(
+                parameters.scene,
+                force=parameters.friction_axis.force,
+                friction=at_frictions(datasets["friction_axis"], AXIS_FRICTIONS),
+            ),
+        ),
+    }
+    if np.isin(PROFILE_FRICTIONS, frictions).all():
+        found["fig07_friction_response"] = Caption(
+            f"Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2; the paper sees the crossover "
+            f"from one peak to two near {PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. "
+            "Each curve has its symbols at other disks, as some nearly cover each other.",
+            "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
+            of_scene(
+                parameters.scene,
+                force=at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist(),
+                friction=list(PROFILE_FRICTIONS),
+            ),
+        )
+    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
+        states = datasets.get(f"states_mu_{friction:g}")
+        if states is not None:
+            shown = contact_forces(states)
+            found[stem] = Caption(
+                f"What the force does to the contacts of an ordered slab at µ = {friction:g}, the central third: "
+                "those that it opens (thick), that slide (middle) and that it leaves alone (thin). Arrow and circle: "
+                f"the force and its disk; the line below is the floor. {panels(shown)}",
+                f"Triangular networks at friction {friction:g}: open contacts below the force, sliding ones beside "
+                "them, more and deeper from panel to panel.",
+                of_scene(parameters.scene, force=shown, friction=friction),
+            )
+    if "large_forces" in datasets and LARGE_FRICTION in frictions:
+        dynamic = datasets["large_forces"]
+        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values
+        left = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)["force"].values
+        found["fig16_large_forces"] = Caption(
+            f"Floor response of ordered slabs under large forces. (a) µ = 0.2, F_ext = {values(left.tolist())} "
+            f"{WEIGHT}; the paper sees the crossover near {PAPER_CROSSOVER:g} {WEIGHT} and a third peak at x = 0 "
+            f"from {PAPER_THIRD_PEAK:g} {WEIGHT} on. (b) µ = 1, dynamics from rest to F_ext = "
+            f"{values(beyond.tolist())} {WEIGHT}; in the paper symmetry is lost beyond {PAPER_SYMMETRIC:g} "
+            f"{WEIGHT}, and at 95 {WEIGHT} the response is the mirror image of another.",
+            "(a) A plateau, then two peaks with a third one between them. (b) One symmetric bell and three lopsided "
+            "curves with a sharp negative dip to the left or the right of the middle.",
+            of_scene(
+                parameters.scene,
+                force=sorted({*left.tolist(), *beyond.tolist()}),
+                friction=[0.2, float(dynamic["friction"])],
+            ),
+        )
+    return found
+
+
+def _linear_range(response: xr.Dataset) -> Figure:
+    """Fig. 6."""
+    figure, axes = style.figure(height=3.0)
+    panel = axes[0, 0]
+    frictions = response["friction"].values
+    for index, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True)):
+        curve = response["response_at_centre"].sel(friction=friction).dropna("force")
+        look = {**style.marked_line(index, colour=colour), "markersize": 3.0}
+        panel.plot(curve["force"], curve, label=f"{friction:g}", **look)
+    panel.set_xscale("log")
+    panel.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    panel.set_ylim(bottom=0.0, top=1.1 * float(response["response_at_centre"].max()))
+    for friction, force in PAPER_OPENINGS.items():
+        name = f"paper, $\\mu = {friction:g}$: {force:g}"
+        style.paper_value(panel, force, name, side="behind" if force == max(PAPER_OPENINGS.values()) else "before")
+    panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE)
+    panel.legend(title=f"${style.FRICTION}$", loc="lower left", ncols=2, columnspacing=1.0)
+    return figure
+
+
+def _profiles(response: xr.Dataset) -> Figure:
+    """Fig. 7."""
+    figure, axes = style.figure(1, 2, width="double", height=2.7, sharey=True)
+    extents = []
+    for panel, name, friction in zip(axes[0], "ab", PROFILE_FRICTIONS, strict=True):
+        curves = at_forces(response.sel(friction=friction), PROFILE_FORCES)
+        extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), style.FORCE))
+        style.letter(panel, name, place="above", text=style.equals(style.FRICTION, friction))
+        if friction == 1.0:
+            _enlarge(panel, curves)
+        else:
+            style.paper_note(panel, f"paper:\n{PAPER_CROSSOVER:g} crossover")
+    _fit(axes[0, 0], *extents)
+    axes[0, 0].set_ylabel(style.RESPONSE)
+    return figure
+
+
+def _friction_axis(axis: xr.Dataset) -> Figure:
+    """Fig. 12."""
+    figure, axes = style.figure(height=2.6)
+    curves = axis.sel(friction=at_frictions(axis, AXIS_FRICTIONS))
+    _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), f"${style.FRICTION}$"))
+    axes[0, 0].set_ylabel(style.RESPONSE)
+    return figure
+
+
+def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
+    """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
+    figure, axes = style.figure(1, 2, width="double", height=2.9)
+    left, right = axes[0]
+    curves = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
+    _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), style.FORCE))
+    style.paper_note(left, f"paper:\n{PAPER_CROSSOVER:g} crossover\n{PAPER_THIRD_PEAK:g} third peak")
+    style.letter(left, "a", place="above", text=style.equals(style.FRICTION, 0.2))
+    curves = at_forces(dynamic, DYNAMIC_FORCES)
+    _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), style.FORCE, categorical=True))
+    style.paper_note(right, f"paper:\n{PAPER_SYMMETRIC:g} symmetric")
+    style.letter(right, "b", place="above", text=style.equals(style.FRICTION, float(dynamic["friction"])))
+    right.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    for panel in (left, right):
+        panel.set_ylabel(style.RESPONSE)
+    return figure
+
+
+def _labels(values: xr.DataArray) -> list[str]:
+    return [f"{value:g}" for value in values.values]
+
+
+def at_frictions(axis: xr.Dataset, wanted: Sequence[float]) -> list[float]:
+    """The wanted frictions as far as they are stored; all of them if none is."""
+    stored = axis["friction"].values.tolist()
+    return [mu for mu in wanted if mu in stored] or stored
+
+
+def contact_forces(states: xr.Dataset) -> list[float]:
+    """The forces of Figs. 8 and 9 as far as they are stored, else the first ones."""
+    stored = states["force"].values.tolist()
+    return [force for force in CONTACT_FORCES if force in stored] or stored[1:4]
+
+
+def at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
+    """The given forces as far as they are stored; all of them if none is."""
+    stored = dataset.dropna("force", subset=["response_at_centre"])
+    shown = [force for force in forces if force in stored["force"].values]
+    return stored.sel(force=shown) if shown else stored
+
+
+def _plot_profiles(
+    panel: Axes, curves: xr.Dataset, labels: Sequence[str], title: str, *, categorical: bool = False
+) -> tuple[float, float]:
+    """Response against position, one curve for each label along the dimension that is not the floor's.
+
+    Returns the smallest and the largest response shown.
+    """
+    colours = style.ordered_colours(len(labels))
+    dimension = next(str(dim) for dim in curves["floor_response"].dims if dim != "floor_disk")
+    for index, (label, colour) in enumerate(zip(labels, colours, strict=True)):
+        # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
+        look: dict[str, Any] = style.marked_line(index, colour=None if categorical else colour)
+        look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD), "linestyle": style.line(index)["linestyle"]}
+        panel.plot(curves["x"], curves["floor_response"].isel({dimension: index}), label=label, **look)
+    panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
+    panel.legend(title=title, loc="upper right", handlelength=2.8)
+    shown = curves["floor_response"].where(abs(curves["x"]) <= REACH)
+    return float(shown.min()), float(shown.max())
+
+
+def _fit(panel: Axes, *extents: tuple[float, float]) -> None:
+    """Limits of the vertical axis that leave a margin around all ``extents``."""
+    low, high = min(low for low, _ in extents), max(high for _, high in extents)
+    panel.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
+
+
+def _enlarge(panel: Axes, curves: xr.Dataset) -> None:
+    """The tops of curves that nearly cover each other, in the upper left corner."""
+    inside = panel.inset_axes((0.09, 0.5, 0.28, 0.46))
+    near = curves.isel(floor_disk=np.flatnonzero(np.abs(curves["x"].values) <= CLOSE))
+    for index, (top, colour) in enumerate(
+        zip(near["floor_response"].values, style.ordered_colours(near.sizes["force"]), strict=True)
+    ):
+        look = {**style.marked_line(index), **style.line(index), "color": colour, "markersize": 2.6}
+        inside.plot(near["x"], top, **look)
+    inside.set_xlim(-CLOSE, CLOSE)
+    inside.tick_params(labelsize=6)
+
+
+def _contacts(states: xr.Dataset, friction: float) -> Figure:
+    """Figs. 8 and 9: the central third, one panel for each force."""
+    stored, shown = states["force"].values, contact_forces(states)
+    figure, axes = style.figure(len(shown), 1, height=2.5 * len(shown) + 0.3)
+    rest = states.isel(state=0)
+    handles: dict[str, Any] = {}
+    for index, force in enumerate(shown):
+        loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
+        panel = axes[index, 0]
+        drawn = draw_state_changes(panel, rest, loaded, loaded["contact_status"].values == SLIDING)
+        handles.update({name: line for name, line in drawn.items() if name not in handles})
+        text = f"{style.equals(style.FRICTION, friction)}, {style.equals(style.F_EXT, force, style.WEIGHT)}"
+        style.letter(panel, "abcdefgh"[index], place="above", text=text)
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)
+    return figure

@@ -1,0 +1,64 @@
+"""Parameters of the response with friction against the force."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Description, NonNegative, Positive, Ratio
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, SceneGroup, over
+
+
+class Extra(Description):
+    """Further forces at one friction."""
+
+    friction: Ratio
+    forces: Growing
+
+
+class End(Description):
+    """Where the path of one friction stops, if below the last of ``forces``."""
+
+    friction: Ratio
+    force: Positive
+
+
+class FrictionAxis(Description):
+    """Fig. 12."""
+
+    frictions: Coefficients
+    force: Positive
+    tolerance: Positive = Field(description="Width of the bracket, as a coefficient of friction.")
+
+
+class LargeForces(Description):
+    """Fig. 16b: dynamics from rest to each force."""
+
+    friction: Ratio
+    forces: tuple[Positive, ...] = Field(description="None: left out.")
+    ramp_time: NonNegative
+    time_step: Positive
+
+
+class Parameters(SceneGroup):
+    """Section ``friction_linear_range``."""
+
+    scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "loads")] = UNIT_LOAD
+    frictions: Coefficients = Field(description="Of Fig. 6.")
+    forces: Growing = Field(description="Of Fig. 6, in mean disk weights.")
+    ends: tuple[End, ...] = ()
+    extra_forces: tuple[Extra, ...] = ()
+    states_of: Coefficients = Field(description="Frictions whose states are stored and whose events are all located.")
+    asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
+    friction_axis: FrictionAxis
+    dynamics: LargeForces
+
+    @model_validator(mode="after")
+    def _check_frictions(self) -> Parameters:
+        if self.dynamics.forces and self.dynamics.friction not in self.frictions:
+            rule = f"must be one of frictions = {list(self.frictions)}"
+            raise Problem(rule, key=("dynamics", "friction"), value=self.dynamics.friction)
+        return self

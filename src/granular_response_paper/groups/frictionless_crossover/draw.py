@@ -1,0 +1,342 @@
+"""Figs. 3, 4 and 5 and the stiffness study: ordered slabs without friction under a growing force.
+
+Profiles are drawn in the interior of the slab, ten radii from its side walls. The curves of Fig. 5 end where the
+region of opened contacts reaches the floor (open marker). The band of ``fig05b_stiffness`` is the change of
+2 % that Sec. IV.C speaks of; stiffnesses for which gravity alone rearranges the lattice are left out there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, FuncFormatter, MultipleLocator, NullFormatter
+
+from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+from granular_response.state import SLIDING
+from granular_response_paper.captions import RADIUS, WEIGHT, Caption, letters, of_scene, panels, values
+
+from .parameters import Parameters
+
+#: Forces of the profiles and of the contact networks; the nearest stored ones are drawn.
+PROFILE_FORCES = (0.25, 2.0, 3.0, 3.5, 5.0, 15.0, 50.0)
+NETWORK_FORCES = (1.0, 2.0, 3.0, 3.5, 5.0, 15.0)
+#: Forces in the panels about stiffness and about the depth of the slab.
+STIFFNESS_FORCES = (0.25, 1.0, 2.0, 3.0, 15.0)
+TEARDROP_FORCES = (2.0, 3.0)
+COMPARED_FORCE = 5.0
+
+EVENTS = {
+    "first_opening": "first opening",
+    "crossover": "one peak to two",
+    "teardrop_reaches_floor": "region at the floor",
+}
+#: What the paper says: first opening (Sec. V.B); the response changes by 2 % between two stiffnesses, and the region
+#: saturates from a third one on (Sec. IV.C).
+PAPER_OPENING, PAPER_CHANGE, PAPER_STIFFNESSES, PAPER_SATURATION = 0.75, 0.02, (1e3, 1e5), 2e3
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """The figures of Sec. IV from the datasets of the study of the same name."""
+    return {
+        "fig03_frictionless_response": _response(datasets["response"], datasets["events"]),
+        "fig04_frictionless_contacts": _contacts(datasets["rest"], datasets["states"]),
+        "fig05_teardrop": _teardrop(datasets["sizes"]),
+        "fig05b_stiffness": _stiffness(datasets["stiffness"]),
+        "fig05c_depth_and_width": _slabs(datasets["sizes"], datasets["widths"]),
+    }
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+
+    def drawn(wanted: tuple[float, ...], dataset: str) -> list[float]:
+        stored = datasets[dataset]["force"].values
+        return stored[nearest(stored, wanted)].tolist()
+
+    slab = of_scene(parameters.scene)
+    depths, stiffnesses = values([n for n, _ in parameters.sizes]), values(parameters.size_stiffnesses)
+    deep = {**slab, "normal_stiffness": parameters.size_stiffnesses, "packing": f"slabs of {depths} layers"}
+    compared = values(drawn((COMPARED_FORCE,), "sizes"))
+    return {
+        "fig03_frictionless_response": Caption(
+            "Ordered slab without friction under a growing force. (a) Floor response per force in the interior of the "
+            "slab: one peak splits into two. (b) Response at x = 0 and its largest value against the force; broken "
+            "lines: forces at which the first contact opens, two peaks appear and the region of open contacts reaches "
+            "the floor; dotted: first opening in the paper.",
+            "(a) Curves from a single bell at small forces to two sharp peaks at large ones. (b) Both measures agree "
+            "until there are two peaks, then the response at x = 0 falls and the largest grows.",
+            {**slab, "force": drawn(PROFILE_FORCES, "response")},
+        ),
+        "fig04_frictionless_contacts": Caption(
+            "Contacts that the force opens in the slab of Fig. 3 (thick), and those that it does not (thin), the "
+            "central third. Arrow and circle: the force and its disk; the line below is the floor. "
+            + panels(drawn(NETWORK_FORCES, "states")),
+            "Triangular networks in which horizontal contacts open in a teardrop below the force, which grows until it "
+            "stands on the floor as a triangle.",
+            {**slab, "force": drawn(NETWORK_FORCES, "states")},
+        ),
+        "fig05_teardrop": Caption(
+            "Depth (left) and largest width (right) of the region of open contacts below the force, for slabs of "
+            f"several depths at k_N = {stiffnesses} {WEIGHT}/{RADIUS}, (a), (b) above and (c), (d) below. A curve "
+            "ends where the region reaches the floor (open symbol). In 60 layers of the paper's stiffness gravity "
+            "compresses the slab so far that its horizontal contacts carry far more than those of stiff slabs: "
+            "the first one opens late and the region stays small, which is not the effect of size that the paper "
+            "shows. Of stiff disks 60 layers are like the others.",
+            "Curves that grow with the force, deeper slabs a little later; with soft disks that of 60 layers stays "
+            "low.",
+            deep,
+        ),
+        "fig05b_stiffness": Caption(
+            "What the stiffness of the disks changes in the slab of Fig. 3. (e) Response at x = 0 over that of the "
+            "stiffest disks; shaded: 2 % from 1000 to 1e5, as the paper says. (f) Depth and largest width of the "
+            "region of open contacts; dotted: 2000, from which the paper sees it saturate. (g) Forces at which the "
+            "first contact opens, two peaks appear and the region reaches the floor. Stiffnesses at which gravity "
+            "alone rearranges the lattice are left out.",
+            "Three plots against the stiffness on a logarithmic axis; all curves level off beyond 2000.",
+            {**slab, "force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses},
+        ),
+        "fig05c_depth_and_width": Caption(
+            f"(h) Depth of the region for slabs of several widths; open symbols as in (a). (i) Response at {compared} "
+            f"{WEIGHT} for several depths, over the height h. (j) Forces at which two peaks appear and the region "
+            "reaches the floor, against the depth.",
+            "Three plots: depth against force, responses with two peaks in shallow slabs and one in deep ones, and "
+            "forces of the events that grow with the depth.",
+            {**deep, "force": parameters.size_forces},
+        ),
+    }
+
+
+def nearest(stored: np.ndarray, wanted: Sequence[float]) -> list[int]:
+    """Indices of the stored values nearest to the wanted ones, each once."""
+    return sorted({int(np.argmin(np.abs(stored - value))) for value in wanted})
+
+
+def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
+    figure, ((profiles, centre),) = style.figure(
+        1, 2, width="double", height=2.7, gridspec_kw={"width_ratios": [1.45, 1.0]}
+    )
+    data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
+    x = data["x"].values
+    chosen = nearest(data["force"].values, PROFILE_FORCES)
+    colours = style.ordered_colours(len(chosen))
+    for at, (k, colour) in enumerate(zip(chosen, colours, strict=True)):
+        one = data.isel(force=k)
+        profiles.plot(
+            x,
+            one["floor_response"],
+            color=colour,
+            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
+            marker=style.MARKERS[at % len(style.MARKERS)],
+            markersize=2.2,
+            linewidth=0.9,
+            label=f"{float(one['force']):g}",
+        )
+    profiles.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
+    profiles.legend(title=style.FORCE, loc="upper right")
+
+    centre.plot(data["force"], data["response_at_centre"], **style.marked_line(0), label="at $x=0$")
+    centre.plot(data["force"], data["peak_height"], **style.marked_line(1), label="largest")
+    highest = float(data["peak_height"].max())
+    for at, (name, low, high) in enumerate(zip(events["name"].values, events["low"], events["high"], strict=True)):
+        if np.isfinite(high):
+            middle = float(0.5 * (low + high))
+            centre.axvline(middle, color=style.MUTED, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
+            last = at == events.sizes["event"] - 1  # close to the one before, so its name goes to the other side
+            centre.annotate(
+                f"{EVENTS[str(name)]}, {middle:.2f}",
+                (middle, 1.0),
+                (2.0 if last else -1.5, -4.0),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                rotation=90,
+                ha="left" if last else "right",
+                va="top",
+                fontsize=7,
+                color=style.MUTED,
+            )
+    style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
+    centre.set_ylim(0.0, 1.65 * highest)
+    centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
+    centre.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
+    style.letters(np.array([profiles, centre]), place="above")
+    return figure
+
+
+def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
+    chosen = nearest(states["force"].values, NETWORK_FORCES)
+    columns = min(3, len(chosen))
+    rows = -(-len(chosen) // columns)
+    figure, panels = style.figure(rows, columns, width="double", height=0.2 + 1.85 * rows)
+    handles: dict[str, LineCollection] = {}
+    for at, axes in enumerate(panels.ravel()):
+        if at >= len(chosen):
+            axes.set_axis_off()
+            continue
+        one = states.isel(force=chosen[at])
+        handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
+        force = float(one["force"])
+        style.letter(axes, chr(ord("a") + at), place="above", text=style.equals(style.F_EXT, force, style.WEIGHT))
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+    return figure
+
+
+def _teardrop(sizes: xr.Dataset) -> Figure:
+    stiffnesses = np.unique(sizes["normal_stiffness"].values)
+    figure, panels = style.figure(
+        len(stiffnesses), 2, width="double", height=0.3 + 2.2 * len(stiffnesses), sharex=True, sharey="col"
+    )
+    for row, stiffness in zip(panels, stiffnesses, strict=True):
+        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
+        for axes, name, label in zip(
+            row, ("teardrop_depth", "teardrop_width"), (style.DEPTH, style.WIDTH), strict=True
+        ):
+            _growth(axes, slabs, name, lambda one: f"{int(one['layers'])}")
+            axes.set_ylabel(label)
+        row[0].legend(title="layers", loc="upper right")
+        row[0].annotate(
+            style.equals("k_N", stiffness, style.STIFFNESS_UNIT), (0.03, 0.86), xycoords="axes fraction", fontsize=8
+        )
+    panels[0, 1].annotate(
+        "open: region at the floor", (1.0, 1.0), (-5.0, -5.0), xycoords="axes fraction", textcoords="offset points",
+        ha="right", va="top", fontsize=8, color=style.MUTED,
+    )  # fmt: skip
+    for axes in panels[-1]:
+        axes.set_xlabel(style.FORCE)
+        axes.xaxis.set_major_locator(MultipleLocator(5.0))
+    style.letters(panels)
+    return figure
+
+
+def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Dataset], str]) -> None:
+    """A measure of the teardrop against the force, up to where it reaches the floor (open marker)."""
+    colours = style.ordered_colours(slabs.sizes["slab"])
+    for at, colour in enumerate(colours):
+        one = slabs.isel(slab=at)
+        reached = np.flatnonzero(one["reaches_floor"].values > 0)
+        end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
+        force, values = one["force"].values[:end], one[name].values[:end]
+        axes.plot(force, values, **style.marked_line(at, colour=colour), label=label(one))
+        if len(reached):
+            axes.plot(
+                force[-1:],
+                values[-1:],
+                linestyle="none",
+                marker=style.MARKERS[at % len(style.MARKERS)],
+                markerfacecolor="white",
+                markeredgecolor=colour,
+                markersize=5.0,
+                zorder=4,
+            )
+
+
+def _stiffness(data: xr.Dataset) -> Figure:
+    figure, ((centre, size, events),) = style.figure(1, 3, width="double", height=2.5)
+    k = data["normal_stiffness"].values
+    held = data["new_neighbours"].values == 0
+
+    for at, index in enumerate(nearest(data["force"].values, STIFFNESS_FORCES)):
+        response = data["response_at_centre"].isel(force=index).values
+        look = style.marked_line(at)
+        centre.plot(k[held], (response / response[-1])[held], **look, label=f"{data['force'].values[index]:g}")
+    low, high = PAPER_STIFFNESSES
+    centre.fill_between(
+        [low, high], 1.0 - PAPER_CHANGE, 1.0 + PAPER_CHANGE, color=style.PAPER_BAND, linewidth=0.0, zorder=0
+    )
+    centre.annotate(
+        f"paper: {PAPER_CHANGE:.0%}".replace("%", " %"), (high, 1.0 + PAPER_CHANGE), (0.0, 1.5),
+        textcoords="offset points", ha="right", fontsize=7, color=style.PAPER,
+    )  # fmt: skip
+    centre.set_ylabel(f"{style.RESPONSE_AT_CENTRE},\nover that of the stiffest")
+    centre.legend(title=style.FORCE)
+
+    for at, index in enumerate(nearest(data["force"].values, TEARDROP_FORCES)):
+        force = data["force"].values[index]
+        for kind, (name, filled) in enumerate((("depth", True), ("width", False))):
+            look = style.marked_line(2 * at + kind)
+            if not filled:
+                look |= {"markerfacecolor": "white", "markeredgewidth": 0.8, "linestyle": (0, (4, 1.5))}
+            size.plot(
+                k[held],
+                data[f"teardrop_{name}"].isel(force=index).values[held],
+                **look,
+                label=f"{name}, {style.equals(style.F_EXT, force, style.WEIGHT)}",
+            )
+    size.set_ylabel(f"size of the region$\\,/\\,{style.RADIUS}$")
+    style.paper_value(size, PAPER_SATURATION, f"paper: {PAPER_SATURATION:g}")
+    size.set_ylim(top=1.9 * size.get_ylim()[1])
+    size.legend(loc="upper right", handlelength=1.2, handletextpad=0.5, borderaxespad=0.3)
+
+    for at, (name, label) in enumerate(EVENTS.items()):
+        bracket = data[f"{name}_bracket"].values
+        known = held & np.isfinite(bracket).all(axis=1)
+        events.plot(k[known], bracket[known].mean(axis=1), **style.marked_line(at), label=label)
+    style.logarithmic(events, "y")
+    events.set(ylabel=f"force of the event, {style.FORCE}")
+    events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
+    events.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    events.yaxis.set_minor_formatter(NullFormatter())
+    events.legend()
+    for axes in (centre, size, events):
+        axes.set(xscale="log", xlabel=style.STIFFNESS)
+    style.letters(np.array([centre, size, events]), first=next(letters("fig05b_stiffness")), place="above")
+    return figure
+
+
+def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
+    figure, ((box, profiles, events),) = style.figure(1, 3, width="double", height=2.6)
+    stiffnesses = np.unique(sizes["normal_stiffness"].values)
+    stiffest = widths.isel(slab=np.flatnonzero(widths["normal_stiffness"].values == stiffnesses[-1]))
+    _growth(box, stiffest, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
+    box.set(xlabel=style.FORCE, ylabel=style.DEPTH)
+    box.legend(title="layers $\\times$ disks", loc="lower right", fontsize=7)
+
+    softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
+    at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
+    colours = style.ordered_colours(softest.sizes["slab"])
+    for at, colour in enumerate(colours):
+        one = at_force.isel(slab=at)
+        height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
+        seen = np.abs(one["x"].values) <= 1.5 * height
+        profiles.plot(
+            one["x"].values[seen] / height,
+            one["floor_response"].values[seen] * height,
+            color=colour,
+            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
+            label=f"{int(one['layers'])}",
+        )
+    label = f"{style.RESPONSE}$\\,\\times\\,h/{style.RADIUS}$"
+    profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
+    profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
+
+    index = 0
+    for stiffness in stiffnesses:
+        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
+        for name in ("crossover", "teardrop_reaches_floor"):
+            bracket = slabs[f"{name}_bracket"].values
+            known = np.isfinite(bracket).all(axis=1)
+            events.plot(
+                slabs["layers"].values[known],
+                bracket[known].mean(axis=1),
+                **style.marked_line(index),
+                label=f"{EVENTS[name]}, {style.equals('k_N', stiffness)}",
+            )
+            index += 1
+    events.set(xlabel="layers", ylabel=f"force of the event, {style.FORCE}")
+    events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
+    events.legend(fontsize=7, loc="upper left")
+    force = float(at_force["force"])
+    soft, stiff = (style.equals("k_N", k, style.STIFFNESS_UNIT) for k in (stiffnesses[0], stiffnesses[-1]))
+    names = letters("fig05c_depth_and_width")
+    style.letter(box, next(names), place="above", text=stiff)
+    style.letter(profiles, next(names), place="above", text=f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}")
+    style.letter(events, next(names), place="above")
+    return figure

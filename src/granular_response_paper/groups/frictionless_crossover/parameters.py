@@ -1,0 +1,48 @@
+"""Parameters of the frictionless slabs under a growing force."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Positive, allowed
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over
+
+_FRICTIONLESS = UNIT_LOAD.updated({"contact.friction": 0.0})
+
+Shapes = Annotated[
+    tuple[
+        tuple[Annotated[int, Field(strict=True, ge=2)], Annotated[int, Field(strict=True, ge=7)]],
+        ...,
+    ],
+    Field(min_length=1),
+    allowed("must be a list of [layers, disks_per_row], from 2 and 7 on"),
+]
+
+
+class Parameters(SceneGroup):
+    """Section ``frictionless_crossover``."""
+
+    scene: Annotated[
+        Scene, over(_FRICTIONLESS, "contact.friction", "wall.friction", "wall.normal_stiffness", "loads")
+    ] = Field(description="The slab whose states are kept; walls are twice as stiff as the disks.")
+    forces: Growing = Field(description="On it, in mean disk weights.")
+    tolerance: Positive = Field(description="Width of the brackets of its events, per force.")
+    sizes: Shapes = Field(description="Slabs of several depths: layers and disks in the lowest row.")
+    widths: Shapes = Field(description="Slabs of several widths.")
+    size_stiffnesses: Growing = Field(description="Normal stiffnesses of sizes and of widths.")
+    size_forces: Growing = Field(description="On them.")
+    size_tolerance: Positive = Field(description="Width of the brackets of events of all slabs but the first.")
+    stiffnesses: Growing = Field(description="Normal stiffnesses of the first slab.")
+    stiffness_forces: Growing = Field(description="On it at each of them.")
+    compared_stiffnesses: Growing = Field(description="Two of them, whose responses are compared (Sec. IV.C).")
+
+    @model_validator(mode="after")
+    def _check(self) -> Parameters:
+        if len(self.compared_stiffnesses) != 2 or not set(self.compared_stiffnesses) <= set(self.stiffnesses):
+            key = ("compared_stiffnesses",)
+            raise Problem("must be two of stiffnesses", key=key, value=list(self.compared_stiffnesses))
+        return self

@@ -1,0 +1,218 @@
+"""Loops of load and displacement, what they leave on the floor, what they lose, and which range ends first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
+
+from granular_response.plot import style
+from granular_response_paper.captions import Caption, of_scene
+
+from .parameters import Parameters
+
+#: How far from the load floor forces are shown (radii).
+REACH = 30.0
+#: Least part that is drawn on the logarithmic axes: what is below it is rounding, or none.
+LEAST = 1e-4
+#: What the events are called, and their markers.
+NAMES = {
+    "first_opening": ("first contact opens", "v"),
+    "linear_range": ("end of the linear range", "o"),
+    "reversible_range": ("end of the reversible range", "s"),
+}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``hysteresis_loops`` from ``curves`` and ``floor``, ``hysteresis_ranges`` from ``loops`` and ``events``."""
+    return {
+        "hysteresis_loops": _loops(datasets["curves"], datasets["floor"]),
+        "hysteresis_ranges": _ranges(datasets["loops"], datasets["events"]),
+    }
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    curves = datasets["curves"]
+    cases, one = looped(curves["polydispersity"].values, curves["friction"].values)
+    lattices = [parameters.cases[case] for case in cases]
+    most = max(case.realizations + case.surveyed for case in parameters.cases)
+    further = max(case.surveyed for case in parameters.cases)
+    survey = f", {further} of which the survey has simulated" if further else ""
+    part = f"{100.0 * parameters.left:g} %"
+    said = of_scene(parameters.base, friction=None, polydispersity=None)
+    return {
+        "hysteresis_loops": Caption(
+            "Not in the paper: a force on the top disk grows, falls to nothing and grows again, along paths of "
+            "equilibria. (a) Force against the displacement of the loaded disk in lattices; without friction all three "
+            "ways are one curve. (b) What is added to the floor forces under the lattice with "
+            f"µ = {parameters.cases[one].friction:g}: by the force, after it, and by it again.",
+            "Force against displacement: one line without friction, narrow loops with friction. Beside it floor forces "
+            "against position: loaded and loaded again lie on each other, and unloading leaves a small remainder.",
+            said | {"friction": [case.friction for case in lattices], "force": lattices[0].forces[-1]},
+        ),
+        "hysteresis_ranges": Caption(
+            "Not in the paper: what is irreversible. (a) Largest change of a floor force that a loop to F_ext and back "
+            f"leaves, per largest change under F_ext; dashed: {part}. (b) Energy that goes into sliding, and where "
+            "dynamics crosses the end of a branch, in that first loop and in the second one, per work of the first "
+            "loading. Means over realizations of packings with friction; what is less than the axis shows is drawn on "
+            "its end. (c) Forces up to which no contact near the load opens, the response at x = 0 is linear within "
+            f"1 %, and a loop leaves less than {part} on the floor: medians and extremes over up to {most} "
+            f"realizations{survey}. Open symbols with arrows: beyond the largest force in some of them.",
+            "Two double logarithmic panels with rising curves, and a panel with a row for each packing in which three "
+            "symbols mark forces: without friction the reversible range mostly has no end.",
+            said | {"friction": sorted({case.friction for case in parameters.cases})},
+        ),
+    }
+
+
+def looped(polydispersity: np.ndarray, friction: np.ndarray) -> tuple[list[int], int]:
+    """Cases whose loops are drawn, the lattices, and the one whose floor forces are: a lattice, least friction.
+
+    Where there are no lattices, all cases count.
+    """
+    lattices = np.flatnonzero(polydispersity == polydispersity.min())
+    rubbing = lattices[friction[lattices] > 0.0]
+    return lattices.tolist(), int(rubbing[np.argmin(friction[rubbing])] if rubbing.size else lattices[0])
+
+
+def _packing(delta: float) -> str:
+    return style.equals(style.POLYDISPERSITY, delta) if delta else "lattice"
+
+
+def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
+    """(a) loops of the lattices, (b) the floor under one of them."""
+    figure, ((loops, below),) = style.figure(1, 2, width="double", height=2.9)
+    friction = curves["friction"].values
+    cases, one = looped(curves["polydispersity"].values, friction)
+    for k, case in enumerate(cases):
+        look = style.line(k)
+        for branch in range(curves.sizes["branch"]):
+            x, load = (curves[name].isel(case=case, branch=branch).values for name in ("displacement", "load"))
+            again = {"linestyle": "none", "marker": style.MARKERS[k], "markersize": 2.6} if branch == 2 else {}
+            loops.plot(1e3 * x, load, **look | {"linestyle": "-", "linewidth": 1.0} | again)
+        at = curves["displacement"].isel(case=case, branch=0).values
+        top = curves["load"].isel(case=case, branch=0).values
+        loops.annotate(
+            style.equals(style.FRICTION, friction[case]),
+            (1e3 * np.nanmax(at), np.nanmax(top)),
+            (3, 0),
+            textcoords="offset points",
+            va="center",
+        )
+    loops.set(xlabel=rf"displacement of the loaded disk$\,/\,10^{{-3}}{style.RADIUS}$", ylabel=style.FORCE)
+    loops.set_xlim(0.0, 1.16e3 * float(np.nanmax(curves["displacement"].values[cases])))
+    loops.set_ylim(bottom=0.0)
+    handles = [
+        Line2D([], [], color=style.MUTED, linewidth=1.0),
+        Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=2.6),
+    ]
+    loops.legend(handles, ["loading, unloading", "loading again"], loc="lower right")
+    style.letter(loops, "a", place="above", text="lattices")
+    x, added = floor["x"].isel(case=one).values, floor["added"].isel(case=one).values
+    near = np.abs(x) <= REACH
+    for branch, label in enumerate(("loaded", "unloaded", "loaded again")):
+        dots = {"linestyle": "none", "marker": "o", "markersize": 2.6} if branch == 2 else {}
+        below.plot(x[near], added[branch, near], label=label, **style.line(branch) | dots)
+    below.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    below.set(xlabel=style.POSITION, ylabel=rf"floor force less that at rest$\,/\,{style.WEIGHT}$")
+    below.legend(loc="upper right")
+    style.letter(below, "b", place="above", text=f"the floor, {style.equals(style.FRICTION, friction[one])}")
+    return figure
+
+
+def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
+    """(a) what is left, (b) what is lost, by force; (c) where ranges end."""
+    figure, ((left, lost, ends),) = style.figure(1, 3, width=7.0, height=3.1, width_ratios=(1.0, 1.0, 1.15))
+    delta, friction = loops["polydispersity"].values, loops["friction"].values
+    spreads, frictions = sorted(set(delta)), sorted(set(friction))
+    first, again = loops["slid"] + loops["crossed"], loops["slid_again"] + loops["crossed_again"]
+    for case in range(loops.sizes["case"]):
+        if not friction[case]:
+            continue
+        force = loops["force"].isel(case=case).values
+        look = style.line(frictions.index(friction[case])) | {
+            "linestyle": style.LINE_STYLES[spreads.index(delta[case])],
+            "marker": style.MARKERS[frictions.index(friction[case])],
+            "markersize": 3.0,
+            "linewidth": 0.9,
+        }
+        left.plot(force, _shown(loops["floor_left"].isel(case=case)), **look)
+        for values, filled in ((first, True), (again, False)):
+            part = _shown((values / loops["work"]).isel(case=case))
+            lost.plot(force, part, **look | {"markerfacecolor": look["color"] if filled else "white"})
+    left.axhline(events.attrs["left"], color=style.BLACK, linewidth=0.7, linestyle=(0, (4, 2)))
+    for axes, label in ((left, "left on the floor, per change"), (lost, "lost, per work of the load")):
+        axes.set(xscale="log", yscale="log", ylim=(LEAST, 1.0), xlabel=style.FORCE, ylabel=label)
+        axes.xaxis.set_minor_formatter(NullFormatter())
+    materials = [
+        Line2D([], [], color=style.line(k)["color"], marker=style.MARKERS[k], markersize=3.0, linewidth=0.9)
+        for k, mu in enumerate(frictions)
+        if mu
+    ]
+    packings = [
+        Line2D([], [], color=style.MUTED, linestyle=style.LINE_STYLES[k], linewidth=0.9) for k in range(len(spreads))
+    ]
+    loop = [
+        Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=3.0, markerfacecolor=fill)
+        for fill in (style.MUTED, "white")
+    ]
+    style.letter(left, "a", place="above", text="after unloading")
+    style.letter(lost, "b", place="above", text="energy")
+    _ends(ends, events, delta, friction)
+    handles = [
+        Line2D([], [], color=style.COLOURS[k], marker=marker, linestyle="none", markersize=4.0)
+        for k, (_, marker) in enumerate(NAMES.values())
+    ]
+    texts = [text for text, _ in NAMES.values()]
+    rubbing = [style.equals(style.FRICTION, mu) for mu in frictions if mu]
+    names = [*rubbing, *(_packing(one) for one in spreads), "first loop", "second loop", *texts]
+    figure.legend([*materials, *packings, *loop, *handles], names, loc="outside lower center", ncols=5)
+    style.letter(ends, "c", place="above", text="ranges")
+    return figure
+
+
+def _shown(values: xr.DataArray) -> np.ndarray:
+    """(turn,) means over the realizations, no smaller than what is drawn."""
+    return np.maximum(values.mean("realization").values, LEAST)
+
+
+def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarray) -> None:
+    """A row for each case: medians over the realizations, from the smallest to the largest of them."""
+    last = float(events["low"].max())
+    first = min(float(events["high"].fillna(np.inf).min()), 3.0 * last)
+    for index, (name, (_, marker)) in enumerate(NAMES.items()):
+        for case in range(events.sizes["case"]):
+            one = events.sel(event=name).isel(case=case)
+            low, high = one["low"].values, one["high"].values
+            there = np.isfinite(low)
+            if not there.any():
+                continue
+            low, high = low[there], high[there]
+            row = case + 0.22 * (index - 1)
+            colour = style.COLOURS[index]
+            reached = np.isfinite(high)
+            middle = np.where(reached, 0.5 * (low + np.where(reached, high, low)), low)
+            axes.plot([middle.min(), middle.max()], [row, row], color=colour, linewidth=0.9, linestyle="-")
+            axes.plot(
+                [np.median(middle)], [row], color=colour, marker=marker, markersize=4.0, linestyle="none",
+                markerfacecolor=colour if reached.all() else "white",
+            )  # fmt: skip
+            if not reached.all():
+                axes.annotate(
+                    "", (1.0, row), (middle.max(), row), xycoords=("axes fraction", "data"), textcoords="data",
+                    arrowprops={"arrowstyle": "->", "color": colour, "linewidth": 0.9},
+                )  # fmt: skip
+    names = [f"{_packing(d)}, {style.equals(style.FRICTION, mu)}" for d, mu in zip(delta, friction, strict=True)]
+    axes.set(xlabel=style.FORCE, ylim=(len(names) - 0.4, -0.6))
+    if last > 0.0:
+        axes.set(xscale="log", xlim=(max(0.5 * first, 2e-3 * last), 3.0 * last))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_yticks(range(len(names)), names)
+    axes.tick_params(axis="y", length=0.0, which="both")

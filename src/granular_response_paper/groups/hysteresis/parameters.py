@@ -1,0 +1,57 @@
+"""Parameters of loading and unloading."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Count, Description, Fraction, Part, Positive, Ratio
+from granular_response_paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, over, some
+
+#: Keys of the scenes that cases decide.
+OF_CASES = ("packing.polydispersity", "packing.realization", "contact.friction", "loads")
+
+
+class Case(Description):
+    """Packings of one material."""
+
+    polydispersity: Fraction = Field(description="delta.")
+    friction: Ratio = Field(description="Between disks.")
+    realizations: Count = Field(1, description="One is all there are of a lattice.")
+    surveyed: Annotated[int, Field(strict=True, ge=0)] = Field(
+        0, description="Further realizations, that the survey simulates."
+    )
+    forces: Growing = Field(description="At which the load turns, in mean disk weights; the first one counts as small.")
+    increments: Count = Field(description="States from each of these forces to the next one.")
+
+
+class Parameters(SurveyedGroup):
+    """Section ``hysteresis``."""
+
+    scene: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of the lattices.")
+    disordered: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of all others.")
+    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
+    left: Part = Field(
+        description="A loop is reversible if it leaves no floor force changed by more than this part of the largest "
+        "change under the load."
+    )
+    width: Positive = Field(description="w of the Gaussian at x = 0 under disordered packings, in radii.")
+    tolerance: Part = Field(description="Width of the bracket of the reversible range, as a part of the force.")
+
+    @property
+    def surveyed(self) -> bool:
+        return any(case.surveyed for case in self.cases)
+
+    def of(self, case: Case, realization: int) -> Scene:
+        """The scene of one packing."""
+        base = self.disordered if case.polydispersity else self.scene
+        return base.updated(
+            {
+                "protocol.method": self.method,
+                "packing.polydispersity": case.polydispersity,
+                "packing.realization": realization,
+                "contact.friction": case.friction,
+            }
+        )

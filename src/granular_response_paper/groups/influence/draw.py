@@ -1,0 +1,141 @@
+"""What every disk sets in motion on the floor, and how a force and its halves differ with distance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.collections import PatchCollection
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from granular_response.plot import style
+from granular_response_paper.captions import Caption, lettered, of_scene
+
+from .parameters import Parameters
+
+#: Half the width of the maps (radii).
+REACH = 30.0
+#: End of the colour scale: a little below the least there is, 1 where walls bear nothing.
+LEAST = 0.8
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``influence_map`` from the dataset ``packings``, ``influence_saint_venant`` from ``saint_venant``."""
+    return {"influence_map": _maps(datasets["packings"]), "influence_saint_venant": _decay(datasets["saint_venant"])}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    most = max(case.realizations for case in parameters.cases)
+    maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
+    panels = lettered(f"δ = {case.polydispersity:g}, µ = {case.friction:g}" for case in maps)
+    said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
+    low, high = parameters.fitted
+    return {
+        "influence_map": Caption(
+            "Not in the paper: how much force every disk sets in motion on the floor. A small vertical force on a disk "
+            "changes the forces on the floor; the colour is the sum of their absolute changes per force, 1 where no "
+            "floor disk is relieved. Exact in the limit of small forces, at rest under gravity, contacts at the limit "
+            "of Coulomb sticking; the walls have the friction of the disks. Disks that bear nothing are white. "
+            f"{panels}.",
+            "The same slab with and without friction, its disks coloured by the force that each sets in motion: all "
+            "alike with friction, in bright wedges without.",
+            said,
+        ),
+        "influence_saint_venant": Caption(
+            "Saint-Venant's principle, by which Sec. VI explains that superposition holds. (a) Changes of the floor "
+            "forces by a small force on a disk, and by two halves of it on its neighbours in the row: their absolute "
+            "difference summed over the floor disks, against the height of the disk over the distance of the halves; "
+            f"mean and standard deviation over {most} realizations. (b) The power with which it falls between {low:g} "
+            f"and {high:g} distances, with 95 % intervals of the mean; of a lattice the range over the rows fitted.",
+            "Falling lines in a double logarithmic panel, steepest for the lattices, flat for disorder without "
+            "friction; beside it the powers as symbols with error bars, two for the frictionless lattice.",
+            said,
+        ),
+    }
+
+
+def _name(data: xr.Dataset, case: int) -> str:
+    delta = float(data["polydispersity"][case])
+    packing = f"$\\delta = {delta:g}$" if delta else "lattice"
+    return f"{packing}, $\\mu = {float(data['friction'][case]):g}$"
+
+
+def compared(polydispersity: np.ndarray) -> list[int]:
+    """Cases of the maps: those with the polydispersity of the last one, with and without friction."""
+    return np.flatnonzero(polydispersity == polydispersity[-1]).tolist()
+
+
+def _maps(data: xr.Dataset) -> Figure:
+    """A panel for each compared case; disks that bear nothing stay white."""
+    cases = compared(data["polydispersity"].values)
+    figure, (panels,) = style.figure(1, len(cases), width="double", height=2.4, sharey=True)
+    # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
+    largest = float(np.nanquantile(data["total"].values[cases], 0.995))
+    for panel, (case, axes) in enumerate(zip(cases, panels, strict=True)):
+        one = data.isel(case=case)
+        x, z = one["position"].values.T
+        shown = np.flatnonzero(np.abs(x) <= REACH)
+        disks = [Circle((x[k], z[k]), one["radius"].values[k]) for k in shown]
+        drawn = PatchCollection(disks, cmap=style.SEQUENTIAL, edgecolor="none")
+        drawn.set_array(np.ma.masked_invalid(one["total"].values[shown]))
+        drawn.set_norm(LogNorm(LEAST, max(largest, 2.0 * LEAST)))
+        axes.add_collection(drawn)
+        axes.axhline(0.0, color=style.BLACK, linewidth=1.0)
+        axes.set(xlim=(-REACH, REACH), ylim=(-1.0, z.max() + 1.5), aspect="equal", xlabel=style.POSITION)
+        style.letter(axes, "abcdefgh"[panel], place="above", text=_name(data, case))
+    panels[0].set_ylabel(style.HEIGHT)
+    ticks = [t for t in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if t <= largest]
+    label = "absolute forces on the floor\nper unit force on the disk"
+    bar = figure.colorbar(drawn, ax=panels, label=label, shrink=0.8)
+    bar.set_ticks(ticks, labels=[f"{t:g}" for t in ticks])
+    bar.minorticks_off()
+    return figure
+
+
+def _decay(data: xr.Dataset) -> Figure:
+    """(a) the difference against height over separation, (b) its power for each case."""
+    figure, ((falls, powers),) = style.figure(1, 2, width="double", height=3.2)
+    cases = range(data.sizes["case"])
+    for case in cases:
+        one = data.isel(case=case, separation=0)
+        ratio = (one["height"] / (one["spacing"] * float(one["separation"]))).mean("realization").values
+        each = one["difference"].values
+        each = each[np.isfinite(each).any(axis=1)]
+        if not len(each):  # no row is as far from the walls as the margin asks
+            continue
+        mean = each.mean(axis=0)
+        look = style.marked_line(case) | {"markersize": 3.5}
+        falls.plot(ratio, mean, label=_name(data, case), **look)
+        if len(each) > 1:
+            spread = each.std(axis=0, ddof=1)
+            falls.fill_between(ratio, mean - spread, mean + spread, color=look["color"], alpha=0.15, linewidth=0.0)
+    ends = np.array(data.attrs["fitted"], float)
+    falls.plot(ends, 0.5 * (ends / ends[0]) ** -2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
+    falls.annotate("elastic: power 2", (ends[0], 0.5), (2, 3), textcoords="offset points")
+    style.logarithmic(falls)
+    falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
+    falls.legend(loc="lower left")
+    style.letter(falls, "a", place="above", text="a force and its two halves")
+    for case in cases:
+        each = data["exponent"].isel(case=case, separation=0).values
+        each = each[np.isfinite(each[:, 0])]
+        if not len(each):
+            continue
+        mean = each[:, 0].mean()
+        if len(each) > 1:
+            error = np.full((2, 1), 1.96 * each[:, 0].std(ddof=1) / np.sqrt(len(each)))
+        else:  # a lattice: the range over the fits
+            error = np.array([[mean - each.min()], [each.max() - mean]])
+        look = style.marked_line(case) | {"linestyle": "none", "markersize": 5}
+        powers.errorbar([case], [mean], error, capsize=3, **look)
+    powers.axhline(2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
+    powers.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    powers.set_xticks(list(cases), [_name(data, case) for case in cases], rotation=30, ha="right")
+    powers.set(ylabel="power of the height")
+    style.letter(powers, "b", place="above", text="how fast it falls")
+    return figure

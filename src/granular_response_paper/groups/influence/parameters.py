@@ -1,0 +1,42 @@
+"""Parameters of the influence of every disk on the floor."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import UNIT_LOAD, Counts, Positives, SceneGroup, over, some
+
+
+class Case(Description):
+    """Packings of one material."""
+
+    polydispersity: Fraction = Field(description="delta.")
+    friction: Ratio = Field(description="Between disks and of the walls.")
+    realizations: Count = Field(1, description="One is all there are of a lattice.")
+
+
+class Parameters(SceneGroup):
+    """Section ``influence``."""
+
+    scene: Annotated[
+        Scene,
+        over(UNIT_LOAD, "packing.polydispersity", "packing.realization", "contact.friction", "wall.friction", "loads"),
+    ] = Field(description="Base scene.")
+    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
+    separations: Counts = Field(description="Of the two halves of a load from its disk, in places of the row.")
+    margin: Positive = Field(description="From the side walls, within which no load is looked at, in radii.")
+    fitted: Positives = Field(description="Least and largest height over distance of the halves that are fitted.")
+
+    @model_validator(mode="after")
+    def _check_fitted(self) -> Parameters:
+        if len(self.fitted) != 2 or self.fitted[0] >= self.fitted[1]:
+            raise Problem("must be two growing numbers", key=("fitted",), value=list(self.fitted))
+        half = 0.5 * self.scene.packing.build().width
+        if self.margin >= half:
+            raise Problem(f"must be below {half:g}, half the width of the slab", key=("margin",), value=self.margin)
+        return self

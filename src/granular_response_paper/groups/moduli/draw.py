@@ -1,0 +1,236 @@
+"""Moduli of packings against their coordination, measured and predicted responses, and sizes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from granular_response.plot import style
+from granular_response_paper.captions import Caption, of_scene, values
+
+from .parameters import Parameters
+
+#: Names of the solids in keys.
+FOLLOWING = {"affine": "affine", "suppressed": "relaxed, no rotations", "free": "relaxed"}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``moduli_packings``, ``moduli_response`` and ``moduli_size`` from ``packings``, ``moduli_lattice`` from
+    ``lattice``."""
+    packings = datasets["packings"]
+    return {
+        "moduli_lattice": _lattice(datasets["lattice"]),
+        "moduli_packings": _moduli(packings),
+        "moduli_response": _responses(packings),
+        "moduli_size": _sizes(packings),
+    }
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    packing = f"slabs with periodic sides, {parameters.disks_per_layer} disks in a row for each layer"
+    said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=packing)
+    group = parameters.lattice
+    most = [max(map(sum, zip(case.realizations, case.further, strict=True))) for case in parameters.cases]
+    surveyed: Counter[int] = Counter()
+    for case in parameters.cases:
+        surveyed.update(dict(zip(case.layers, case.further, strict=True)))
+    stored = [f"{count} of {layers} layers" for layers, count in sorted(surveyed.items()) if count]
+    survey = f" Packings of the survey, which the pipeline reads: {', '.join(stored)}." if stored else ""
+    edges = " Black edges: at least half of the packings are the survey's." if stored else ""
+    ensemble = f"{min(most)} to {max(most)}" if min(most) != max(most) else f"{most[0]}"
+    tolerances = values([100.0 * tolerance for tolerance in parameters.tolerances])
+    lattice = {"wall_friction": 0.0, "packing": None, "stiffness_ratio": None}
+    return {
+        "moduli_packings": Caption(
+            "Not in the paper: moduli of disordered packings over k_N, from the change of their contact forces under "
+            "uniform strain, against their contacts per disk (those of disks that bear something; the more layers, the "
+            "more contacts). (a) Bulk and (b) shear modulus of the isotropic solid nearest to them, (c) horizontal "
+            "over vertical modulus. Open symbols: every disk moves with the strain, and none turns; filled: disks move "
+            "and turn as equilibrium wants. Bars are standard deviations over realizations, up to "
+            f"{ensemble} of each size.{survey}",
+            "Three panels of symbols against the number of contacts; filled symbols lie below open ones, most of all "
+            "for the shear modulus, and the horizontal modulus below the vertical one but for large polydispersity.",
+            said,
+        ),
+        "moduli_response": Caption(
+            "Response of the floor to a small vertical force on the top, mean over all disks of the top row "
+            f"(smoothed, w = {parameters.width:g}; band: standard deviation over packings), and that of elastic slabs "
+            "with the moduli measured by straining these packings: no parameter is fitted. Exact in the limit of small "
+            "forces; contacts at the limit of Coulomb stick. (a) to (f) packings as named. The floor has the friction "
+            f"of the disks.{survey}",
+            "Six panels of single peaks; with friction the measured curve and those of the slabs lie on each other, "
+            "without friction they do not.",
+            said,
+        ),
+        "moduli_size": Caption(
+            "Largest difference of the response to the slab of the packing's own moduli, against the number of layers, "
+            "with 95 % intervals of the mean over packings: (a) of one load, smoothed over "
+            f"{parameters.wide:.3g} of the height; (b) of the mean over the loads of one packing. Grey lines: "
+            f"{tolerances} %.{edges}",
+            "Double logarithmic panels: falling lines for packings with friction, flat ones near and above 1 without.",
+            said,
+        ),
+        "moduli_lattice": Caption(
+            "Moduli a, b, c, d of eq. (6) over k_N of lattices with free rotations, measured (symbols) and in closed "
+            "form (lines): horizontal contacts (a) closed and (b) open. (c) k_T/k_N at which the response turns from "
+            "two peaks to one without horizontal contacts: by the closed form (lines), by the measured moduli (symbols "
+            "at 0) in a half plane and in a slab on a smooth floor, with rotations free and suppressed, and in "
+            "lattices under a small force (diamonds), which tend to the slab with free rotations.",
+            "Symbols on lines in two panels; in the third one four horizontal lines and diamonds that rise towards "
+            "the second lowest as the number of layers grows.",
+            of_scene(parameters.base, friction=group.friction, **lattice),
+        ),
+    }
+
+
+def _name(data: xr.Dataset, case: int) -> str:
+    return (
+        f"${style.POLYDISPERSITY} = {float(data['polydispersity'][case]):g}$, "
+        f"${style.FRICTION} = {float(data['friction'][case]):g}$"
+    )
+
+
+def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
+    """Over realizations; no spread of fewer than two."""
+    count = values.notnull().sum("realization")
+    return values.mean("realization").values, values.std("realization", ddof=1).where(count > 1, 0.0).values
+
+
+def _moduli(data: xr.Dataset) -> Figure:
+    """(a) bulk and (b) shear modulus against coordination, affine and relaxed; (c) horizontal over vertical."""
+    figure, ((bulk, shear, shape),) = style.figure(1, 3, width="double", height=3.2)
+    a, b, c, d = (data["moduli"].sel(modulus=name) for name in "abcd")
+    panels = ((bulk, 0.25 * (a + b + 2.0 * c)), (shear, 0.125 * (a + b - 2.0 * c) + 0.25 * d), (shape, a / b))
+    for axes, modulus in panels:
+        for case in range(data.sizes["case"]):
+            across, beside = _mean_and_spread(data["coordination"].isel(case=case))
+            look = style.marked_line(case) | {"markeredgewidth": 0.8, "markersize": 4.5, "capsize": 2, "linewidth": 0.7}
+            for following, filled in (("affine", False), ("free", True)):
+                mean, spread = _mean_and_spread(modulus.isel(case=case).sel(following=following))
+                face = look["color"] if filled else "white"
+                axes.errorbar(across, mean, spread, beside, markerfacecolor=face, markeredgecolor=look["color"], **look)
+        axes.set(xlabel="contacts per disk", ylim=(0.0, None))
+    bulk.set_ylabel(r"bulk modulus $(a + b + 2c)\,/\,4k_N$")
+    shear.set_ylabel(r"shear modulus $(a + b - 2c + 2d)\,/\,8k_N$")
+    shape.set_ylabel(r"$a\,/\,b$, horizontal over vertical")
+    shape.axhline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
+    style.letters([bulk, shear, shape], place="above")
+    keys = [
+        Line2D([], [], **(style.marked_line(case) | {"linestyle": "none", "markersize": 4.5}))
+        for case in range(data.sizes["case"])
+    ]
+    plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 4.5}
+    keys += [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
+    names = [*(_name(data, case) for case in range(data.sizes["case"])), FOLLOWING["affine"], FOLLOWING["free"]]
+    figure.legend(keys, names, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _responses(data: xr.Dataset) -> Figure:
+    """Mean response of the largest packings of each case over that of the slabs of their moduli."""
+    cases = range(data.sizes["case"])
+    columns = 3
+    rows = -(-len(cases) // columns)
+    figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharex=True, sharey=True)
+    place = data["place"].values
+    for case, axes in zip(cases, panels.ravel(), strict=False):
+        one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])), smoothing=0)
+        mean, spread = _mean_and_spread(one["response"])
+        axes.fill_between(place, mean - spread, mean + spread, color=style.COLOURS[0], alpha=0.2, linewidth=0.0)
+        axes.plot(place, mean, **style.line(0), label="packings")
+        for solid, look, label in (
+            ("free", {"color": style.BLACK, "linestyle": (0, (4, 2))}, "slab of their moduli"),
+            ("isotropic", {"color": style.COLOURS[1], "linestyle": (0, (1.2, 1.2))}, "isotropic slab"),
+        ):
+            axes.plot(place, one["predicted"].sel(solid=solid).mean("realization"), label=label, **look)
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+        layers = float(one["layers"])
+        style.letter(axes, "abcdefgh"[case], place="above", text=f"{_name(data, case)}, {layers:g} layers")
+    for axes in panels[:, 0]:
+        axes.set_ylabel(style.PRESSURE)
+    for axes in panels[-1]:
+        axes.set(xlabel=style.SCALED_POSITION, xlim=(place[0], place[-1]))
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return figure
+
+
+def _sizes(data: xr.Dataset) -> Figure:
+    """Differences to the slab against the number of layers: (a) of one load, (b) of the mean over loads."""
+    figure, (panels,) = style.figure(1, 2, width="double", height=3.3, sharey=True)
+    smoothing = 1, 0  # a load by itself is compared on the scale of the slab, not of the disks
+    both = data["single"], data["difference"].sel(solid="free")
+    for axes, apart, width in zip(panels, both, smoothing, strict=True):
+        for case in range(data.sizes["case"]):
+            mean, spread = _mean_and_spread(apart.isel(case=case, smoothing=width))
+            count = np.maximum(apart.isel(case=case, smoothing=width).notnull().sum("realization").values, 1)
+            look = style.marked_line(case) | {"markersize": 4, "capsize": 2.5}
+            layers = data["layers"][case]
+            axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=_name(data, case), **look)
+            stored = data["surveyed"].values[case] >= 0.5 * count
+            edge = {"linestyle": "none", "markerfacecolor": "none", "zorder": 3}
+            edge |= {"markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
+            axes.plot(layers[stored], mean[stored], **style.marked_line(case) | {"markersize": 4} | edge)
+        for tolerance in data["tolerance"].values:
+            axes.axhline(tolerance, color=style.FAINT, linewidth=0.8, zorder=0)
+        sizes = np.unique(data["layers"].values[np.isfinite(data["layers"].values)])
+        axes.set(xscale="log", yscale="log", xlabel="layers")
+        axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
+        axes.minorticks_off()
+    panels[0].set_ylabel("largest difference / largest pressure")
+    w = [str(name) for name in data["smoothing"].values]
+    style.letter(panels[0], "a", place="above", text=f"one load, $w$ = {w[smoothing[0]]}")
+    style.letter(panels[1], "b", place="above", text=f"mean over loads, $w$ = {w[smoothing[1]]}")
+    handles, labels = panels[1].get_legend_handles_labels()
+    figure.legend([handle[0] for handle in handles], labels, loc="outside lower center", ncols=3)
+    return figure
+
+
+def _lattice(data: xr.Dataset) -> Figure:
+    """Measured moduli over the closed form, (a) closed and (b) open horizontal contacts; (c) where two peaks end."""
+    figure, ((closed, opened, turn),) = style.figure(1, 3, width="double", height=3.4)
+    ratio = data["stiffness_ratio"].values
+    for axes, contacts in ((closed, "closed"), (opened, "open")):
+        one = data.sel(contacts=contacts)
+        for index, name in enumerate("abcd"):
+            # b stands around a, which it is equal to where all contacts are closed
+            around = {"markersize": 6.5, "markerfacecolor": "none", "markeredgewidth": 0.9} if name == "b" else {}
+            look = style.marked_line(index) | {"linestyle": "none", "markersize": 3.5} | around
+            axes.plot(ratio, one["moduli"].sel(following="free", modulus=name), label=f"${name}$", **look)
+            axes.plot(ratio, one["closed_form"].sel(rotations="free", modulus=name), **style.line(index))
+        axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylim=(0.0, None))
+    closed.set_ylabel("moduli $/\\,k_N$")
+    for index, body in enumerate(data["body"].values):
+        for rotations, filled in (("free", True), ("suppressed", False)):
+            one = data.sel(body=body, rotations=rotations)
+            colour = style.COLOURS[index]
+            expected = {"color": colour, "linewidth": 0.7, "linestyle": style.LINE_STYLES[index]}
+            turn.axhline(float(one["turn_closed_form"]), **expected)
+            face = colour if filled else "white"
+            label = f"{body}, {'rotations' if filled else 'no rotations'}"
+            dot = style.marked_line(index) | {"linestyle": "none", "markersize": 5, "markeredgewidth": 0.8}
+            turn.plot([0.0], [float(one["turn"])], markerfacecolor=face, markeredgecolor=colour, label=label, **dot)
+    look = style.marked_line(3) | {"linestyle": "none", "markersize": 4.5}
+    turn.plot(1.0 / data["layers"].values, data["turn_response"], label="lattices under a small force", **look)
+    steps = np.append(0.0, 1.0 / data["layers"].values.max())
+    ends = [
+        float(data["turn_limit"].sel(estimate="line")),
+        float(data["turn_response"][int(np.argmax(data["layers"].values))]),
+    ]
+    turn.plot(steps, ends, color=look["color"], linewidth=0.7, linestyle=(0, (1.2, 1.2)))
+    turn.set(xlabel="1 / layers", ylabel=f"${style.STIFFNESS_RATIO}$ where two peaks end")
+    turn.set_xlim(-0.006, None)
+    style.letter(closed, "a", place="above", text="horizontal contacts closed")
+    style.letter(opened, "b", place="above", text="open")
+    style.letter(turn, "c", place="above")
+    keys = [(key, name) for axes in (opened, turn) for key, name in zip(*axes.get_legend_handles_labels(), strict=True)]
+    figure.legend(*zip(*keys, strict=True), loc="outside lower center", ncols=3)
+    return figure

@@ -1,0 +1,499 @@
+"""Elastic moduli of packings from their own stiffness, and the response of the elastic slab that they predict.
+
+A packing at rest is strained as a whole (``solve.strain``): disks follow the strain (affine), or relax with rotations
+suppressed or free. The last moduli are those of the packing, and the elastic slab (``theory.slab``) of the same height
+and width with them has a response to a small force on its top with nothing to fit. The packing's own response to small
+forces on each disk of the top row is exact in the limit (``solve.small_loads``); periodic sides make all of them
+comparable. ``packings`` has both and what they differ by: for single loads, and for the mean over the loads of a
+packing. ``lattice`` has the moduli of lattices beside the closed form, and where the response turns from one peak to
+two by the closed form's moduli, by measured ones, and in lattices themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe.floor import floor_disks, smoothed_response
+from granular_response.scene import Packing, Scene
+from granular_response.scene.lattice import TOUCHING_LARGEST
+from granular_response.solve import Problem, influence, strained
+from granular_response.solve.small_loads import at_limit
+from granular_response.solve.strain import FOLLOWING
+from granular_response.state import FloatArray, State
+from granular_response.store.result import LENGTH, variable
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import map_tasks
+from granular_response.theory import crossover, lattice
+from granular_response.theory.crossover import Body
+from granular_response.theory.lattice import Rotations, Springs
+from granular_response.theory.moduli import Moduli
+from granular_response.theory.slab import Floor, Slab
+from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.moduli.parameters import Parameters
+from granular_response_paper.survey.packings import Key, Layout, chosen
+
+#: Places at which responses are compared, in heights of the slab from the load.
+PLACES = np.linspace(-1.5, 1.5, 121)
+
+#: Disks per row of a lattice that is strained: by symmetry all of a row do the same.
+NARROW = 6
+
+#: What slabs are made of: moduli as disks follow the strain, and the isotropic solid nearest to the last ones.
+SOLIDS = (*FOLLOWING, "isotropic")
+
+#: Polynomials in 1 / layers of :func:`at_infinity`.
+ESTIMATES = ("line", "parabola")
+
+#: How many times the largest size a power is believed at most.
+FARTHEST = 100.0
+
+#: Bodies and rotations of the theory's turns from two peaks to one.
+BODIES: tuple[Body, ...] = ("half plane", "smooth floor")
+ROTATIONS: tuple[Rotations, ...] = ("free", "suppressed")
+
+
+def symmetric(matrix: FloatArray) -> FloatArray:
+    """(..., 4) moduli a, b, c, d of stress per strain (..., 3, 3): what a solid that mirrors itself has of it."""
+    mixed = 0.5 * (matrix[..., 0, 1] + matrix[..., 1, 0])
+    return np.stack([matrix[..., 0, 0], matrix[..., 1, 1], mixed, matrix[..., 2, 2]], axis=-1)
+
+
+def nearest_isotropic(moduli: FloatArray) -> FloatArray:
+    """(4,) moduli of the isotropic solid with the mean energy that ``moduli`` (4,) have over all directions."""
+    a, b, c, d = moduli
+    bulk, shear = 0.25 * (a + b + 2.0 * c), 0.125 * (a + b - 2.0 * c) + 0.25 * d
+    return np.array([bulk + shear, bulk + shear, bulk - shear, 2.0 * shear])
+
+
+@dataclass(frozen=True)
+class Task:
+    """One disordered packing."""
+
+    scene: Scene
+    margin: float
+    width: float
+    wide: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    height: float  #: of the slab: distance of the rows times their number
+    coordination: float  #: contacts per disk of those that bear, floor included
+    at_limit: float  #: number of: contacts taken as sticking though at the Coulomb limit
+    matrices: FloatArray  #: (following, 3, 3) stress per strain over k_N
+    springs_alone: FloatArray  #: (3, 3) the free one without the turn of contacts under the forces they bear
+    response: FloatArray  #: (width, place) mean over the loads, times height
+    predicted: FloatArray  #: (solid, width, place) of the slab of each of SOLIDS, times height; nan without one
+    single: FloatArray  #: (width,) largest difference of one load to the prediction per its peak, mean over the loads
+    difference: FloatArray  #: (solid, width) the same of the mean over the loads
+
+
+_PLACES = ("smoothing", "place")
+#: How the survey stores them.
+STORED = Layout(
+    Outcome,
+    {
+        "polydispersity": "polydispersity",
+        "friction": "friction between disks and of the floor",
+        "layers": "number of rows",
+        "realization": "realization of the disorder",
+    },
+    {
+        "height": ((), f"height of the slab {LENGTH}"),
+        "coordination": ((), "contacts per disk that bears something"),
+        "at_limit": ((), "contacts at the Coulomb limit, taken to stick"),
+        "matrices": (("following", "stress", "strain"), "stress per strain over k_N"),
+        "springs_alone": (("stress", "strain"), "the last of these without the forces that contacts bear at rest"),
+        "response": (_PLACES, "mean floor pressure times height per force"),
+        "predicted": (("solid", *_PLACES), "the same of elastic slabs"),
+        "single": (("smoothing",), "largest difference of one load to the slab per its largest pressure, mean"),
+        "difference": (("solid", "smoothing"), "largest difference of the mean over loads per the same"),
+    },
+)
+
+
+def compute(task: Task) -> Outcome:
+    """Raises what ``rest_state`` raises."""
+    problem = Problem.from_scene(task.scene)
+    rest = rest_state(problem)
+    packing, stiffness = problem.packing, problem.stiffness
+    answers = [strained(problem, rest, how, margin=task.margin) for how in FOLLOWING]
+    alone = strained(problem, rest, "free", margin=task.margin, prestress=False)
+    matrices = np.stack([answer.moduli for answer in answers]) / stiffness
+    height = slab_height(rest, packing)
+    widths = np.array([task.width, task.wide * height])
+    floor: Floor = "rough" if problem.wall_friction else "smooth"
+    each = responses(problem, rest, height, widths)
+    mean = each.mean(axis=0)
+    own = symmetric(matrices[-1])
+    solids = [*(symmetric(m) for m in matrices), nearest_isotropic(own)]
+    predicted = np.stack([prediction(solid, height, packing.width, floor, widths) for solid in solids])
+    return Outcome(
+        height, coordination(rest), at_limit(problem, rest), matrices, alone.moduli / stiffness, mean, predicted,
+        apart(each, predicted[SOLIDS.index("free")]).mean(axis=0), apart(mean, predicted),
+    )  # fmt: skip
+
+
+def slab_height(rest: State, packing: Packing) -> float:
+    """Of the elastic slab: distance of rows times their number (``sqrt(3) layers`` in a lattice of radius 1)."""
+    z, rows = rest.position[:, 1], int(packing.row.max())
+    return float((z[packing.row == rows].mean() - z[packing.row == 0].mean()) * (rows + 1) / rows)
+
+
+def coordination(rest: State) -> float:
+    """Mean number of contacts of the disks that bear something."""
+    count = rest.contact_count()
+    return float(count[count >= 2].mean())
+
+
+def responses(problem: Problem, rest: State, height: float, widths: FloatArray) -> FloatArray:
+    """(load, width, place) smoothed floor responses to small forces on the disks of the top row, times height."""
+    packing = problem.packing
+    disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
+    top = np.flatnonzero((packing.row == packing.row.max()) & (rest.contact_count() >= 2))
+    found = -influence(problem, rest, disks, sliding="stick")[:, top, 1]
+    period = packing.width
+    result = []
+    for k, disk in enumerate(top):
+        x = rest.position[disks, 0] - rest.position[disk, 0]
+        x -= period * np.round(x / period)
+        around = np.concatenate([x - period, x, x + period])
+        each = [smoothed_response(PLACES * height, around, np.tile(found[:, k], 3), width) for width in widths]
+        result.append(np.stack(each) * height)
+    return np.stack(result)
+
+
+def prediction(moduli: FloatArray, height: float, period: float, floor: Floor, widths: FloatArray) -> FloatArray:
+    """(width, place) what :func:`responses` are in the elastic slab; nan for moduli (4,) of no stable solid.
+
+    With a force half-way between smooth walls all is as with periodic sides: mirror images take the place of copies.
+    """
+    try:
+        slab = Slab(height, Moduli(*moduli), floor, period)
+    except ValueError:
+        return np.full((len(widths), len(PLACES)), np.nan)
+    x = PLACES * height
+    x = x - period * np.round(x / period)
+    # the Gaussian of a smoothed response has a standard deviation of w / sqrt(2)
+    return np.stack([-height * slab.stress(x, 0.0, 1.0, width / np.sqrt(2.0))[1] for width in widths])
+
+
+def apart(found: FloatArray, predicted: FloatArray) -> FloatArray:
+    """(...) largest difference over the places of two (..., place) per largest prediction."""
+    return np.abs(found - predicted).max(axis=-1) / predicted.max(axis=-1)
+
+
+@dataclass(frozen=True)
+class LatticeTask:
+    scene: Scene
+    margin: float
+    responds: bool  #: whether its response, and not its moduli, is asked for
+
+
+def lattice_answer(task: LatticeTask) -> FloatArray:
+    """(following, 4) moduli over k_N, or the second difference of the response at the middle, per largest response."""
+    problem = Problem.from_scene(task.scene)
+    rest = rest_state(problem)
+    if task.responds:
+        return middle_curvature(problem, rest)
+    found = [symmetric(strained(problem, rest, how, margin=task.margin, prestress=False).moduli) for how in FOLLOWING]
+    return np.stack(found) / problem.stiffness
+
+
+def middle_curvature(problem: Problem, rest: State) -> FloatArray:
+    """() second difference of the response on the floor disks beside the one below the load, per largest response."""
+    packing = problem.packing
+    disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
+    top = packing.n - packing.row_count[-1] + packing.row_count[-1] // 2
+    found = -influence(problem, rest, disks, sliding="stick")[:, top, 1]
+    below = int(np.argmin(np.abs(rest.position[disks, 0] - rest.position[top, 0])))
+    return np.asarray((found[below - 1] - 2.0 * found[below] + found[below + 1]) / found.max())
+
+
+def root(x: FloatArray, y: FloatArray) -> float:
+    """Where ``y`` changes its sign first, on the cubic through the four points around it; nan where it does not."""
+    change = np.flatnonzero(np.sign(y[1:]) != np.sign(y[:-1]))
+    if not change.size:
+        return float("nan")
+    first = int(np.clip(change[0] - 1, 0, max(len(x) - 4, 0)))
+    part = slice(first, first + 4)
+    # x as a function of y: monotonous where a sign changes once
+    u, v = y[part], x[part]
+    return float(sum(v[i] * np.prod([-u[j] / (u[i] - u[j]) for j in range(len(u)) if j != i]) for i in range(len(u))))
+
+
+def at_infinity(layers: FloatArray, values: FloatArray) -> FloatArray:
+    """(estimate,) what ``values`` (size,) tend to: a line in 1 / layers through the two largest, or a parabola.
+
+    NaN where there are not as many.
+    """
+    order = np.argsort(-layers)
+    result = np.full(len(ESTIMATES), np.nan)
+    for k in range(len(ESTIMATES)):
+        use = order[: k + 2]
+        if len(use) == k + 2:
+            result[k] = np.polyfit(1.0 / layers[use], values[use], k + 1)[-1]
+    return result
+
+
+def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, draws: int, seed: int) -> FloatArray:
+    """(tolerance, 3) layers from which on the difference is below a tolerance, and the 95 % interval of that.
+
+    A power of the number of ``layers`` (size,) goes through the means of ``difference`` (size, realization); the
+    interval is that of ``draws`` bootstrap draws over the realizations of each size. Infinite beyond ``FARTHEST`` times
+    the largest size, and where the power does not fall; all nan with less than two sizes of three realizations.
+    """
+    each = [one[np.isfinite(one)] for one in difference]
+    use = [k for k, one in enumerate(each) if one.size >= 3]
+    if len(use) < 2:
+        return np.full((len(tolerances), 3), np.nan)
+    generator = np.random.default_rng(seed)
+    drawn = [
+        np.concatenate([[each[k].mean()], each[k][generator.integers(0, each[k].size, (draws, each[k].size))].mean(1)])
+        for k in use
+    ]
+    logarithm = np.log(layers[use])
+    slope, offset = np.polyfit(logarithm, np.log(np.stack(drawn)), 1)
+    # logarithm of the size, at most that of FARTHEST, beyond which it counts as infinite; flat is infinite too
+    farthest = np.log(FARTHEST * layers[use].max())
+    flat = slope > -1e-2
+    place = np.where(flat, np.inf, (np.log(tolerances)[:, None] - offset) / np.where(flat, -1.0, slope))
+    size = np.where(place > farthest, np.inf, np.exp(np.minimum(place, farthest)))
+    low, high = np.quantile(size[:, 1:], [0.025, 0.975], axis=1, method="nearest")
+    return np.stack([size[:, 0], low, high], axis=1)
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """Datasets ``packings`` and ``lattice``."""
+    places, stored = slabs(parameters, surveyed=False), slabs(parameters, surveyed=True)
+    # the largest first: two workers then end together
+    order = sorted(places, key=lambda place: -parameters.cases[place[0]].layers[place[1]])
+    ideal = _lattice_tasks(parameters)
+    tasks = [_task(parameters, *place) for place in order]
+    found = map_tasks(compute, tasks, what="packings")
+    answers = map_tasks(lattice_answer, ideal, what="lattices")
+    outcomes = dict(zip(order, found, strict=True))
+    outcomes |= chosen(parameters.survey_file, STORED, {place: _key(parameters, *place) for place in stored})
+    datasets = {"packings": _packings(parameters, outcomes), "lattice": _lattice(parameters, answers)}
+    return labelled(datasets, parameters.base)
+
+
+def slabs(parameters: Parameters, *, surveyed: bool) -> list[tuple[int, int, int]]:
+    """Places of the packings of the survey, or of all others: of the case, of its size, and the realization."""
+    return [
+        (c, s, r)
+        for c, case in enumerate(parameters.cases)
+        for s, (own, further) in enumerate(zip(case.realizations, case.further, strict=True))
+        for r in (range(own, own + further) if surveyed else range(own))
+    ]
+
+
+def _key(parameters: Parameters, c: int, s: int, r: int) -> Key:
+    """What tells a packing from others, as :data:`STORED` names it."""
+    case = parameters.cases[c]
+    return case.polydispersity, case.friction, case.layers[s], r
+
+
+def survey(parameters: Parameters) -> dict[Key, Task]:
+    """The packings that are left to the survey."""
+    return {_key(parameters, *place): _task(parameters, *place) for place in slabs(parameters, surveyed=True)}
+
+
+def _task(parameters: Parameters, c: int, s: int, r: int) -> Task:
+    case = parameters.cases[c]
+    layers = case.layers[s]
+    scene = parameters.base.updated(
+        {
+            "packing.sides": "periodic",
+            "packing.layers": layers,
+            "packing.disks_per_row": parameters.disks_per_layer * layers,
+            "packing.polydispersity": case.polydispersity,
+            "packing.lattice_constant": TOUCHING_LARGEST,
+            "packing.realization": r,
+            "contact.friction": case.friction,
+            "wall.friction": case.friction,
+        }
+    )
+    return Task(scene, parameters.margin, parameters.width, parameters.wide)
+
+
+def _lattice_tasks(parameters: Parameters) -> list[LatticeTask]:
+    """Straining with contacts closed and open, by ratio; then responses, by size and ratio."""
+    group = parameters.lattice
+
+    def task(spacing: float, layers: int, row: int, ratio: float, responds: bool) -> LatticeTask:
+        changes: dict[str, Any] = {
+            "packing.sides": "periodic",
+            "packing.layers": layers,
+            "packing.disks_per_row": row,
+            "packing.lattice_constant": spacing,
+            "contact.friction": group.friction,
+            "contact.stiffness_ratio": ratio,
+            "wall.friction": 0.0,
+        }
+        return LatticeTask(parameters.base.updated(changes), parameters.margin, responds)
+
+    strains = [
+        task(spacing, group.layers, NARROW, ratio, False)
+        for spacing in (group.closed, group.open)
+        for ratio in group.stiffness_ratios
+    ]
+    return strains + [
+        task(group.open, layers, parameters.disks_per_layer * layers, ratio, True)
+        for layers in group.responding
+        for ratio in group.responding_ratios
+    ]
+
+
+def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outcome]) -> xr.Dataset:
+    cases = parameters.cases
+    first = next(iter(outcomes.values()))
+    sizes = max(len(case.layers) for case in cases)
+    shape = (len(cases), sizes, 1 + max(r for _, _, r in outcomes))
+
+    def of_packings(name: str) -> FloatArray:
+        values = np.full(shape + np.shape(getattr(first, name)), np.nan)
+        for place, outcome in outcomes.items():
+            values[place] = getattr(outcome, name)
+        return values
+
+    layers, surveyed = np.full((len(cases), sizes), np.nan), np.zeros((len(cases), sizes))
+    for c, case in enumerate(cases):
+        layers[c, : len(case.layers)] = case.layers
+        surveyed[c, : len(case.layers)] = case.further
+    along = ("case", "size", "realization")
+    single, difference = of_packings("single"), of_packings("difference")
+    of = {"one": single, "mean": difference[:, :, :, SOLIDS.index("free")]}
+    tolerances = np.array(parameters.tolerances)
+    sizes_needed = np.stack(
+        [
+            [
+                [needed(layers[c], values[c, ..., w], tolerances, parameters.draws, parameters.seed) for w in range(2)]
+                for values in of.values()
+            ]
+            for c in range(len(cases))
+        ]
+    )
+    matrices = of_packings("matrices")
+    per = "per largest pressure of the slab"
+    return xr.Dataset(
+        {
+            "layers": variable(("case", "size"), layers, "number of rows"),
+            "surveyed": variable(("case", "size"), surveyed, "realizations that are the survey's"),
+            "height": variable(along, of_packings("height"), f"height of the slab {LENGTH}"),
+            "coordination": variable(along, of_packings("coordination"), "contacts per disk that bears something"),
+            "at_limit": variable(along, of_packings("at_limit"), "contacts at the Coulomb limit, taken to stick"),
+            "stiffness": variable(
+                (*along, "following", "stress", "strain"), matrices, "stress per strain over k_N, as measured"
+            ),
+            "moduli": variable(
+                (*along, "following", "modulus"),
+                symmetric(matrices),
+                "moduli over k_N, what a solid that mirrors itself has of them",
+            ),
+            "prestress": variable(
+                (*along, "modulus"),
+                symmetric(matrices[..., -1, :, :] - of_packings("springs_alone")),
+                "what the forces that contacts bear at rest add to the moduli over k_N, rotations free",
+            ),
+            "response": variable(
+                (*along, "smoothing", "place"), of_packings("response"), "mean floor pressure times height per force"
+            ),
+            "predicted": variable(
+                (*along, "solid", "smoothing", "place"),
+                of_packings("predicted"),
+                "floor pressure times height per force of the elastic slab with these moduli",
+            ),
+            "single": variable(
+                (*along, "smoothing"), single, f"largest difference of one load to the slab {per}, mean"
+            ),
+            "difference": variable(
+                (*along, "solid", "smoothing"),
+                difference,
+                f"largest difference of the mean over loads to the slab {per}",
+            ),
+            "needed": variable(
+                ("case", "loads", "smoothing", "tolerance", "end"),
+                sizes_needed,
+                "number of rows from which on the difference is below the tolerance, by a power of it",
+            ),
+        },
+        coords={
+            "polydispersity": variable("case", [case.polydispersity for case in cases], "polydispersity"),
+            "friction": variable("case", [case.friction for case in cases], "friction between disks and of the floor"),
+            "following": variable("following", list(FOLLOWING), "how displacements and rotations follow the strain"),
+            "solid": variable("solid", list(SOLIDS), "moduli of the elastic slab"),
+            "modulus": variable("modulus", list("abcd"), "modulus of eq. (6)"),
+            "stress": variable("stress", ["xx", "zz", "xz"], "component of the stress"),
+            "strain": variable("strain", ["xx", "zz", "xz"], "component of the strain"),
+            "smoothing": variable(
+                "smoothing", [f"{parameters.width:g} radii", f"{parameters.wide:.3g} heights"], "w of the Gaussian"
+            ),
+            "loads": variable("loads", list(of), "one load, or the mean over the loads of a packing"),
+            "tolerance": variable("tolerance", tolerances, "difference to the elastic slab"),
+            "end": variable("end", ["value", "low", "high"], "value, and the 95 % interval of the bootstrap"),
+            "place": variable("place", PLACES, "distance from the load over the height of the slab"),
+        },
+    )
+
+
+def _lattice(parameters: Parameters, answers: list[FloatArray]) -> xr.Dataset:
+    group = parameters.lattice
+    ratios, near = np.array(group.stiffness_ratios), np.array(group.responding_ratios)
+    count = 2 * len(ratios)
+    measured = np.stack(answers[:count]).reshape(2, len(ratios), len(FOLLOWING), 4)
+    bends = np.stack(answers[count:]).reshape(len(group.responding), len(near))
+    expected = np.empty((2, len(ratios), len(ROTATIONS), 4))
+    for k, horizontal in enumerate((1.0, 0.0)):
+        for r, ratio in enumerate(ratios):
+            for t, rotations in enumerate(ROTATIONS):
+                solid = lattice.moduli(Springs(horizontal, 1.0, horizontal * ratio, ratio), rotations)
+                expected[k, r, t] = solid.a, solid.b, solid.c, solid.d
+    turns, theory = np.empty((len(BODIES), len(ROTATIONS))), np.empty((len(BODIES), len(ROTATIONS)))
+    for b, body in enumerate(BODIES):
+        for t, rotations in enumerate(ROTATIONS):
+            theory[b, t] = crossover.stiffness_ratio(body, rotations)
+            solids = [Moduli(*m) for m in measured[1, :, FOLLOWING.index(rotations)]]
+            sign = [
+                -s.peak_criterion if body == "half plane" else Slab(1.0, s, "smooth").curvature_below_force()
+                for s in solids
+            ]
+            turns[b, t] = root(ratios, np.array(sign))
+    found = np.array([root(near, bend) for bend in bends])
+    limits = at_infinity(np.array(group.responding), found)
+    return xr.Dataset(
+        {
+            "moduli": variable(
+                ("contacts", "stiffness_ratio", "following", "modulus"), measured, "moduli over k_N, as measured"
+            ),
+            "closed_form": variable(
+                ("contacts", "stiffness_ratio", "rotations", "modulus"), expected, "moduli over k_N, eqs. (7)-(10)"
+            ),
+            "turn": variable(("body", "rotations"), turns, "k_T / k_N at which two peaks end, by measured moduli"),
+            "turn_closed_form": variable(("body", "rotations"), theory, "the same by the closed form"),
+            "middle": variable(
+                ("size", "responding_ratio"),
+                bends,
+                "second difference of the response below the load, per largest response",
+            ),
+            "turn_response": variable(("size",), found, "k_T / k_N at which it changes its sign"),
+            "turn_limit": variable(
+                ("estimate",), limits, "the same for infinitely many layers, from these by polynomials in 1 / layers"
+            ),
+            "layers": variable(("size",), np.array(group.responding), "number of rows of the lattices that respond"),
+        },
+        coords={
+            "contacts": variable("contacts", ["closed", "open"], "horizontal contacts"),
+            "stiffness_ratio": variable("stiffness_ratio", ratios, "k_T / k_N"),
+            "responding_ratio": variable("responding_ratio", near, "k_T / k_N"),
+            "following": variable("following", list(FOLLOWING), "how displacements and rotations follow the strain"),
+            "rotations": variable("rotations", list(ROTATIONS), "rotations of the disks"),
+            "modulus": variable("modulus", list("abcd"), "modulus of eq. (6)"),
+            "body": variable("body", list(BODIES), "elastic body"),
+            "estimate": variable("estimate", list(ESTIMATES), "polynomial in 1 / layers"),
+        },
+    )

@@ -1,0 +1,205 @@
+"""Claims N1 to N7: what the paper says about its numerics (Sec. III)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from granular_response.state import FloatArray
+
+from ...claims import asked
+from ...claims.bootstrap import over_realizations
+from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
+from ...claims.words import Bounds
+
+GROUP = "numerics"
+CLAIMS = Claims(GROUP)
+
+#: How the energy that ends a run is read.
+RULES = {
+    "instantaneous": "stop as soon as the energy is below 1e-13",
+    "envelope": "stop when it stays below 1e-13 for a whole swing",
+}
+
+
+@CLAIMS.add(
+    "N1",
+    "III.C",
+    "floor forces of a run that stops at 1e-13 per disk against the static equilibrium it was settling to, at rest "
+    "and under 15 mg",
+    "below 1 %",
+)
+def stop_energy(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "stop_energy", "rest_error", "loaded_error", "stop_kinetic_energy", "friction")
+    study = at(study, stop_kinetic_energy=1e-13)
+    return Finding(
+        "largest error of a floor force per largest one: "
+        + ", ".join(
+            f"{max(r, u):.1e} (friction {mu:g})"
+            for mu, r, u in zip(
+                study["friction"].values, study["rest_error"].values, study["loaded_error"].values, strict=True
+            )
+        ),
+        [
+            Reading(
+                f"friction {mu:g}, {text}",
+                Condition("error of the floor forces", Quantity.exact(error), most=0.01, unit="%"),
+            )
+            for text, name in (("at rest", "rest_error"), ("under load", "loaded_error"))
+            for mu, error in zip(study["friction"].values.tolist(), study[name].values.tolist(), strict=True)
+        ],
+    )
+
+
+@CLAIMS.add(
+    "N2",
+    "III.C",
+    "statically finished frictionless states put back into the dynamics: largest kinetic energy per disk",
+    "below 1e-22",
+)
+def restart(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "restart", "kinetic_energy", "load")
+    largest = float(study["kinetic_energy"].max())
+    return asked.one_reading(
+        f"at most {largest:.1e} per disk at every look",
+        "every load and look",
+        Condition("kinetic energy per disk", Quantity.exact(largest), most=1e-22),
+    )
+
+
+@CLAIMS.add(
+    "N3a",
+    "III.C",
+    "friction 0.2, 15 mg, stopped at 1e-13: the other criteria of rest",
+    "network fixed for several hundred steps, two contacts for each disk, no sliding contact",
+)
+def at_rest(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "at_rest", "network_fixed_steps", "sliding_contacts", "loose_disks")
+    fixed, sliding, loose = (float(study[n]) for n in ("network_fixed_steps", "sliding_contacts", "loose_disks"))
+    return asked.one_reading(
+        f"network fixed for {fixed:.0f} steps, {sliding:.0f} sliding contacts, {loose:.0f} disks with fewer than two "
+        "contacts",
+        "at the stop",
+        Condition("steps with a fixed network", Quantity.exact(fixed), 100.0 * words["several"], words=("several",)),
+        Condition("sliding contacts", Quantity.exact(sliding), most=0.0),
+        Condition("disks with fewer than two contacts", Quantity.exact(loose), most=0.0),
+    )
+
+
+@CLAIMS.add("N3b", "III.C", "the same: mean acceleration of a disk", "below 1e-5 g")
+def swing(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "swing", "mean_acceleration", "kinetic_energy", "stop_rule")
+    readings, texts = [], []
+    for rule in study["stop_rule"].values.tolist():
+        one = study.sel(stop_rule=rule)
+        acceleration, energy = one["mean_acceleration"].values, float(one["kinetic_energy"].max())
+        texts.append(f"{rule} rule: {acceleration.mean():.1e} g, at most {acceleration.max():.1e}, energy {energy:.1e}")
+        for what, value in (("mean over a swing", acceleration.mean()), ("largest of a swing", acceleration.max())):
+            below = Condition("mean acceleration in g", Quantity.exact(value), most=1e-5, strict=True)
+            readings.append(Reading(f"{RULES[rule]}, {what}", below))
+    return Finding(
+        "; ".join(texts),
+        readings,
+        "Kinetic energy first falls below the limit where the slab turns round and accelerates most",
+    )
+
+
+@CLAIMS.add(
+    "N4", "III.B", "friction 0.2, 15 mg: floor response with the paper's time step and with half of it", "no effect"
+)
+def time_step(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "time_step", "difference", "time_step").sortby("time_step", ascending=False)
+    step = study["time_step"].values
+    if step.size < 2 or not np.isclose(step[1], 0.5 * step[0]):
+        raise NotMeasured(f"data/{GROUP}.nc: time_step holds no time step and its half")
+    difference = float(study["difference"].values[1])
+    return Finding(
+        f"the response changes by {difference:.1e} of its largest value from a step of {step[0]:g} to {step[1]:g}",
+        [_unseen(difference, words)],
+    )
+
+
+@CLAIMS.add(
+    "N5",
+    "III",
+    "friction 0.2, 15 mg: floor response by Gear's method with five values and by Beeman's, same time step",
+    "no significant change",
+)
+def integrators(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "integrators", "difference", "integrator")
+    names = study["integrator"].values.tolist()
+    if names[0] != "beeman" or "gear" not in names:
+        raise NotMeasured(f"data/{GROUP}.nc: integrators does not compare gear with beeman")
+    difference = float(study["difference"].values[names.index("gear")])
+    return Finding(f"the responses differ by {difference:.1e} of the largest value", [_unseen(difference, words)])
+
+
+def _unseen(difference: float, words: Bounds) -> Reading:
+    return Reading(
+        "friction 0.2, 15 mg", asked.at_most("difference per largest response", difference, words, "visible", "%")
+    )
+
+
+@CLAIMS.add(
+    "N6",
+    "III.B",
+    "friction 0.2: time to rest under gravity against the damping of a contact",
+    "nu = sqrt(k), half of critical, relaxes fastest",
+)
+def damping(data: Data, words: Bounds) -> Finding:
+    names = ("relaxation_time", "settled", "damping_ratio", "beeman_limit")
+    study = data.get(GROUP, "damping", *names).sortby("damping_ratio")
+    ratio, settled = study["damping_ratio"].values, study["settled"].values.astype(bool)
+    time = np.where(settled, study["relaxation_time"].values, np.inf)
+    here = np.flatnonzero(np.isclose(ratio, 0.5))
+    if not here.size or ratio.size < 5 or not np.isfinite(time[here[0]]):
+        raise NotMeasured(f"data/{GROUP}.nc: damping needs five ratios or more, 0.5 among them")
+    paper, step = float(time[here[0]]), 5e-4
+    stable = study["beeman_limit"].values >= step
+    if not stable[here[0]]:
+        raise NotMeasured(f"data/{GROUP}.nc: the paper's step is unstable with the paper's damping")
+    readings = []
+    for name, allowed in (("any step and integrator", np.full(ratio.shape, True)), ("the paper's step", stable)):
+        best = int(np.argmin(np.where(allowed, time, np.inf)))
+        readings.append(
+            Reading(
+                name,
+                Condition(
+                    "time to rest with sqrt(k) per the shortest",
+                    Quantity.exact(paper / time[best]),
+                    most=1.0 + words["nearly"],
+                    words=("nearly",),
+                ),
+            )
+        )
+    return Finding(
+        f"nu = sqrt(k) (half of critical): {paper:.0f} sqrt(R/g); ratios from {ratio[0]:g} to {ratio[-1]:g} of "
+        f"critical: {time[0]:.0f} to {time[-1]:.0f}; Beeman's method with the paper's step is stable up to a ratio of "
+        f"{ratio[stable].max():g}",
+        readings,
+        "Times by velocity Verlet and half the step; with the paper's integrator and step more damping is unstable",
+    )
+
+
+@CLAIMS.add(
+    "N7",
+    "III.C",
+    "disordered averages stopped at 1e-9 per disk against statically finished ones",
+    "sufficient accuracy",
+)
+def disorder(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "disorder", "stopped", "finished", "x")
+    stopped, finished = study["stopped"].values, study["finished"].values
+    number = len(stopped)
+
+    def difference(picked: FloatArray, axis: int) -> FloatArray:
+        """Largest difference of the means of the realizations ``picked``, per largest value of the finished one."""
+        early, exact = stopped[picked].mean(axis=axis), finished[picked].mean(axis=axis)
+        return np.asarray(np.abs(early - exact).max(axis=-1) / exact.max(axis=-1))
+
+    single = float(np.median(np.abs(stopped - finished).max(axis=1) / finished.max(axis=1)))
+    found = over_realizations(np.arange(number), lambda picked, axis: difference(picked.astype(int), axis))
+    return asked.one_reading(
+        f"mean of {number}: {found.text('%')} of its largest value; single realizations: median {single:.2%}",
+        "1 %, as for floor forces",
+        Condition("error of the mean response", found, most=0.01, unit="%"),
+    )

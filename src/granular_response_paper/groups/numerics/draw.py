@@ -1,0 +1,88 @@
+"""The numerics of the paper, measured: what a stopping energy leaves, what is quiet at rest, what damps fastest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response_paper.captions import WEIGHT, Caption, of_scene, values
+
+from .parameters import Parameters
+
+#: What the paper says: floor forces within 1 %, energy after a restart below 1e-22, nu = sqrt(k) half of critical.
+FORCE_ERROR, RESTART_ENERGY, PAPER_RATIO = 1e-2, 1e-22, 0.5
+
+#: Legends stand below their panels.
+BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.2), "handlelength": 2.4}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """One figure with three panels."""
+    figure, axes = style.figure(1, 3, width="double", height=2.9)
+    stop, restart, damping = axes[0]
+    _stop_energy(stop, datasets["stop_energy"])
+    _restart(restart, datasets["restart"])
+    _damping(damping, datasets["damping"])
+    style.letters(axes, place="above")
+    return {"numerics": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    return {
+        "numerics": Caption(
+            "What the paper says about its numerics, measured; dotted, what it says. (a) Error of floor forces and "
+            "of the response against the kinetic energy per disk at which a run stops, for µ = "
+            f"{values(parameters.frictions)} at {parameters.force:g} {WEIGHT}. (b) Kinetic energy per disk of "
+            f"statically finished states under {values(parameters.restart.forces)} {WEIGHT} put back into the "
+            f"dynamics, µ = {parameters.friction:g}. (c) Time to rest under gravity against the damping of a contact "
+            f"over the critical one, µ = {parameters.friction:g}.",
+            "Three plots. (a) Errors that grow with the energy at which a run stops. (b) Kinetic energies far below "
+            "the paper's. (c) A time to rest that falls with the damping, past the paper's choice.",
+            of_scene(parameters.scene, friction=None),
+        )
+    }
+
+
+def _stop_energy(panel: Axes, study: xr.Dataset) -> None:
+    study = study.sortby("stop_kinetic_energy")
+    index = 0
+    for friction in study["friction"].values:
+        curves = study.sel(friction=friction)
+        for name, text in (("loaded_error", "forces"), ("response_error", "response")):
+            panel.loglog(
+                curves["stop_kinetic_energy"],
+                curves[name],
+                label=f"{style.equals(style.FRICTION, friction)}, {text}",
+                **style.marked_line(index),
+            )
+            index += 1
+    style.paper_value(panel, FORCE_ERROR, "paper: 1 %", along="y", at=0.45)
+    panel.set(xlabel=rf"$E_\mathrm{{stop}}/{style.ENERGY_UNIT}$", ylabel="error, per largest")
+    panel.legend(**BELOW)
+
+
+def _restart(panel: Axes, study: xr.Dataset) -> None:
+    for index, load in enumerate(study["load"].values):
+        curve = study["kinetic_energy"].isel(load=index)
+        name = style.equals(style.F_EXT, load, style.WEIGHT)
+        panel.semilogy(study["step"] / 1e3, curve, label=name, **style.line(index))
+    style.paper_value(panel, RESTART_ENERGY, "paper: below $10^{-22}$", along="y")
+    panel.set_ylim(top=RESTART_ENERGY * 100.0)
+    panel.set(xlabel="thousands of time steps", ylabel=f"$E_k/{style.ENERGY_UNIT}$ per disk")
+    panel.legend(**BELOW)
+
+
+def _damping(panel: Axes, study: xr.Dataset) -> None:
+    study = study.sortby("damping_ratio")
+    settled = study["settled"].values.astype(bool)
+    panel.plot(study["damping_ratio"][settled], study["relaxation_time"][settled], **style.marked_line(0))
+    style.paper_value(panel, PAPER_RATIO, r"paper: $\nu=\sqrt{k}$", side="behind")
+    panel.set_ylim(bottom=0.0)
+    panel.set(xlabel=r"$\nu/\nu_\mathrm{c}$", ylabel=rf"time to rest$\,/{style.TIME_UNIT}$")

@@ -1,0 +1,72 @@
+"""Parameters of what the paper says about its numerics; all by dynamics."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Count, Description, NonNegative, Positive, Ratio, allowed
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import Coefficients, Integrators, Positives, over, some
+
+
+class Restart(Description):
+    """Statically finished states put back into the dynamics."""
+
+    forces: Annotated[tuple[NonNegative, ...], AfterValidator(some)] = Field(description="0 for gravity alone.")
+    steps: Count
+
+
+class Damping(Description):
+    """Relaxation under gravity, by velocity Verlet."""
+
+    ratios: Positives
+    time_step: Positive
+    stop_kinetic_energy: Positive
+
+
+class Swing(Description):
+    """What a run that has stopped would do next, with friction ``friction``."""
+
+    steps: Count = Field(description="Time steps of the paper's size after the stop, about one slow oscillation.")
+    read_every: Count = Field(description="Time steps between two readings.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Swing:
+        if self.read_every > self.steps:
+            raise Problem(f"must be at most steps = {self.steps}", key=("read_every",), value=self.read_every)
+        return self
+
+
+class Disorder(Description):
+    """Responses of disordered slabs whose runs stop early, beside those of the same slabs in equilibrium."""
+
+    scene: Annotated[
+        Scene, over(Scene(), "loads", "packing.realization", "protocol.method", "protocol.stop_kinetic_energy")
+    ] = Scene()
+    stop_kinetic_energy: Positive = Field(description="Per disk, of the runs that stop early.")
+    realizations: Count
+    width: Positive = Field(description="w of the smoothing Gaussian, in radii.")
+    reach: Positive = Field(description="Of the x axis, in radii.")
+    spacing: Positive = Field(description="Of the x axis, in radii.")
+
+
+class Parameters(Description):
+    """Section ``numerics``."""
+
+    scene: Annotated[Scene, over(Scene(), "contact.friction", "loads")] = Scene()
+    force: Positive = Field(description="In mean disk weights.")
+    frictions: Coefficients = Field(description="Of stop_energies.")
+    stop_energies: Positives = Field(description="Kinetic energies per disk at which the dynamics stops.")
+    restart: Restart
+    friction: Ratio = Field(description="Of what follows.")
+    time_steps: Annotated[
+        tuple[Positive, ...], Field(min_length=2), allowed("must be at least two numbers above 0, to compare")
+    ] = Field(description="The first one is the paper's.")
+    integrators: Integrators
+    integrator_time_step: Positive
+    damping: Damping
+    swing: Swing
+    disorder: Disorder

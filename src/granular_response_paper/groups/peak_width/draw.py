@@ -1,0 +1,189 @@
+"""Widths of the response against depth, the powers with which they grow, and the profiles that they are read off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from granular_response.plot import style
+from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_scene
+
+from .parameters import Parameters
+
+#: Powers of depth of an elastic response, and of force that diffuses; and their middle.
+ELASTIC, DIFFUSIVE = 1.0, 0.5
+HALFWAY = 0.5 * (ELASTIC + DIFFUSIVE)
+#: Two definitions of the width: label, and filling of the symbols.
+DEFINITIONS = {"half_maximum": ("at half maximum", "full"), "half_force": ("with half of the force", "none")}
+GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
+#: Over symbols of packings of the survey.
+SURVEYED: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
+#: Labelled on logarithmic axes, in every decade.
+TICKS = (1.0, 2.0, 5.0)
+DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``peak_width_depth`` and ``peak_width_powers`` from the datasets ``inside`` and ``floors``."""
+    inside, floors = datasets["inside"], datasets["floors"]
+    return {"peak_width_depth": _growth(inside, floors), "peak_width_powers": _powers(inside, floors)}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    counts = {case.count(h) for case in parameters.cases if case.polydispersity for h in range(len(case.heights))}
+    disorder = (
+        f"Disorder: of the mean profile of {' or '.join(map(str, sorted(counts)))} realizations. " if counts else ""
+    )
+    low, high = parameters.fitted
+    said = of_scene(
+        parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=None, normal_stiffness=None,
+        width=parameters.width,
+    )  # fmt: skip
+    reference = parameters.reference_layers
+    surveyed = [layers for case in parameters.cases for layers in case.surveyed]
+    stored = f"packings of the survey, {min(surveyed)} to {max(surveyed)} layers" if surveyed else ""
+    edges, along = (f"Black edges: {stored}. ", f"With {stored}. ") if stored else ("", "")
+    slabs = (
+        f"Walls and floor have the friction of the disks; rows have {parameters.disks_per_layer} disks for each layer; "
+        f"k_N = {parameters.base.contact.normal_stiffness:g} {WEIGHT}/{RADIUS} at {reference} layers grows as their "
+        f"number. Forces F, in {WEIGHT}, are those at {reference} layers and grow as the square of the number; "
+        "without one the limit of small forces. * gravity acts on disks without friction, which rub from then on."
+    )
+    return {
+        "peak_width_depth": Caption(
+            "Not in the paper: how wide the response is. Filled symbols: half width at half maximum of the vertical "
+            "stress; open symbols: half width of the strip that bears half of the force; crosses: place of one of two "
+            "peaks, where there are two. (a) to (c) on lines inside the highest slab, (d) to (f) on the floors of "
+            f"slabs of several heights. {edges}Grey lines: elastic slabs of the lattice's "
+            "moduli, for the first case of a panel. Black lines have the slopes 1 (elastic) and 1/2 (diffusion). "
+            f"{disorder}{slabs}",
+            "Six panels with double logarithmic axes: symbols along lines of slope 1 for lattices under small forces "
+            "and for disorder with friction.",
+            said,
+        ),
+        "peak_width_powers": Caption(
+            "The powers with which these widths grow: (a) inside the highest slabs, from a depth of "
+            f"{low:g} {RADIUS} to {high:g} heights, (b) on the floors. 95 % intervals of the bootstrap over "
+            "realizations; of a lattice the range over fits without the shallowest and without the deepest third. "
+            f"{along}"
+            "Ticks: elastic slabs of the same heights by the same code. Dashed 1, dotted 1/2; in the grey band a "
+            f"power is nearer to 1 than to 1/2. {slabs}",
+            "Two panels of points with error bars in a row for each packing, most of them in a band around 1.",
+            said,
+        ),
+    }
+
+
+def name(data: xr.Dataset, case: int) -> str:
+    """A case as it stands in legends."""
+    one = data.isel(case=case)
+    delta, force = float(one["polydispersity"]), float(one["force"])
+    packing = f"$\\delta = {delta:g}$" if delta else "lattice"
+    prepared = "*" if str(one["gravity"].values) == "frictionless" else ""
+    load = f", $F = {force:g}$" if force else ""
+    return f"{packing}, $\\mu = {float(one['friction']):g}${prepared}{load}"
+
+
+def kinds(data: xr.Dataset) -> tuple[tuple[str, list[int]], ...]:
+    """Cases by what stands in one panel."""
+    disordered, large = data["polydispersity"].values > 0.0, data["force"].values > 0.0
+    parts = (
+        ("lattices, small force", ~disordered & ~large),
+        ("lattices, larger force", ~disordered & large),
+        ("disorder", disordered),
+    )
+    return tuple((title, np.flatnonzero(part).tolist()) for title, part in parts if part.any())
+
+
+def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
+    """Upper row: inside the highest slab of each case. Lower row: on the floors of all slabs."""
+    parts = kinds(inside)
+    figure, panels = style.figure(2, len(parts), width="double", height=5.2, sharex="row", sharey="row")
+    for row, (data, label) in enumerate(((inside, "depth"), (floors, "height of the slab"))):
+        for (title, cases), axes in zip(parts, panels[row], strict=True):
+            for place, case in enumerate(cases):
+                _widths(axes, data, case, place)
+            axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$")
+            for axis in (axes.xaxis, axes.yaxis):
+                axis.set_major_locator(LogLocator(subs=TICKS))
+                axis.set_major_formatter("{x:g}")
+                axis.set_minor_formatter("")
+            letter = "abcdef"[row * len(parts) + parts.index((title, cases))]
+            style.letter(axes, letter, place="above", text=title + (", inside" if row == 0 else ", on the floor"))
+        panels[row, 0].set_ylabel(rf"half width$\,/\,{style.RADIUS}$")
+    for axes in panels.ravel():
+        _guides(axes)
+    for axes in panels[0]:
+        axes.legend(loc="upper left", fontsize=7)
+    return figure
+
+
+def _widths(axes: Axes, data: xr.Dataset, case: int, place: int) -> None:
+    """Both widths of a case as symbols, of the elastic slab as lines, and where it has two peaks as crosses."""
+    one = data.isel(case=case)
+    depth = one["depth"].values
+    look = style.marked_line(place) | {"linestyle": "none", "markersize": 3.8}
+    stored = np.broadcast_to(one["surveyed"].values > 0.0, depth.shape)  # inside all points are of one slab
+    for definition, (_, fill) in DEFINITIONS.items():
+        found = one.sel(definition=definition)
+        edge = {"fillstyle": fill, "markeredgewidth": 0.0 if fill == "full" else 0.7}
+        axes.plot(depth, found["length"], label=name(data, case) if fill == "full" else None, **look | edge)
+        if fill == "full":
+            axes.plot(depth[stored], found["length"][stored], **look | SURVEYED)
+        if place == 0:  # the others have it too, in shorter slabs
+            axes.plot(depth, found["elastic_length"], color=style.MUTED, linewidth=0.8, linestyle="-", zorder=1)
+    axes.plot(depth, one["length"].sel(definition="peak_position"), **look | {"marker": "x", "markeredgewidth": 0.8})
+
+
+def _guides(axes: Axes) -> None:
+    """Slopes 1 and 1/2 through one point, in the lower right corner."""
+    low, high = axes.get_xlim()
+    bottom, top = axes.get_ylim()
+    start = low * (high / low) ** 0.55
+    level = bottom * (top / bottom) ** 0.08
+    x = np.array([start, high / (high / low) ** 0.12])
+    for power, dash, text in ((ELASTIC, DASHED, "1"), (DIFFUSIVE, DOTTED, "1/2")):
+        y = level * (x / start) ** power
+        axes.plot(x, y, linestyle=dash, **GUIDE)
+        axes.annotate(text, (x[1], y[1]), (2, 0), textcoords="offset points", va="center", fontsize=7)
+    axes.set(xlim=(low, high), ylim=(bottom, top))
+
+
+def _powers(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
+    """A row for each case: powers inside and on the floor, by both definitions, and of what elastic slabs have."""
+    cases = [case for _, members in kinds(inside) for case in members]
+    figure, (panels,) = style.figure(1, 2, width="double", height=0.6 + 0.3 * len(cases), sharey=True)
+    for axes, data, text, letter in zip(
+        panels, (inside, floors), ("inside, against the depth", "on the floor, against the height"), "ab", strict=True
+    ):
+        axes.axvspan(HALFWAY, 2.0 * ELASTIC - HALFWAY, color="#EEEEEE", linewidth=0.0, zorder=0)
+        axes.axvline(ELASTIC, linestyle=DASHED, **GUIDE)
+        axes.axvline(DIFFUSIVE, linestyle=DOTTED, **GUIDE)
+        for row, case in enumerate(cases):
+            for k, (definition, (label, fill)) in enumerate(DEFINITIONS.items()):
+                one = data.isel(case=case).sel(definition=definition)
+                value, (low, high) = float(one["power"][0]), one["interval"].values
+                y = row + (0.17 if k else -0.17)
+                axes.errorbar(
+                    [value], [y], xerr=[[max(value - low, 0.0)], [max(high - value, 0.0)]], fmt="os"[k],
+                    color=style.COLOURS[k], fillstyle=fill, markersize=4, capsize=2, linewidth=0.9,
+                    label=label if row == 0 else None,
+                )  # fmt: skip
+                axes.plot(
+                    [float(one["elastic_power"][0])], [y], marker="|", markersize=7, color=style.BLACK,
+                    linestyle="none", label="elastic slab" if row == 0 and k else None,
+                )  # fmt: skip
+        axes.set(xlabel="power with which the width grows")
+        style.letter(axes, letter, place="above", text=text)
+    panels[0].set_yticks(range(len(cases)), [name(inside, case) for case in cases])
+    panels[0].set_ylim(len(cases) - 0.4, -0.6)
+    panels[1].legend(loc="upper right", fontsize=7)
+    return figure

@@ -1,0 +1,294 @@
+"""Fig. 22: the force at which one peak becomes two, against friction, for every polydispersity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from granular_response.plot import style
+from granular_response.state import FloatArray
+from granular_response_paper.captions import Caption, Value
+
+from .parameters import Parameters
+
+#: Kinds of a crossover, as stored.
+FOUND, BELOW, ABOVE = 0, 1, 2
+#: Levels of the thick and of the thin bar.
+THICK, THIN = (0.16, 0.84), (0.025, 0.975)
+#: A response leans visibly from this difference of mirror images on, per largest response.
+ASYMMETRIC = 0.01
+#: Friction and force at which the paper's lattice beside smooth walls becomes asymmetric (Sec. V.E).
+SMOOTH_WALLS = 1.0, 91.0
+#: Fills of the regions; white is what was not simulated, or where too few packings bear the force.
+TWO_PEAKS, ONE_PEAK = "#C9D3DC", "#EFF2F4"
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """Fig. 22 and what stands behind it, from the datasets of the study of the same name."""
+    crossovers = datasets["crossovers"]
+    usual = np.flatnonzero(crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0])
+    shown, shapes, others, realizations = (
+        datasets[name].isel(case=usual) for name in ("crossovers", "shapes", "definitions", "realizations")
+    )
+    return {
+        "fig22_phase_diagram": _diagrams(shown, shapes, realizations),
+        "five_realizations": _few(shown, shapes),
+        "peak_definitions": _definitions(shown, others, realizations),
+        "starts": _starts(datasets["starts"]),
+    }
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    crossovers = datasets["crossovers"]
+    here = crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0]
+    frictions = sorted(set(crossovers["friction"].values[here].tolist()))
+    deltas = sorted(set(crossovers["polydispersity"].values[here].tolist()))
+    given: dict[str, Value] = {
+        "friction": frictions,
+        "wall_friction": frictions,
+        "polydispersity": deltas,
+        "realizations": int(crossovers["realizations"].values[here].max()),
+        "width": parameters.widths,
+    }
+    last, rows = "abcdefghijklmnopqrstuvwxyz"[len(deltas) * len(parameters.widths) - 1], len(parameters.widths)
+    last_of_few = "abcdefghijklmnopqrstuvwxyz"[(len(deltas) - 1) * rows - 1]
+    return {
+        "fig22_phase_diagram": Caption(
+            f"(a) to ({last}) Crossover force from one peak to two against friction, measured on up to "
+            f"{given['realizations']} slabs simulated like those of Fig. 21 and on the lattice: a column for each "
+            "polydispersity, a row for each smoothing width. Full circles: crossovers of the mean response, at a dip "
+            f"of {100 * parameters.tolerance:g} % of the largest response; open circles with an arrow: bounds, where "
+            "the smallest force has two peaks already, or the largest one still. Thick and thin bars hold 68 and 95 % "
+            f"of {parameters.draws} bootstrap draws over the realizations; an end beyond every simulated force has an "
+            "arrow head at the edge. Dark: two peaks, light: one, white: not simulated, or too few packings bear the "
+            "force. Broken line: the lattice, whose last point is a bound; crosses: where it loses its symmetry; "
+            "star: where the paper's does beside smooth walls (Fig. 16).",
+            "Eight diagrams of force against friction. The boundary between one peak below and two above rises with "
+            "friction and lies lower the larger the polydispersity.",
+            given,
+        ),
+        "five_realizations": Caption(
+            f"Not in the paper, which averages {parameters.few} realizations: (a) to ({last_of_few}) part of the "
+            f"means of {parameters.few} of all realizations, {parameters.draws} times drawn at random, that have as "
+            "many peaks as the mean of all, against the force per crossover force of Fig. 22 (vertical line), for "
+            "each polydispersity, smoothing width and coefficient of friction.",
+            "Six panels with curves near 1 far from the crossover force, which dip to between 0.3 and 0.7 at it.",
+            {**given, "friction": [mu for mu in frictions if mu], "wall_friction": [mu for mu in frictions if mu]}
+            | {"polydispersity": [delta for delta in deltas if delta]},
+        ),
+        "peak_definitions": Caption(
+            f"Not in the paper: (a) to ({last_of_few}) crossover force against friction by the dip at x = 0, per "
+            "largest response, from which on a mean response counts as having two peaks, and the median crossover of "
+            "single realizations; for each polydispersity and smoothing width. Bounds are left out.",
+            "Six panels in which the force grows with friction, on curves that lie above each other in the order of "
+            "the dip.",
+            given | {"polydispersity": [delta for delta in deltas if delta]},
+        ),
+        "starts": Caption(
+            "Not in the paper: (a) to (c) dip of the mean response under one force, smoothed with the smaller width, "
+            "and (d) to (f) contacts per disk at rest, against the lattice constant of the start. Bars hold 95 % of "
+            "the bootstrap draws over the realizations; broken lines: the largest disks touch.",
+            "Six panels: dips without friction grow with the lattice constant, contacts become fewer.",
+            {"friction": [0.0, 0.2], "polydispersity": [delta for delta in deltas if delta]},
+        ),
+    }
+
+
+def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
+    """A row for each smoothing width, a column for each polydispersity."""
+    deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
+    widths = crossovers["width"].values.tolist()
+    applied = shapes["applied_force"].values
+    limits = 0.2 * float(np.nanmin(applied)), 5.0 * float(np.nanmax(applied))
+    figure, panels = _grid(widths, deltas, 0.5 + 1.85 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
+    for (width, delta), axes in panels.items():
+        here = _of(crossovers, delta)
+        axes.set(ylim=limits, **_FRICTION_AXES)
+        if delta:
+            ordered = crossovers.sel(width=width).isel(case=np.flatnonzero(crossovers["polydispersity"].values == 0.0))
+            ordered = ordered.sortby("friction")
+            axes.plot(ordered["friction"], ordered["force"], color=style.MUTED, linestyle="--", linewidth=0.7)
+        _diagram(axes, crossovers.sel(width=width).isel(case=here), applied[here], limits)
+        if not delta:
+            _transitions(axes, realizations.sel(width=width).isel(case=here), applied[here])
+    first = panels[widths[0], deltas[0]]
+    for text, x, y in (("two peaks", 0.06, 0.76), ("one peak", 0.45, 0.42)):
+        first.text(x, y, text, transform=first.transAxes, va="center", style="italic", fontsize=8)
+    return figure
+
+
+#: Axes of force against friction.
+_FRICTION_AXES: dict[str, Any] = {
+    "yscale": "log",
+    "xlim": (-0.07, 1.07),
+    "xticks": [0.0, 0.2, 0.5, 1.0],
+    "xticklabels": ["0", "0.2", "0.5", "1"],
+}
+
+
+def _grid(
+    widths: Sequence[float], deltas: Sequence[float], height: float, x: str, y: str
+) -> tuple[Figure, dict[tuple[float, float], Axes]]:
+    """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels."""
+    figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
+    found = dict(zip(((w, d) for w in widths for d in deltas), panels.ravel(), strict=True))
+    for index, ((width, delta), axes) in enumerate(found.items()):
+        name = f"$\\delta = {delta:g}$" if delta else "lattice"
+        style.letter(axes, chr(ord("a") + index), place="above", text=f"{name}, $w = {width:g}\\,\\bar R$")
+    for axes in panels[-1]:
+        axes.set_xlabel(x)
+    for axes in panels[:, 0]:
+        axes.set_ylabel(y)
+    return figure, found
+
+
+def _of(crossovers: xr.Dataset, delta: float) -> NDArray[np.intp]:
+    """The cases of a polydispersity in the order of friction."""
+    here = np.flatnonzero(crossovers["polydispersity"].values == delta)
+    return here[np.argsort(crossovers["friction"].values[here])]
+
+
+def _diagram(axes: Axes, data: xr.Dataset, applied: FloatArray, limits: tuple[float, float]) -> None:
+    """The crossovers of one polydispersity with their intervals; an arrow for a bound, to the side where it lies.
+
+    ``data`` holds the cases in the order of friction, ``applied`` (case, step) their forces.
+    """
+    friction, force, kind = (data[name].values for name in ("friction", "force", "kind"))
+    smallest, largest = np.nanmin(applied, axis=1), np.nanmax(applied, axis=1)
+    boundary = np.clip(force, smallest, largest)
+    axes.fill_between(friction, boundary, largest, color=TWO_PEAKS, linewidth=0.0, zorder=0)
+    axes.fill_between(friction, smallest, boundary, color=ONE_PEAK, linewidth=0.0, zorder=0)
+    axes.plot(friction, force, color=style.BLACK, linestyle=(0, (1.0, 2.0)), linewidth=0.7)  # to the bounds too
+    found = kind == FOUND
+    axes.plot(friction[found], force[found], color=style.BLACK, linestyle="-", linewidth=0.9)
+    for levels, linewidth in ((THIN, 0.7), (THICK, 2.4)):
+        low, high = data["interval"].sel(level=list(levels)).transpose("level", ...).values
+        for x, bottom, top in zip(friction, low, high, strict=True):
+            if bottom < top:
+                _bar(axes, x, bottom, top, limits, linewidth)
+    axes.plot(friction[found], force[found], linestyle="none", marker="o", markersize=4.0, color=style.BLACK, zorder=5)
+    for x, bound, what in zip(friction, force, kind, strict=True):
+        if what != FOUND:
+            axes.plot(x, bound, marker="o", markersize=4.0, color=style.BLACK, markerfacecolor="white", zorder=5)
+            factor = 2.2 if what == ABOVE else 1.0 / 2.2
+            arrow = {"arrowstyle": "-|>", "color": style.BLACK, "linewidth": 0.8, "shrinkA": 2.0, "shrinkB": 0.0}
+            axes.annotate("", (x, bound * factor), (x, bound), arrowprops=arrow, annotation_clip=False)
+
+
+def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> None:
+    """A cross between the last force under which a lattice is symmetric and the first under which it is not."""
+    for case in range(lattice.sizes["case"]):
+        lost = np.flatnonzero(lattice["asymmetry"].values[case, 0] > ASYMMETRIC)
+        if lost.size and lost[0] > 0:
+            ends = applied[case, lost[0] - 1 : lost[0] + 1]
+            friction = float(lattice["friction"][case])
+            axes.plot([friction] * 2, ends, color=style.BLUE, linewidth=1.6, linestyle="-", zorder=6)
+            axes.plot(friction, np.sqrt(ends.prod()), marker="x", color=style.BLUE, markersize=6.0, zorder=6)
+    axes.plot(*SMOOTH_WALLS, marker="*", color=style.BLUE, markerfacecolor="white", markersize=6.0, zorder=6)
+
+
+def _bar(axes: Axes, x: float, low: float, high: float, limits: tuple[float, float], linewidth: float) -> None:
+    """An interval in force; an end beyond every simulated force goes to the edge and has an arrow head there."""
+    ends = np.clip([low, high], *limits)
+    axes.plot([x, x], ends, color=style.VERMILION, linewidth=linewidth, linestyle="-", solid_capstyle="butt", zorder=3)
+    for end, edge, marker in ((low, limits[0], "v"), (high, limits[1], "^")):
+        if not np.isfinite(end):
+            axes.plot(x, edge, marker=marker, markersize=5.0, color=style.VERMILION, clip_on=False, zorder=6)
+
+
+def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
+    """How often the mean of a few realizations has as many peaks as that of all, near the crossover and off it.
+
+    A column for each polydispersity, a row for each smoothing width, a line for each friction.
+    """
+    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
+    frictions = sorted(set(crossovers["friction"].values.tolist()))
+    widths = crossovers["width"].values.tolist()
+    what = f"means of {int(shapes.attrs['few'])} that agree"
+    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), "force over crossover force", what)
+    drawn = {}
+    for (width, delta), axes in panels.items():
+        one = crossovers.sel(width=width)
+        for case in np.flatnonzero((one["polydispersity"].values == delta) & (one["kind"].values == FOUND)):
+            friction = float(one["friction"][case])
+            agree = shapes["few_agree"].sel(width=width).values[case]
+            look = style.marked_line(frictions.index(friction)) | {"linewidth": 0.9}
+            force = shapes["applied_force"].values[case] / float(one["force"][case])
+            (drawn[friction],) = axes.plot(force, agree, **look)
+        axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
+        axes.set(xscale="log", ylim=(0.2, 1.05))
+    order = sorted(drawn)
+    figure.legend(
+        [drawn[friction] for friction in order],
+        [f"$\\mu = {friction:g}$" for friction in order],
+        loc="outside upper center",
+        ncols=len(order),
+    )
+    return figure
+
+
+def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
+    """Crossovers by what counts as two peaks; found ones alone, those of single realizations beside them."""
+    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
+    widths = crossovers["width"].values.tolist()
+    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
+    tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
+    tolerances += [(float(t), others.sel({"tolerance": t})) for t in others["tolerance"].values]
+    colours = style.ordered_colours(len(tolerances))
+    handles = {}
+    for (width, delta), axes in panels.items():
+        here = _of(crossovers, delta)
+        for k, (tolerance, data) in enumerate(sorted(tolerances, key=lambda pair: pair[0])):
+            one = data.sel(width=width).isel(case=here)
+            found = one["kind"].values == FOUND
+            look = style.marked_line(k) | {"color": colours[k], "linewidth": 0.9, "markersize": 3.0}
+            friction, force = one["friction"].values[found], one["force"].values[found]
+            (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look)
+        single = realizations.sel(width=width).isel(case=here)
+        friction, median = single["friction"].values, single["median"].values
+        known = np.isfinite(median)
+        cross: dict[str, Any] = {"linestyle": "none", "marker": "x", "color": style.VERMILION, "markersize": 4.0}
+        (handles["median of realizations"],) = axes.plot(friction[known], median[known], **cross)
+        axes.set(**_FRICTION_AXES)
+    figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=len(handles), title="dip")
+    return figure
+
+
+def _starts(starts: xr.Dataset) -> Figure:
+    """The dip under one force and the contacts at rest against the start; a column for each polydispersity."""
+    deltas = sorted(set(starts["polydispersity"].values.tolist()))
+    frictions = sorted({mu for mu in starts["friction"].values.tolist() if mu <= 0.2 and mu != 0.05})
+    figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
+    for column, delta in enumerate(deltas):
+        touching = 2.0 / (1.0 - 0.5 * delta)
+        dips, contacts = panels[:, column]
+        for k, friction in enumerate(frictions):
+            here = np.flatnonzero((starts["polydispersity"].values == delta) & (starts["friction"].values == friction))
+            here = here[np.argsort(starts["distance"].values[here])]
+            one = starts.isel(case=here)
+            for axes, name, data in ((dips, "dip", one.isel(width=0)), (contacts, "contacts", one)):
+                value, ends = data[name].values, data[f"{name}_interval"].sel(level=list(THIN)).values
+                around = np.abs(ends.reshape(-1, 2).T - value)
+                look = style.marked_line(k) | {"markersize": 3.0, "elinewidth": 0.8, "capsize": 2.0}
+                axes.errorbar(one["distance"].values, value, around, **look, label=f"$\\mu = {friction:g}$")
+            force = float(one["applied_force"].values[0])
+        for axes in (dips, contacts):
+            axes.axvline(touching, color=style.MUTED, linewidth=0.6, linestyle="--", zorder=0)
+        dips.axhline(0.0, color=style.FAINT, linewidth=0.6, linestyle="-", zorder=0)
+        style.letter(
+            dips, "abc"[column], place="above", text=f"$\\delta = {delta:g}$, $F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$"
+        )
+        style.letter(contacts, "def"[column], place="above")
+        contacts.set_xlabel("lattice constant of the start / $\\bar R$")
+    panels[0, 0].set_ylabel("dip per largest response")
+    panels[1, 0].set_ylabel("contacts per disk, walls counted")
+    panels[0, 0].legend(loc="best")
+    return figure

@@ -1,0 +1,38 @@
+"""Parameters of the phase diagram, measured on stored ensembles."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
+from granular_response_paper.parameters import Path, Positives, some
+
+Names = Annotated[tuple[str, ...], AfterValidator(some)]
+
+
+class Compared(Description):
+    """Under which force the starts of one polydispersity are compared."""
+
+    polydispersity: Fraction
+    force: Positive
+
+
+class Parameters(Description):
+    """Section ``phase_diagram``."""
+
+    survey: Path = Field(description="Folder with the datasets of the survey.")
+    blocks: Names = Field(description="Blocks of the survey with one case for each point of the diagram.")
+    linear_range: str = Field(description="Block of the survey with small forces and smooth walls.")
+    linear_width: Positive = Field(description="w of the smoothing Gaussian there, in radii.")
+    widths: Positives = Field(description="w of the smoothing Gaussian, in radii.")
+    reach: Positive = Field(description="Largest distance at which a peak is looked for, in radii.")
+    spacing: Positive = Field(description="Of the x axis, in radii.")
+    tolerance: Ratio = Field(description="Shape from which on a response has two peaks.")
+    other_tolerances: tuple[Ratio, ...] = Field(description="Tried beside it.")
+    compared: Annotated[tuple[Compared, ...], AfterValidator(some)]
+    draws: Count = Field(description="Of the bootstrap over realizations.")
+    seed: Index = Field(description="Of the bootstrap.")
+    few: Count = Field(description="Size of the small averages.")
+    least_part: Part = Field(description="Part of the realizations that must be at rest.")

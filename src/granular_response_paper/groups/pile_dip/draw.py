@@ -1,0 +1,153 @@
+"""Fig. 17: forces, vertical stress and contact network of a pile without and with friction."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from scipy.spatial import ConvexHull
+
+from granular_response.plot import network, style
+from granular_response.plot.field import draw_field
+from granular_response.state import Box
+from granular_response_paper.captions import RADIUS, Caption, letters, of_scene
+
+from .parameters import Parameters
+
+#: Cases that are drawn, left and right; of the two frictionless minima one, the other is its mirror image.
+DRAWN = {"frictionless": "without friction", "frictional": "with friction"}
+
+#: Force of the key, in mean disk weights.
+KEY = 5.0
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``fig17_pile`` and ``fig17_pile_profiles`` from the datasets of the study of the same name."""
+    piles, stress = datasets["piles"], datasets["stress"]
+    return {"fig17_pile": _pile(piles, stress), "fig17_pile_profiles": _profiles(piles, stress)}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    given = of_scene(parameters.scene)
+    return {
+        "fig17_pile": Caption(
+            "Piles of equal disks under gravity, without friction on the left and with it on the right. (a), (b) "
+            "Contact forces; lengths and widths of the lines are proportional to the force, but none is thinner than "
+            "a hairline. (c), (d) Vertical stress, coarse-grained with a Gaussian; the contours are the white lines "
+            "of the colour scale, and the broken line is the hull of the disks. Hatched: the layer of one width w at "
+            "the floor, in which part of the Gaussian lies outside the pile, so that the stress falls short. (e), "
+            "(f) Contacts: lines join the centres of disks that touch. Floor and side walls are grey. The parameters "
+            "are those with friction; without it all others are the same.",
+            "Two piles beside each other, three pictures of each. Without friction the stress has two maxima beside "
+            "the middle and the lowest row pushes against the side walls; with friction it has one maximum in the "
+            "middle.",
+            {**given, "width": parameters.stress_width},
+        ),
+        "fig17_pile_profiles": Caption(
+            f"Not in the paper. (g) Vertical stress at the height {parameters.dip_height:g} {RADIUS}, (h) forces of "
+            "single disks on the floor. Without friction there are two minima of the energy, mirror images of each "
+            "other.",
+            "Two plots against the horizontal position. Without friction stress and floor force dip in the middle, "
+            "with friction they are largest there.",
+            {**given, "width": parameters.stress_width},
+        ),
+    }
+
+
+def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
+    figure, panels = style.figure(3, 2, width="double", height=3.9)
+    shown = piles.sel(case=list(DRAWN))
+    scale = network.force_scale(shown["contact_force"].values.reshape(-1, 2), longest=3.4, widest=2.8)
+    fields = stress["stress_zz"].sel(case=list(DRAWN))
+    largest = float(fields.max())
+    levels = np.asarray(MaxNLocator(8).tick_values(0.0, largest))[1:-1]  # without zero and what is above all
+    width = float(piles["width"])
+    top = float(piles["position"].values[..., 1].max()) + 1.0
+    for column, (case, name) in enumerate(DRAWN.items()):
+        forces, map_axes, contacts = panels[:, column]
+        one = piles.sel(case=case)
+        _forces(forces, one, scale)
+        style.letter(forces, "ab"[column], place="above", text=f"forces, {name}")
+        field = fields.sel(case=case)
+        image = draw_field(map_axes, stress["x"], stress["z"], field, norm=Normalize(0.0, largest), levels=levels)
+        _outline(map_axes, one)
+        near = float(stress["stress_width"])
+        map_axes.axhspan(0.0, near, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
+        map_axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT if column == 0 else "")
+        style.letter(map_axes, "cd"[column], place="above", text="$\\sigma_{zz}$")
+        _network(contacts, one)
+        style.letter(contacts, "ef"[column], place="above", text="contacts")
+        for axes in (forces, contacts):
+            network.draw_box(axes, Box(width), 2.0)
+            style.no_axes(axes)
+            axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
+        map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
+        network.draw_force_key(forces, (0.8 * width, 0.9 * top), KEY, **scale)
+    bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
+    bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
+    bar.set_label(style.STRESS_OF_GRAVITY)
+    return figure
+
+
+def _forces(axes: Axes, one: xr.Dataset, scale: Mapping[str, float]) -> None:
+    position, radius = one["position"].values, one["radius"].values
+    network.draw_disks(axes, position, radius)
+    touching = one["contact_status"].values != 0
+    pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
+    force = one["contact_force"].values[touching]
+    network.draw_force_chains(axes, network.pair_points(position, radius, *pairs), force, **scale)
+    at_wall = network.wall_points(position, radius, one["wall_disk"].values, one["wall_index"].values)
+    network.draw_force_chains(axes, at_wall, one["wall_force"].values, **scale)
+
+
+def _outline(axes: Axes, one: xr.Dataset) -> None:
+    """The convex hull of the disks and the floor, in the coordinates of the map."""
+    around = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    circle = np.stack([np.cos(around), np.sin(around)], axis=1)
+    rim = one["position"].values[:, None] + one["radius"].values[:, None, None] * circle
+    hull = ConvexHull(rim.reshape(-1, 2))
+    corner = hull.points[hull.vertices[[*range(len(hull.vertices)), 0]]] - (0.5 * float(one["width"]), 0.0)
+    axes.plot(*corner.T, color="white", linestyle="--", linewidth=0.9)
+    axes.axhline(0.0, color=style.MUTED, linewidth=1.6, linestyle="-", zorder=4)
+
+
+def _network(axes: Axes, one: xr.Dataset) -> None:
+    touching = one["contact_status"].values != 0
+    network.draw_disks(axes, one["position"].values, one["radius"].values)
+    pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
+    network.draw_contacts(axes, one["position"].values, *pairs, linewidth=0.6)
+
+
+def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
+    """Not in the paper: the stress at one height, and the floor forces, of all three states."""
+    figure, ((line, floor),) = style.figure(1, 2, width="double", height=2.5)
+    names = {
+        "frictionless": "without friction",
+        "mirrored": "without friction, its mirror image",
+        "frictional": "with friction",
+    }
+    for index, (case, name) in enumerate(names.items()):
+        one = stress["profile_zz"].sel(case=case)
+        line.plot(stress["x"], one, **style.line(index), label=name)
+        look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
+        floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
+    line.set(xlabel=style.POSITION, ylabel=style.STRESS_OF_GRAVITY)
+    line.set_ylim(0.0, 1.32 * float(stress["profile_zz"].max()))
+    line.legend(loc="upper right", borderaxespad=0.3)
+    first, second = itertools.islice(letters("fig17_pile_profiles"), 2)
+    style.letter(line, first, text=style.equals("z", float(stress["dip_height"]), style.RADIUS))
+    floor.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$")
+    floor.set_ylim(0.0, 1.15 * float(piles["floor_force"].max()))
+    style.letter(floor, second)
+    half = 0.5 * float(piles["width"])
+    for axes in (line, floor):
+        axes.set_xlim(-half, half)
+    return figure

@@ -1,0 +1,145 @@
+"""Parameters of the ensembles of polydisperse slabs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
+from granular_response.scene.errors import Problem
+from granular_response.scene.lattice import LatticeConstant
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, Positives, SceneGroup, over, some
+
+Spreads = Annotated[tuple[Fraction, ...], AfterValidator(some)]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One column of an ensemble."""
+
+    polydispersity: float
+    friction: float
+    lattice_constant: float | str
+    forces: tuple[float, ...]
+    realizations: int
+    wall_friction: float | None = None  #: None: the same as between disks
+
+
+class Cases(Description):
+    """One friction, of the walls too, at several polydispersities."""
+
+    polydispersities: Spreads
+    friction: Ratio
+    forces: Growing = Field(description="In mean disk weights.")
+    lattice_constant: LatticeConstant | None = Field(default=None, description="null: that of the scene.")
+    realizations: Count | None = Field(default=None, description="null: those of the group.")
+
+
+class Individual(Description):
+    """Fig. 19."""
+
+    polydispersity: Fraction
+    frictions: Coefficients
+    force: Positive
+    realizations: Count
+    width: Positive
+
+
+class LinearRange(Description):
+    """Fig. 20, with smooth walls."""
+
+    polydispersities: Spreads
+    frictions: Coefficients
+    forces: Growing
+    width: Positive
+    tolerance: Positive
+
+
+class ForcesPicture(Description):
+    """Fig. 2."""
+
+    polydispersity: Fraction
+    friction: Ratio
+    force: Positive
+    realization: Index
+
+
+class EnsembleGroup(SceneGroup):
+    """What makes a realization of a disordered slab.
+
+    ``scene`` holds the lattice constant of the start and what ends the fall.
+    """
+
+    scene: Annotated[
+        Scene,
+        over(
+            UNIT_LOAD,
+            "packing.polydispersity",
+            "packing.realization",
+            "contact.friction",
+            "wall.friction",
+            "loads",
+            "protocol.time_step",
+        ),
+    ] = UNIT_LOAD
+    time_step_part: Part = Field(description="Time step over the stability limit of the lightest disk.")
+    longest_time_step: Positive = Field(description="Without friction the limit is far beyond what the fall needs.")
+    collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a packing counts as collapsed.")
+
+
+class Parameters(EnsembleGroup):
+    """Section ``polydisperse_averages``."""
+
+    realizations: Count = Field(description="Of a disordered case; a lattice needs one.")
+    cases: Annotated[tuple[Cases, ...], AfterValidator(some)]
+    widths: Positives = Field(description="w of the smoothing Gaussian, in radii.")
+    reach: Positive = Field(description="Of the x axis of averages, in radii.")
+    spacing: Positive = Field(description="Of the x axis of averages, in radii.")
+    few: Count = Field(description="Configurations of the paper's averages.")
+    individual: Individual
+    linear_range: LinearRange
+    forces_picture: ForcesPicture
+
+    @property
+    def lattice_constant(self) -> float | str:
+        """Of the start, where a case has none of its own."""
+        return self.scene.packing.model_dump()["lattice_constant"]
+
+    @property
+    def columns(self) -> list[Case]:
+        """The cases, one polydispersity each."""
+        return [
+            Case(
+                delta,
+                entry.friction,
+                self.lattice_constant if entry.lattice_constant is None else entry.lattice_constant,
+                entry.forces,
+                1 if delta == 0.0 else entry.realizations or self.realizations,
+            )
+            for entry in self.cases
+            for delta in entry.polydispersities
+        ]
+
+    @model_validator(mode="after")
+    def _check(self) -> Parameters:
+        picture, shown = self.forces_picture, self.individual
+        if not any(
+            (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
+            and picture.realization < case.realizations
+            and picture.force in case.forces
+            for case in self.columns
+        ):
+            rule = "must be a realization and a force of one of the cases"
+            raise Problem(rule, key=("forces_picture",), value=picture.model_dump())
+        if not any(
+            case.polydispersity == shown.polydispersity
+            and case.friction in shown.frictions
+            and shown.force in case.forces
+            for case in self.columns
+        ):
+            rule = "must be a polydispersity, frictions and a force of the cases"
+            raise Problem(rule, key=("individual",), value=shown.model_dump())
+        return self

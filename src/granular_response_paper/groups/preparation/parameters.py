@@ -1,0 +1,67 @@
+"""Parameters of the slab prepared in several ways."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from granular_response.scene import Scene, SceneError
+from granular_response.scene.base import Description, Positive, Ratio
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over
+
+#: Keys of a scene that say how it came to rest.
+PREPARES = ("preparation.gravity", "preparation.ramp_time", "contact.damping_ratio")
+
+
+class Way(Description):
+    """A way to prepare the slab."""
+
+    name: Annotated[str, Field(strict=True, min_length=1)]
+    changes: dict[str, Any] = Field(description="To the base scene, by dotted key.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Way:
+        unknown = [key for key in self.changes if key not in PREPARES]
+        if unknown:
+            raise Problem(f"must be one of {', '.join(PREPARES)}", key=("changes", unknown[0]))
+        return self
+
+
+class Part(Description):
+    """Slabs of one friction between disks."""
+
+    friction: Ratio
+    walls: Literal["smooth", "rough"] = Field(default="smooth", description="rough: friction of the walls too.")
+    ways: tuple[str, ...] = Field(default=(), description="Names of preparations; none: all of them.")
+    to: Positive = Field(description="Largest force, in mean disk weights.")
+
+
+class Parameters(SceneGroup):
+    """Section ``preparation``."""
+
+    scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "wall.friction", "preparation", "loads")] = UNIT_LOAD
+    ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
+    forces: Growing = Field(description="In mean disk weights.")
+    parts: tuple[Part, ...] = Field(min_length=1)
+    asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Parameters:
+        names = [way.name for way in self.ways]
+        if len(set(names)) < len(names):
+            raise Problem("must have different names", key=("ways",), value=names)
+        for k, way in enumerate(self.ways):
+            try:
+                self.scene.updated(way.changes)
+            except SceneError as error:
+                raise Problem(str(error), key=("ways", str(k))) from None
+        for k, part in enumerate(self.parts):
+            for name in part.ways:
+                if name not in names:
+                    rule = f"must be one of the names in ways ({', '.join(names)})"
+                    raise Problem(rule, key=("parts", str(k), "ways"), value=name)
+            if part.to < self.forces[0]:
+                raise Problem("must not be below the first of forces", key=("parts", str(k), "to"), value=part.to)
+        return self

@@ -1,0 +1,46 @@
+"""How much each reading of the paper moves the floor response: a chart for docs/reproduction-notes.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response_paper.captions import Caption, of_scene
+
+from .parameters import Parameters
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """Largest difference of the floor response from the reference, for every variant and friction."""
+    figure, ((axes,),) = style.figure(width="double", height=3.2)
+    # powers of ten as such
+    texts = [str(text) for text in next(iter(datasets.values()))["text"].values[1:]]
+    names = [re.sub(r"1e(-?\d+)", r"$10^{\1}$", text) for text in texts]
+    places = np.arange(len(names))[::-1]
+    for index, (group, data) in enumerate(datasets.items()):
+        look = style.marked_line(index) | {"linestyle": "none"}
+        label = style.equals(style.FRICTION, float(group.removeprefix("mu_")))
+        axes.plot(data["largest_difference"].values[1:], places, label=label, **look)
+    axes.set(xscale="log", xlabel=f"largest change of the {style.RESPONSE}", yticks=places)
+    axes.set_yticklabels(names)
+    axes.grid(axis="y", linewidth=0.3)
+    axes.legend(loc="upper right", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
+    return {"sensitivity": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    return {
+        "sensitivity": Caption(
+            "How much each reading of the paper changes the floor response, one changed at a time: largest difference "
+            "from the reference per applied force. The table of readings has the numbers.",
+            "Two marks for each reading on a logarithmic axis, over several powers of ten.",
+            of_scene(parameters.scene, force=parameters.force, friction=parameters.friction),
+        )
+    }

@@ -1,0 +1,175 @@
+"""How much each reading of the paper matters: the same slab and load with one thing changed at a time.
+
+For each variant the floor response is compared, disk by disk, with that of the reference: the paper's protocol with
+Beeman, and where the paper says nothing, gravity at once, a ramp of 20, spring and dashpot cut at the Coulomb limit,
+Newton finish. Stored are the largest and the root-mean-square difference, and what the variant itself settled to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe.floor import floor_disks, floor_response
+from granular_response.scene import Scene
+from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
+from granular_response.solve.timestep import resolve_time_step
+from granular_response.state import State
+from granular_response.store.result import variable
+from granular_response.sweeps.rest import rest_state
+from granular_response.sweeps.tasks import map_tasks
+from granular_response_paper.groups.sensitivity.parameters import Parameters
+
+REFERENCE = "reference"
+
+#: Changes to the scene while the load acts, by variant: friction laws that statics does not have.
+LAWS_OF_MOTION: Mapping[str, Mapping[str, Any]] = {
+    "literal_friction": {"protocol.friction_law": "literal"},
+    "unloading_friction": {"protocol.friction_law": "unloading"},
+}
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One change to the reference scene. ``rest`` and ``load`` are changes to the two stages, by key of a scene."""
+
+    name: str
+    text: str
+    rest: Mapping[str, Any]
+    load: Mapping[str, Any]
+
+
+def variants() -> list[Variant]:
+    """All variants, the reference first."""
+
+    def both(name: str, text: str, **changes: Any) -> Variant:
+        spelled = {key.replace("__", "."): value for key, value in changes.items()}
+        return Variant(name, text, spelled, spelled)
+
+    return [
+        Variant(REFERENCE, "the paper's protocol as read here", {}, {}),
+        both("time_step_halved", "time step halved", protocol__time_step=2.5e-4),
+        both("gear", "Gear at half the time step (its limit is lower)", protocol__integrator="gear",
+             protocol__time_step=2.4e-4),
+        both("verlet", "velocity Verlet in place of Beeman", protocol__integrator="verlet"),
+        both("no_tensile_dashpot", "normal force cut off at zero", protocol__tensile_dashpot=False),
+        both("damping_halved", "dashpots halved", contact__damping_ratio=0.25),
+        both("slow_gravity", "gravity grows over 100 in place of at once", preparation__gravity="slow"),
+        both("stop_1e-9", "stopped at 1e-9 per disk, without the static finish", protocol__stop_kinetic_energy=1e-9,
+             protocol__static_finish=False),
+        both("no_static_finish", "stopped at 1e-13 per disk, without the static finish",
+             protocol__static_finish=False),
+        Variant("ramp_80", "load ramp of 80 in place of 20", {}, {"protocol.ramp_time": 80.0}),
+        Variant("sudden_load", "load applied at once", {}, {"protocol.ramp_time": 0.0}),
+        Variant("path", "quasi-static path in place of dynamics", {}, {"protocol.method": "path"}),
+    ]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Task:
+    scene: Scene
+    variant: Variant
+    steps: int = 0  #: length of the run by a friction law that statics does not have; 0 for an ordinary variant
+
+
+@dataclass(frozen=True)
+class Outcome:
+    response: np.ndarray  #: (bottom row,)
+    x: np.ndarray  #: (bottom row,)
+    kinetic_energy: float
+    force_residual: float
+
+
+def compute(task: Task) -> Outcome:
+    """The floor response of one variant."""
+    rest_scene = task.scene.updated({"protocol.method": "dynamics", **task.variant.rest})
+    load_scene = task.scene.updated({"protocol.method": "dynamics", **task.variant.load})
+    rest = rest_state(Problem.from_scene(rest_scene))
+    problem = Problem.from_scene(load_scene).with_loads(rest.position)
+    if task.steps:
+        return _outcome(problem, rest, _by_another_law(problem, rest, task))
+    _, (loaded,) = loaded_states(problem, rest, [1.0])
+    return _outcome(problem, rest, loaded)
+
+
+def _by_another_law(problem: Problem, rest: State, task: Task) -> State:
+    """The loaded state after a fixed time by a friction law that need not have a rest."""
+    other = Problem.from_scene(problem.scene.updated(LAWS_OF_MOTION[task.variant.name]))
+    other = replace(other, load_disk=problem.load_disk, load=problem.load)
+    dynamics = Dynamics(other, rest, problem.scene.protocol.integrator, resolve_time_step(other))
+    ramp = (0.0, 1.0, problem.scene.protocol.ramp_time)
+    return relax(dynamics, Stop(1e-30, maximum_steps=task.steps), load=ramp)
+
+
+def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
+    bottom = floor_disks([rest, loaded], np.flatnonzero(problem.packing.row == 0))
+    total = float(np.hypot(problem.load[:, 0], problem.load[:, 1]).sum())
+    certificate = loaded.reached.certificate
+    energy = loaded.reached.kinetic_energy
+    if energy is None:
+        energy = certificate.kinetic_energy if certificate else np.nan
+    return Outcome(
+        response=floor_response(rest, loaded, bottom, total),
+        x=problem.packing.position[bottom, 0] - problem.packing.position[problem.load_disk[0], 0],
+        kinetic_energy=float(energy),
+        force_residual=certificate.force_residual if certificate else np.nan,
+    )
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """One dataset for each coefficient of friction; see the module."""
+    known = variants()
+    laws = [
+        Variant("literal_friction", "the paper's equation for the spring taken literally", {}, {}),
+        Variant("unloading_friction", "the spring frozen at the limit, free to unload", {}, {}),
+    ]
+    load = {"disk": "top-centre", "force": [0.0, -parameters.force]}
+    tasks = []
+    for friction in parameters.friction:
+        scene = parameters.scene.updated({"contact.friction": friction, "loads": [load]})
+        tasks += [Task(scene, variant) for variant in known]
+        tasks += [Task(scene, law, parameters.literal_steps) for law in laws]
+    outcomes = map_tasks(compute, tasks)
+    attributes = {"force": parameters.force, "layers": int(parameters.scene.packing.build().row_count.size)}
+    datasets = {}
+    per = len(known) + len(laws)
+    for k, friction in enumerate(parameters.friction):
+        dataset = _dataset([*known, *laws], outcomes[k * per : (k + 1) * per])
+        datasets[f"mu_{friction:g}"] = dataset.assign_attrs(attributes)
+    return datasets
+
+
+def _dataset(known: list[Variant], outcomes: list[Outcome]) -> xr.Dataset:
+    response = np.stack([o.response for o in outcomes])
+    difference = response - response[0]
+    return xr.Dataset(
+        {
+            "floor_response": variable(("variant", "floor_disk"), response, "floor response per applied force"),
+            "largest_difference": variable(
+                "variant", np.abs(difference).max(axis=1), "largest difference of the floor response"
+            ),
+            "rms_difference": variable(
+                "variant", np.sqrt((difference**2).mean(axis=1)), "rms difference of the floor response"
+            ),
+            "response_sum": variable("variant", response.sum(axis=1), "sum of the floor response"),
+            "kinetic_energy": variable(
+                "variant",
+                [o.kinetic_energy for o in outcomes],
+                "kinetic energy per disk where the dynamics stopped, in mean weight times mean radius",
+            ),
+            "force_residual": variable(
+                "variant",
+                [o.force_residual for o in outcomes],
+                "largest unbalanced force on a disk in mean disk weights",
+            ),
+            "text": variable("variant", [v.text for v in known], "what is changed"),
+        },
+        coords={
+            "variant": variable("variant", [v.name for v in known], "name of the variant"),
+            "x": variable("floor_disk", outcomes[0].x, "lattice position from the loaded disk in mean radii"),
+        },
+    )

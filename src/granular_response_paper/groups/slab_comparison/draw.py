@@ -1,0 +1,131 @@
+"""Beside Fig. 1a: simulated responses to a small force and the elastic slab, as the number of layers grows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import islice
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response_paper.captions import Caption, letters, of_scene
+
+from .parameters import Parameters
+
+STEM = "fig01b_slab_comparison"
+
+#: What tells cases apart.
+_KEYS = ("friction", "floor", "gravity", "disks_per_layer")
+
+#: Legends stand below their panels, in two columns.
+_BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 2, "columnspacing": 1.4}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``fig01b_slab_comparison`` from the dataset ``slabs`` of the study of the same name."""
+    data = datasets["slabs"]
+    figure, ((profiles, distances),) = style.figure(1, 2, width="double", height=3.5)
+    first, second = islice(letters(STEM), 2)
+    _profiles(profiles, data)
+    style.letter(profiles, first, place="above", text="response and elastic slab")
+    _distances(distances, data)
+    style.letter(distances, second, place="above", text="distance")
+    return {STEM: figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    cases = parameters.cases
+    layers = sorted({n for case in cases for n in case.layers})
+    return {
+        "fig01b_slab_comparison": Caption(
+            "Not in the paper: simulated slabs beside the elastic slab with their moduli and floor. (c) Floor "
+            "pressure of a thin slab (open symbols) and of a deep one (small ones), each with its elastic slab. (d) "
+            "Largest distance of the two, per largest response, as the number of layers grows; 8 wide: eight disks "
+            "of a row for each layer; rough: as much friction on floor and walls as between disks; slow: gravity "
+            "grows slowly. Two things keep packings from the elastic slab: beside smooth walls gravity opens "
+            "contacts, which is felt in a narrow slab of any depth, and a sudden fall on a rough floor can open a "
+            "row in the middle, as with 15 layers.",
+            "(c) Symbols on two bell-shaped curves, the smooth floor's higher. (d) Distances that fall with the "
+            "number of layers on logarithmic axes, but for one outlier at 15 layers.",
+            of_scene(
+                parameters.scene,
+                force=parameters.force,
+                friction=sorted({case.friction for case in cases}),
+                wall_friction=sorted({case.friction if case.floor == "rough" else 0.0 for case in cases}),
+                stiffness_ratio=parameters.scene.contact.stiffness_ratio,
+                packing=f"slabs of {layers[0]} to {layers[-1]} layers",
+            ),
+        )
+    }
+
+
+def _cases(data: xr.Dataset) -> list[tuple[tuple, np.ndarray]]:
+    """The cases in order of their first slab, each with its slabs."""
+    keys = list(zip(*(data[key].values.tolist() for key in _KEYS), strict=True))
+    return [(case, np.array([k for k, key in enumerate(keys) if key == case])) for case in dict.fromkeys(keys)]
+
+
+def _name(case: tuple) -> str:
+    friction, floor, gravity, shape = case
+    return f"µ = {friction:g}, {floor}, {shape:g} wide" + (", slow" if gravity == "slow" else "")
+
+
+def _profiles(axes: Axes, data: xr.Dataset) -> None:
+    """A thin and a deep slab of the first case on a smooth and the last one on a rough floor."""
+    cases = _cases(data)
+    first = {floor: slabs for case, slabs in reversed(cases) for floor in [case[1]]}
+    shown = [first[floor] for floor in ("smooth", "rough") if floor in first]
+    for index, slabs in enumerate(shown):
+        friction, floor = float(data["friction"][slabs[0]]), str(data["floor"].values[slabs[0]])
+        for k, marker in zip((slabs[0], slabs[-1]), ("o.", "sx")[index], strict=True):
+            layers = int(data["layers"][k])
+            height = np.sqrt(3.0) * layers
+            x = data["x"].values[k] / height
+            near = np.abs(x) <= 2.0
+            # a floor disk covers a length of 2
+            pressure = 0.5 * height * data["floor_response"].values[k]
+            look: dict[str, Any] = {"color": style.COLOURS[index], "linestyle": "none", "marker": marker, "zorder": 3}
+            look |= {"markersize": 4.5, "markerfacecolor": "none"} if marker in "os" else {"markersize": 3.0}
+            name = f"µ = {friction:g}, {floor}, {layers} layers"
+            axes.plot(x[near], pressure[near], **look, label=name)
+        elastic = 0.5 * height * data["elastic"].values[k]
+        axes.plot(x[near], elastic[near], **style.line(index), label=f"elastic slab, {floor}")
+    axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    axes.set(xlabel=style.SCALED_POSITION, ylabel=style.PRESSURE, xlim=(-2.0, 2.0))
+    axes.legend(**_BELOW)
+
+
+def _distances(axes: Axes, data: xr.Dataset) -> None:
+    """Distance against the number of layers, one line for each case."""
+    for index, (case, slabs) in enumerate(_cases(data)):
+        axes.plot(
+            data["layers"].values[slabs], data["distance"].values[slabs], **style.marked_line(index), label=_name(case)
+        )
+    layers = np.array([data["layers"].values.min(), data["layers"].values.max()], dtype=float)
+    other = data["distance_other_floor"].values.min()
+    axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))
+    axes.annotate(
+        "to the other floor's slab",
+        (layers[0], other),
+        (0, -4),
+        textcoords="offset points",
+        va="top",
+        fontsize=8,
+        color=style.MUTED,
+    )
+    guide = (
+        1.25 * data["distance"].values.max(initial=0.0, where=data["layers"].values == layers[0]) * layers[0] / layers
+    )
+    axes.plot(layers, guide, color=style.FAINT, linewidth=0.8, zorder=0)
+    axes.annotate("$\\propto 1/n$", (layers[1], guide[1]), (0, -12), textcoords="offset points", ha="right", fontsize=8)
+    axes.set(xscale="log", yscale="log", xlabel="layers $n$", ylabel="distance / largest response")
+    ticks = sorted(set(data["layers"].values.tolist()))
+    axes.set_xticks(ticks, [f"{n:g}" for n in ticks])
+    axes.minorticks_off()
+    axes.legend(**_BELOW)

@@ -1,0 +1,57 @@
+"""Parameters of the comparison with the elastic slab."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Description, Positive, Ratio, allowed
+from granular_response.scene.errors import Problem
+from granular_response.theory.slab import Floor
+from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, over, some
+
+Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number from 2 on")]
+
+
+class Case(Description):
+    """One material and shape, at several depths."""
+
+    friction: Ratio = Field(description="Between disks.")
+    floor: Floor = Field(description="rough: as much friction on floor and walls as between disks.")
+    gravity: Literal["at-once", "slow"] = Field(description="How gravity is applied.")
+    disks_per_layer: Rows = Field(description="Disks of a row over number of rows.")
+    layers: Annotated[tuple[Rows, ...], AfterValidator(some)] = Field(description="Numbers of rows.")
+
+    @model_validator(mode="after")
+    def _check_floor(self) -> Case:
+        if self.floor == "rough" and self.friction == 0.0:
+            raise Problem("must be smooth, or rough with friction above 0", key=("floor",), value=self.floor)
+        return self
+
+
+class Parameters(SceneGroup):
+    """Section ``slab_comparison``."""
+
+    scene: Annotated[
+        Scene,
+        over(
+            UNIT_LOAD,
+            "packing.layers",
+            "packing.disks_per_row",
+            "contact.friction",
+            "wall.friction",
+            "preparation.gravity",
+            "loads",
+        ),
+    ] = Field(description="Base scene; contact.stiffness_ratio is that of packings with friction.")
+    force: Positive = Field(description="Small, in mean disk weights.")
+    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and shapes.")
+
+    @model_validator(mode="after")
+    def _check_ratio(self) -> Parameters:
+        ratio = self.scene.contact.stiffness_ratio
+        if not ratio > 0.0:
+            raise Problem("must be above 0", key=("scene", "contact", "stiffness_ratio"), value=ratio)
+        return self

@@ -1,0 +1,252 @@
+"""Where the dynamics stops working: limits of the time step, energy, rolling, and what became of random scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from granular_response.plot import style
+from granular_response.state import FloatArray
+from granular_response_paper.captions import WEIGHT, Caption, values
+
+from .parameters import Parameters
+
+#: Outcomes of a kick in the order of their codes.
+OUTCOMES = ("settles", "cycles", "blows up", "no rest state")
+SETTLES, BLOWS_UP = OUTCOMES.index("settles"), OUTCOMES.index("blows up")
+#: Axes of the study of time steps with their labels.
+AXES = {
+    "normal_stiffness": style.STIFFNESS,
+    "stiffness_ratio": f"${style.STIFFNESS_RATIO}$",
+    "damping_ratio": r"damping ratio $\zeta$",
+    "friction": f"${style.FRICTION}$",
+    "wall_friction": f"${style.WALL_FRICTION}$",
+    "wall_stiffness": f"{style.STIFFNESS} of walls",
+    "polydispersity": f"${style.POLYDISPERSITY}$",
+    "load": style.FORCE,
+}
+#: Markers without a line.
+DOTS: dict[str, Any] = {"linestyle": "none", "markersize": 4.5}
+
+#: Outcomes of random scenes in the order of their codes.
+RANDOM = ("certified", "uncertified", "not settled", "no equilibrium", "time step refused", "scene refused", "wrong")
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``stability_steps`` (a panel for each property of the scene), ``stability_motion`` and ``stability_scenes``."""
+    return {
+        "stability_steps": _steps(datasets),
+        "stability_motion": _motion(datasets),
+        "stability_scenes": _scenes(datasets),
+    }
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    steps, drift, rounding = parameters.time_steps, parameters.drift, parameters.rounding
+    scenes = datasets["random_scenes"].sizes["scene"]
+    axes = [name for name in AXES if f"time_step_{name}" in datasets]
+    return {
+        "stability_steps": Caption(
+            f"Not in the paper: (a) to ({'abcdefgh'[len(axes) - 1]}) up to which time step, in units of the "
+            "predicted limit, a kicked slab at rest settles in raw dynamics, for three integrators. One property of "
+            "the scene is changed in each panel. Bars reach from the last step up to which all settle to the first "
+            f"that does not, of {values(steps.ratios)} tried; crosses are the smallest steps at which the energy "
+            "grows without end.",
+            "Eight panels. The bars of every integrator lie at or above the predicted limit for all values, those of "
+            "velocity Verlet up to half above it; crosses lie mostly at twice the limit and more.",
+        ),
+        "stability_motion": Caption(
+            "Not in the paper. Change of the energy per kinetic energy at first of an undamped slab that is kicked, "
+            f"(a) without friction, with {drift.part_of_limit:g} of the largest stable time step, and (b) with "
+            f"friction {drift.friction:g}, which only takes energy; the three curves cover each other. (c) "
+            "Collisions without dashpots, largest of all spins and coefficients of friction: the default rule of "
+            "friction never gives energy, the paper's equation for the spring taken literally does. (d) Disks set on "
+            "the floor with a velocity and a spin, which slide until they roll: lines simulated, symbols in closed "
+            "form, full for the velocity, hollow for the speed of the rim.",
+            "Four plots: energy that drifts by thousandths, energy that friction takes, energies after a collision per "
+            "those before, at most 1 for the default rule, and velocities that meet when disks roll.",
+        ),
+        "stability_scenes": Caption(
+            f"Not in the paper. (a) What became of {scenes} random scenes: plain bars have a result, hatched ones an "
+            "error of one line, and wrong would be a result that its positions contradict or an error that nobody "
+            "understands. (b) Largest unbalanced force of certified results, computed from positions alone (broken "
+            f"line: 1e-9 {WEIGHT}; beyond are stiff scenes, where the last digit of a position is worth that much). "
+            f"(c) Relative change of a floor response when the rest state is displaced by {rounding.displacement:g} "
+            f"of a radius (broken line), {rounding.kicks} times each.",
+            "Bars of outcomes, a histogram of unbalanced forces on a logarithmic axis, and for each of some packings "
+            "points of the change, which is largest after a collapse.",
+        ),
+    }
+
+
+def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
+    """A panel for each property of the scene: where settling ends for each integrator, and where energy explodes."""
+    names = [name for name in AXES if f"time_step_{name}" in datasets]
+    integrators = [str(i) for i in datasets[f"time_step_{names[0]}"]["integrator"].values]
+    columns = min(4, len(names))
+    rows = -(-len(names) // columns)
+    figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharey=True)
+    for axes in panels.flat[len(names) :]:
+        axes.set_axis_off()
+    for index, (axes, name) in enumerate(zip(panels.flat, names, strict=False)):
+        study = datasets[f"time_step_{name}"]
+        for k, integrator in enumerate(integrators):
+            outcome = study["outcome"].sel(integrator=integrator).transpose(name, "ratio").values
+            shift = 0.22 * (k - 0.5 * (len(integrators) - 1))
+            _limits(axes, study["ratio"].values, outcome, shift, style.marked_line(k), integrator.capitalize())
+        axes.axhline(1.0, color=style.BLACK, linestyle="-", linewidth=0.8, zorder=0, label="predicted limit")
+        axes.set(yscale="log", xlabel=AXES[name], xlim=(-0.6, study.sizes[name] - 0.4), ylim=(0.7, 4.6))
+        axes.set_xticks(range(study.sizes[name]), [_short(value) for value in study[name].values], rotation=90)
+        axes.set_yticks([1.0, 2.0, 4.0], ["1", "2", "4"])
+        axes.minorticks_off()
+        axes.tick_params(axis="x", top=False, length=2.0)
+        style.letter(axes, chr(ord("a") + index), place="above")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("time step / limit")
+    handles, labels = panels.flat[0].get_legend_handles_labels()
+    handles.append(Line2D([], [], linestyle="none", marker="x", color=style.BLACK))
+    figure.legend(handles, [*labels, "blows up from here"], loc="outside upper center", ncols=len(handles))
+    return figure
+
+
+def _limits(
+    axes: Axes, ratio: FloatArray, outcome: NDArray[Any], shift: float, look: dict[str, Any], name: str
+) -> None:
+    """Brackets of the step up to which all settle; a cross at the smallest step that blows up.
+
+    ``outcome`` (value, ratio) are codes of :data:`OUTCOMES` for growing ``ratio``. There is no bracket where the
+    smallest step does not settle, or the largest does.
+    """
+    settled = np.logical_and.accumulate(outcome == SETTLES, axis=1).sum(axis=1)
+    here = (settled > 0) & (settled < len(ratio))
+    low, high = ratio[settled[here] - 1], ratio[settled[here]]
+    middle = np.sqrt(low * high)
+    bars = np.stack([middle - low, high - middle])
+    at = np.flatnonzero(here) + shift
+    axes.errorbar(at, middle, bars, **{**look, "linestyle": "none", "markersize": 4.5}, elinewidth=1.2, label=name)
+    for index, row in enumerate(outcome):
+        exploding = np.flatnonzero(row == BLOWS_UP)
+        if exploding.size:
+            axes.plot(index + shift, ratio[exploding[0]], marker="x", color=look["color"], markersize=4.5)
+
+
+def _short(value: float) -> str:
+    exponent = round(np.log10(value)) if value else 0
+    return rf"$10^{exponent}$" if exponent > 2 and value == 10.0**exponent else f"{value:g}"
+
+
+def _motion(datasets: Mapping[str, xr.Dataset]) -> Figure:
+    figure, axes = style.figure(2, 2, width="double", height=4.8)
+    _drift(axes[0, 0], datasets["drift"])
+    _sliding(axes[0, 1], datasets["drift"])
+    _collisions(axes[1, 0], datasets["collisions"])
+    _rolling(axes[1, 1], datasets["rolling"])
+    style.letters(axes)
+    return figure
+
+
+def _drift(panel: Axes, study: xr.Dataset) -> None:
+    for k, integrator in enumerate(study["integrator"].values):
+        one = study.sel(integrator=integrator, system="slab")
+        panel.plot(one["time"], 1e3 * one["energy_change"], label=str(integrator).capitalize(), **style.line(k))
+    panel.set_xlabel(f"time [${style.TIME_UNIT}$]")
+    panel.set_ylabel(r"energy change [$10^{-3}$]")
+    low, high = panel.get_ylim()
+    panel.set_ylim(low, high + 0.3 * (high - low))
+    panel.legend(title="undamped slab, no friction", loc="upper right", ncols=3)
+
+
+def _sliding(panel: Axes, study: xr.Dataset) -> None:
+    for k, integrator in enumerate(study["integrator"].values):
+        one = study.sel(integrator=integrator, system="slab with friction")
+        look = style.marked_line(k)
+        place = slice(1 + 5 * k, None, 15)  # at other times, as the curves cover each other
+        panel.plot(one["time"], one["energy_change"], color=look["color"], linestyle="-", linewidth=0.9)
+        panel.plot(one["time"][place], one["energy_change"][place], label=str(integrator).capitalize(), **look | DOTS)
+    panel.axhline(0.0, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=0)
+    panel.set_ylim(-1.15, 0.25)
+    panel.set_xlabel(f"time [${style.TIME_UNIT}$]")
+    panel.set_ylabel("energy change")
+    panel.legend(title="the same with friction", loc="center right")
+
+
+def _collisions(panel: Axes, study: xr.Dataset) -> None:
+    worst = study["energy_ratio"].max(["spin", "friction"])
+    for k, (law, body) in enumerate((law, body) for law in ("cut", "literal") for body in ("floor", "disk")):
+        one = worst.sel(friction_law=law, body=body, damping_ratio=0.0)
+        panel.plot(one["angle"], one, label=f"{law} rule, {body}", **style.marked_line(k))
+    panel.axhline(1.0, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=0)
+    panel.set_xlabel("angle from grazing [degrees]")
+    panel.set_ylabel("largest energy, after / before")
+    low, high = panel.get_ylim()
+    panel.set_ylim(low, high + 0.25 * (high - low))
+    panel.legend(loc="upper right", ncols=2)
+
+
+def _rolling(panel: Axes, study: xr.Dataset) -> None:
+    """Time in units of that at which sliding ends, so that all starts have their kink at one."""
+    friction = float(study["friction"])
+    for k in range(study.sizes["start"]):
+        one = study.isel(start=k)
+        time = one["time"] * 3.0 * friction / abs(float(one["speed"]) + float(one["spin"]))
+        label = f"$v = {float(one['speed']):g}$, $R\\omega = {float(one['spin']):g}$"
+        look = style.marked_line(k)
+        panel.plot(time, one["velocity"], color=look["color"], linestyle="-")
+        panel.plot(time, one["rim_speed"], color=look["color"], linestyle="--")
+        some = slice(4, None, 8)
+        panel.plot(time[some], one["exact_velocity"][some], label=label, **look | DOTS)
+        hollow = {"markerfacecolor": "white", "markeredgewidth": 0.8}
+        panel.plot(time[some], one["exact_rim_speed"][some], **look | DOTS | hollow)
+    low, high = panel.get_ylim()
+    panel.set_ylim(low, high + 0.15 * (high - low))
+    panel.set_xlabel("time / time of sliding")
+    panel.set_ylabel(r"velocity (–), rim speed (– –) [$\sqrt{g\bar R}$]")
+    panel.legend(title="at first", loc="lower right")
+
+
+def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
+    figure, axes = style.figure(1, 3, width="double", height=3.2, width_ratios=[1.1, 1, 1])
+    outcomes, residuals, rounding = axes[0]
+    study = datasets["random_scenes"]
+    code = study["outcome"].values
+    count = [int((code == k).sum()) for k in range(len(RANDOM))]
+    place = np.arange(len(RANDOM))[::-1]
+    bars = outcomes.barh(place, count, color=[style.SKY, style.SKY, *[style.ORANGE] * 4, style.VERMILION])
+    for bar in bars[2:]:
+        bar.set(hatch="////", edgecolor="white", linewidth=0.0)
+    for y, number in zip(place, count, strict=True):
+        outcomes.annotate(str(number), (number, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=8)
+    outcomes.set_yticks(place, RANDOM)
+    step = 250 if max(count) > 500 else 10
+    outcomes.set(xlim=(0, step * np.ceil(1.2 * max(count) / step)))
+    outcomes.tick_params(axis="y", length=0.0)
+    outcomes.set_xlabel("random scenes")
+    certified = study["force_residual"].values[code == 0]
+    bins = np.logspace(-16, -3, 53)
+    residuals.hist(np.maximum(certified, 1e-16), bins=bins, color=style.SKY)
+    residuals.axvline(1e-9, color=style.MUTED, linewidth=0.8, linestyle="--")
+    residuals.set(xscale="log", xlim=(1e-16, 1e-4 if certified.max(initial=0.0) < 1e-4 else 1e-2))
+    residuals.set_xticks([1e-16, 1e-13, 1e-10, 1e-7, 1e-4])
+    residuals.set_xlabel(f"unbalanced force [${style.WEIGHT}$]")
+    residuals.set_ylabel("certified scenes")
+    disturbed = datasets["rounding"]
+    rows = np.arange(disturbed.sizes["case"])[::-1]
+    for k in range(disturbed.sizes["kick"]):
+        rounding.plot(disturbed["response_change"].isel(kick=k), rows, "o", color=style.BLUE)
+    rounding.axvline(float(disturbed["displacement"]), color=style.MUTED, linewidth=0.8, linestyle="--")
+    rounding.set(xscale="log", xlim=(1e-13, 1.0), xticks=[1e-12, 1e-9, 1e-6, 1e-3, 1.0])
+    names = [str(case).replace(", ", ",\n", 1) for case in disturbed["case"].values]
+    rounding.set_yticks(rows, names, fontsize=7, linespacing=0.9)
+    rounding.set_ylim(-0.7, len(rows) - 0.3)
+    rounding.set_xlabel("change of the response")
+    style.letters(axes, place="above")
+    return figure

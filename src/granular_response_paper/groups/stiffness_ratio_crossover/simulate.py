@@ -1,0 +1,220 @@
+"""Large friction: how the response depends on the ratio of tangential to normal stiffness (Secs. V.B, V.C).
+
+Fig. 10 and claims K1 to K3. With a coefficient of friction that is hardly ever reached, weaker tangential springs
+turn one peak into two. ``response`` holds the simulated profiles; ``elastic`` those of elastic bodies with the
+moduli of the spring model without its horizontal springs, which the load has opened, and ``events`` the
+ratios at which the simulated profile changes its form.
+
+The two events do not coincide: between them the middle of the profile is flat to a few thousandths of its height,
+and small peaks come and go with the contacts that are open at rest. Every ratio has a rest state of its own.
+At a ratio of zero there are no tangential forces: that packing is frictionless, and its states are found as minima
+of the energy whatever ``method`` says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe.events import bisect_event
+from granular_response.observe.peaks import central_dip
+from granular_response.scene import Scene
+from granular_response.state import FloatArray
+from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.sweeps.tasks import map_tasks
+from granular_response.theory import half_plane, lattice
+from granular_response.theory.crossover import Body
+from granular_response.theory.lattice import Springs
+from granular_response.theory.slab import Floor, response_of_layers
+from granular_response_paper import slab_response as slab
+from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
+
+BODIES: tuple[Body, ...] = get_args(Body)
+ROTATIONS: tuple[lattice.Rotations, ...] = get_args(lattice.Rotations)
+
+#: Further ratios at which the elastic bodies are computed, which costs next to nothing.
+ELASTIC_RATIOS = np.round(np.arange(0.025, 1.0, 0.025), 3)
+
+EVENTS = {
+    "two_peaks_end": "the first stiffness ratio, going up, at which the floor response has no two peaks each "
+    "higher than the response at x = 0 by a thousandth of the largest response",
+    "central_maximum_begins": "the stiffness ratio above which the floor response is largest at x = 0, at every ratio "
+    "of the axis",
+}
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """One stiffness ratio of a scene with one load of unit force."""
+
+    base: Scene
+    stiffness_ratio: float
+    force: float
+
+    def scene(self) -> Scene:
+        changes: dict[str, Any] = {"contact.stiffness_ratio": self.stiffness_ratio}
+        if self.stiffness_ratio == 0.0:
+            changes["protocol.method"] = "auto"
+        return self.base.updated(changes)
+
+
+def measure(task: Ratio) -> tuple[xr.Dataset, str]:
+    """The measured response of a packing at one stiffness ratio, and the method that found it."""
+    path = slab.LoadPath.of(task.scene())
+    state = path.at(task.force)
+    return slab.measured(slab.Measures(path), [state]), path.method
+
+
+@dataclass(frozen=True)
+class Search:
+    """An event between two stiffness ratios, to be narrowed."""
+
+    name: str
+    base: Scene
+    force: float
+    low: float
+    high: float
+    tolerance: float
+
+
+def narrow(search: Search) -> slab.Event:
+    """Bisect an event of ``EVENTS``; every evaluation settles and loads a packing."""
+    happened = _HAPPENED[search.name]
+
+    def predicate(ratio: float) -> bool:
+        return happened(measure(Ratio(search.base, ratio, search.force))[0])
+
+    bracket = bisect_event(predicate, search.low, search.high, search.tolerance, at_low=False, at_high=True)
+    return _event(search.name, search.base, bracket.low, bracket.high)
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """Datasets ``response``, ``elastic`` and ``events``."""
+    base, force, tolerance = parameters.base, parameters.force, parameters.tolerance
+    ratios = np.array(parameters.ratios)
+
+    tasks = [Ratio(base, ratio, force) for ratio in ratios.tolist()]
+    results = map_tasks(measure, tasks, what="stiffness ratios")
+    measured = [result for result, _ in results]
+
+    found: list[slab.Event] = []
+    searches: list[Search] = []
+    for name, low, high in _brackets(ratios, measured):
+        if np.isfinite(high) and low > 0.0 and high - low > tolerance:
+            searches.append(Search(name, base, force, low, high, tolerance))
+        else:
+            found.append(_event(name, base, low, high))
+    found += map_tasks(narrow, searches, what="crossovers")
+    found.sort(key=lambda event: list(EVENTS).index(event.name))
+
+    response = slab.measured_along("stiffness_ratio", measured).assign_coords(stiffness_ratio=_ratio(ratios))
+    response["force"] = variable((), force, f"applied force {FORCE}")
+    response["methods"] = variable(
+        "stiffness_ratio", [method for _, method in results], "method that found the loaded state"
+    )
+    packing = base.packing.build()
+    datasets = {
+        "response": response,
+        "elastic": elastic_bodies(
+            np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
+        ),
+        "events": slab.events_dataset(found).drop_vars("friction"),
+    }
+    datasets["events"]["low"].attrs["long_name"] = "stiffness ratio before the event"
+    return labelled(datasets, base)
+
+
+def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float) -> xr.Dataset:
+    """Response of elastic bodies with the moduli of the spring model without horizontal springs (Sec. V.C).
+
+    ``profile`` (rotations, body, stiffness_ratio, floor_disk) is what each floor disk at ``x`` gets of a unit
+    force: the pressure on the diameter below it, of the half plane at the depth of the floor or of a slab of
+    ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a ratio of zero, where the lattice
+    resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
+    """
+    height = np.sqrt(3.0) * layers
+    node, weight = np.polynomial.legendre.leggauss(8)
+    profile = np.full((len(ROTATIONS), len(BODIES), len(ratios), len(x)), np.nan)
+    error = np.full((len(ROTATIONS), len(ratios)), np.nan)
+    for r, rotations in enumerate(ROTATIONS):
+        for k, ratio in enumerate(ratios.tolist()):
+            if ratio == 0.0:
+                continue
+            springs = Springs(0.0, 1.0, 0.0, ratio)
+            moduli = lattice.moduli(springs, rotations)
+            exact = moduli.matrix()
+            error[r, k] = np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max()
+            for b, body in enumerate(BODIES):
+                if body == "half plane":
+                    profile[r, b, k] = half_plane.pressure(x[:, None] + node, height, moduli) @ weight
+                else:
+                    floor: Floor = "smooth" if body == "smooth floor" else "rough"
+                    profile[r, b, k] = response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
+    dip = np.full(profile.shape[:3], np.nan)
+    for index in np.ndindex(dip.shape):
+        if np.isfinite(profile[index]).all():
+            dip[index] = central_dip(x, profile[index])
+    dims = ("rotations", "body", "stiffness_ratio")
+    return xr.Dataset(
+        {
+            "profile": variable((*dims, "floor_disk"), profile, "force on a floor disk per applied force"),
+            "central_dip": variable(
+                dims, dip, "how far the profile at x = 0 is below the lower maximum beside it, per largest value"
+            ),
+            "root": variable(
+                "rotations",
+                [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
+                "k_2t/k_2n at which r of Sec. V.C is 0",
+            ),
+            "moduli_error": variable(
+                ("rotations", "stiffness_ratio"),
+                error,
+                "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest",
+            ),
+        },
+        coords={
+            "stiffness_ratio": _ratio(ratios),
+            "x": variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
+            "body": variable("body", list(BODIES), "elastic body that carries the force"),
+            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
+        },
+    )
+
+
+def _two_peaks_ended(measured: xr.Dataset) -> bool:
+    return not measured["double_peaked"][0]
+
+
+def _largest_at_centre(measured: xr.Dataset) -> bool:
+    return bool(measured["central_dip"][0] < 0.0)
+
+
+_HAPPENED: dict[str, Callable[[xr.Dataset], bool]] = {
+    "two_peaks_end": _two_peaks_ended,
+    "central_maximum_begins": _largest_at_centre,
+}
+
+
+def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> list[tuple[str, float, float]]:
+    """Where on the axis each event lies."""
+    ended = [_two_peaks_ended(one) for one in measured]
+    central = [_largest_at_centre(one) for one in measured]
+    # the last stretch of ratios with the maximum at the centre; there may be others below it
+    begun = [all(central[k:]) for k in range(len(central))]
+    return [
+        ("two_peaks_end", *slab.first_change(ratios, ended)),
+        ("central_maximum_begins", *slab.first_change(ratios, begun)),
+    ]
+
+
+def _event(name: str, base: Scene, low: float, high: float) -> slab.Event:
+    return slab.Event(name, base.contact.friction, low, high, EVENTS[name])
+
+
+def _ratio(ratios: FloatArray) -> xr.Variable:
+    return variable("stiffness_ratio", ratios, "tangential stiffness over normal stiffness")

@@ -1,0 +1,160 @@
+"""The loss of symmetry beside Fig. 16: when, to which side, and what it does to the contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+from granular_response_paper.captions import RADIUS, WEIGHT, Caption, letters, of_scene, values
+
+from .parameters import Parameters
+
+#: A contact is marked when its tangential force is within this fraction of the Coulomb limit.
+MARGIN = 0.05
+#: Part of the slab that profiles show, to both sides of the load (radii).
+REACH = 30.0
+#: Most copies of the packing in one panel.
+COPIES = 4
+#: The force at which the paper sees the symmetry lost, in mean disk weights (Sec. V.E).
+PAPER = 91.0
+#: Legends stand over their panel.
+OVER: dict[str, Any] = {
+    "loc": "lower center",
+    "bbox_to_anchor": (0.5, 1.11),
+    "fontsize": 7.5,
+    "labelspacing": 0.2,
+    "borderaxespad": 0.0,
+}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """Figures by file stem, from the datasets of the study of the same name."""
+    states, copies = datasets["states"], datasets["copies"]
+    with_states = states.sizes["state"] == 3
+    rows = 2 if with_states else 1
+    figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
+    names = letters("fig16s_symmetry_breaking")
+    _protocols(axes[0, 0], datasets["runs"], datasets["held"])
+    style.letter(axes[0, 0], next(names), place="above", text="after loading to one force")
+    _copies(axes[0, 1], copies)
+    force = float(copies["force"])
+    style.letter(axes[0, 1], next(names), place="above", text=f"copies, {_load(force)}")
+    handles: dict[str, Any] = {}
+    if with_states:
+        for index in (0, 1):
+            panel, loaded = axes[1, index], states.isel(state=index + 1)
+            _network(panel, states.isel(state=0), loaded, handles)
+            force = float(loaded["force"])
+            style.letter(panel, next(names), place="above", text=_load(force))
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+    return {"fig16s_symmetry_breaking": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    copies, held = parameters.copies, parameters.held
+    ramps = sorted({protocol.ramp_time for protocol in parameters.protocols})
+    steps = sorted({step for protocol in parameters.protocols for step in protocol.time_steps}, reverse=True)
+    forces = sorted({float(force) for force in datasets["runs"]["force"].values})
+    text = (
+        "Not in the paper: the loss of symmetry of Fig. 16 at large friction, where it begins and to which side. (c) "
+        "Asymmetry of the floor response against the force of one load each, by dynamics with ramps that last "
+        f"{values(ramps)} sqrt(R/g), full symbols with the time step {steps[0]:g}, hollow ones with {steps[-1]:g}; "
+        f"crosses: states of the quasi-static path, displaced at random by {held.displacement:g} {RADIUS} and "
+        f"settled again. Dotted: {PAPER:g} {WEIGHT}, from which the paper sees asymmetric responses. (d) Floor "
+        f"response under {copies.force:g} {WEIGHT} of copies of the packing that differ by the numbers of the disks "
+        f"or by random displacements of {copies.displacement:g} {RADIUS}: rounding decides the side."
+    )
+    if datasets["states"].sizes["state"] == 3:
+        text += (
+            " (e), (f) Contacts in the central third of the slab at the last symmetric and the first asymmetric "
+            f"force of the ramp that lasts {parameters.protocols[0].ramp_time:g}: thin lines are unchanged, thick "
+            "ones opened, and the marked ones are near the Coulomb limit. Arrow and circle: the force and its disk; "
+            "the line below is the floor."
+        )
+    return {
+        "fig16s_symmetry_breaking": Caption(
+            text,
+            "The asymmetry jumps by orders of magnitude, at a smaller force for the slower ramp. Responses of copies "
+            "are mirror images of each other. Contacts that open, first symmetric, then not.",
+            of_scene(parameters.scene, force=forces),
+        ),
+    }
+
+
+def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
+    """Asymmetry against force: colours for ramps, full and hollow markers for time steps."""
+    ramps = sorted(set(runs["ramp_time"].values))
+    steps = sorted(set(runs["time_step"].values), reverse=True)
+    for row, ramp in enumerate(ramps):
+        for column, step in enumerate(steps):
+            chosen = (runs["ramp_time"].values == ramp) & (runs["time_step"].values == step)
+            curve = runs.isel(run=np.flatnonzero(chosen)).sortby("force")
+            colour = style.COLOURS[row % len(style.COLOURS)]
+            panel.plot(
+                curve["force"],
+                curve["asymmetry"],
+                color=colour,
+                linestyle="-" if column == 0 else "none",
+                linewidth=0.9,
+                marker=style.MARKERS[row % len(style.MARKERS)],
+                markersize=3.2 if column == 0 else 6.0,
+                markerfacecolor=colour if column == 0 else "none",
+                markeredgewidth=0.8,
+                label=rf"ramp {ramp:g}, step {step:g}",
+            )
+    size = float(held["displacement"])
+    panel.plot(
+        held["force"],
+        held["asymmetry"],
+        color=style.BLACK,
+        linestyle="none",
+        marker="x",
+        markersize=4.5,
+        label=f"path, then displaced by {_power(size)}",
+    )
+    panel.set_yscale("log")
+    style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.8)
+    panel.set(xlabel=style.FORCE, ylabel="asymmetry of the floor response")
+    panel.legend(**OVER)
+
+
+def _copies(panel: Axes, copies: xr.Dataset) -> None:
+    """Profiles of some copies; those that lie on each other have markers of different size."""
+    names = copies["name"].values
+    shown = [0, 1, *(k for k, name in enumerate(names) if "displaced" in name)][:COPIES]
+    for index, k in enumerate(shown):
+        look = style.marked_line(index)
+        look |= {"markersize": 2.6} if index < 2 else {"markersize": 5.0, "markerfacecolor": "none"}
+        look["markeredgewidth"] = 0.0 if index < 2 else 0.8
+        panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=names[k], **look)
+    panel.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
+    panel.legend(**OVER)
+
+
+def _network(panel: Axes, rest: xr.Dataset, loaded: xr.Dataset, handles: dict[str, Any]) -> None:
+    """The central third of the contact network, contacts near the Coulomb limit marked."""
+    limit = (1.0 - MARGIN) * float(rest["friction_coefficient"]) * loaded["contact_normal_force"].values
+    drawn = draw_state_changes(panel, rest, loaded, np.abs(loaded["contact_tangential_force"].values) >= limit)
+    names = {"sliding": f"within {MARGIN:.0%} of the Coulomb limit"}
+    handles.update({names.get(kind, kind): line for kind, line in drawn.items()})
+
+
+def _load(force: float) -> str:
+    return style.equals(style.F_EXT, round(force, 2), style.WEIGHT)
+
+
+def _power(value: float) -> str:
+    """A power of ten as mathematics, another number as it is."""
+    exponent = np.log10(value)
+    whole = abs(exponent - round(exponent)) < 1e-9
+    return rf"$10^{{{exponent:.0f}}}\,{style.RADIUS}$" if whole else rf"${value:g}\,{style.RADIUS}$"

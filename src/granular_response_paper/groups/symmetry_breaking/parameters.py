@@ -1,0 +1,55 @@
+"""Parameters of the loss of symmetry."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from granular_response.scene import Scene
+from granular_response.scene.base import Description, Index, NonNegative, Positive
+from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over, some
+
+
+class Protocol(Description):
+    """How a force is applied, and the forces between which the response loses its symmetry."""
+
+    ramp_time: NonNegative
+    time_steps: Annotated[tuple[Positive, ...], AfterValidator(some)]
+    between: tuple[NonNegative, Positive]
+
+    def scene(self, base: Scene, time_step: float) -> Scene:
+        """``base`` under this protocol with one of its time steps."""
+        return base.updated(
+            {
+                "protocol.method": "dynamics",
+                "protocol.ramp_time": self.ramp_time,
+                "protocol.time_step": time_step,
+            }
+        )
+
+
+class Copies(Description):
+    """Copies of the packing that differ in the order of arithmetic or by small displacements."""
+
+    force: Positive
+    displacement: Positive
+    seeds: tuple[Index, ...]
+
+
+class Held(Description):
+    """Equilibria that are displaced a little under constant force."""
+
+    forces: Growing
+    displacement: Positive
+
+
+class Parameters(SceneGroup):
+    """Section ``symmetry_breaking``; ``method`` is that of the path of ``held``, all else is dynamics."""
+
+    scene: Annotated[Scene, over(UNIT_LOAD, "loads", "protocol.ramp_time", "protocol.time_step")] = UNIT_LOAD
+    asymmetry: Positive = Field(description="Above which symmetry counts as lost.")
+    tolerance: Positive = Field(description="Width of the brackets, in mean disk weights.")
+    protocols: Annotated[tuple[Protocol, ...], AfterValidator(some)] = Field(description="Ramps and steps to try.")
+    copies: Copies
+    held: Held

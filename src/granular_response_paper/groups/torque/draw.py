@@ -1,0 +1,115 @@
+"""Fig. 18: force chains below an oblique force with torques, and how far the torques reach."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from granular_response.plot import network, style
+from granular_response_paper.captions import Caption, letters, of_scene
+
+from .parameters import Parameters
+
+#: Force of the key, in mean disk weights.
+KEY = 5.0
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``fig18_torque`` and ``fig18_torque_reach`` from the datasets of the study of the same name."""
+    return {"fig18_torque": _chains(datasets["torques"]), "fig18_torque_reach": _reach(datasets["reach"])}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
+    last = "abcdefgh"[len(parameters.torques) - 1]
+    return {
+        "fig18_torque": Caption(
+            f"(a) to ({last}) Contact forces that an oblique force on one disk of a slightly polydisperse slab adds, "
+            "for several clockwise torques on the same disk of the same packing. The effect of gravity is subtracted "
+            "as a vector. The central third of the upper half of the slab is shown. Lengths and widths of the lines "
+            "are proportional to the force, the same in all panels, as the key in each says, but none is thinner "
+            "than a hairline. Circle and straight arrow: the disk and the force, bent arrow: the torque.",
+            "Six pictures of disks with force chains that lead obliquely down from a disk on top. The torque gathers "
+            "two chains in one along the force.",
+            given,
+        ),
+        "fig18_torque_reach": Caption(
+            "Not in the paper: how far the torque reaches. Change by the torque of (g) the contact forces, (h) the "
+            "coarse-grained stress tensor and (i) its antisymmetric part, in rings around the loaded disk: the sum "
+            "of the magnitudes per sum of those that the force adds without torque, against the mean distance of the "
+            "ring.",
+            "Three plots on one logarithmic scale. Curves for growing torques lie above each other and fall with the "
+            "distance, the antisymmetric stress by far the fastest.",
+            {**given, "torque": parameters.torques[1:], "width": parameters.stress_width},
+        ),
+    }
+
+
+def _chains(data: xr.Dataset) -> Figure:
+    """The central third of the upper half of the slab, all panels on one scale."""
+    torques = data["torque"].values
+    width, disk = float(data["width"]), int(data["loaded_disk"])
+    radius, top = data["radius"].values, float(data["position"].values[0, :, 1].max()) + 1.0
+    low, left, right = 0.5 * top, width / 3.0, 2.0 * width / 3.0
+    limits = {"xlim": (left - 0.5, right + 0.5), "ylim": (low - 0.5, top + 2.4)}
+    rows = (len(torques) + 2) // 3
+    height = np.ptp(limits["ylim"]) / np.ptp(limits["xlim"]) * style.DOUBLE / 3.0 + 0.2
+    figure, panels = style.figure(rows, 3, width="double", height=float(height) * rows)
+    added = data["contact_added_force"].values
+    scale = network.force_scale(added.reshape(-1, 2), longest=3.2, widest=4.6)
+    pairs = data["contact_disk"].values, data["contact_partner"].values
+    for index, axes in enumerate(panels.ravel()):
+        style.no_axes(axes)
+        if index >= len(torques):
+            continue
+        position = data["position"].values[index]
+        inside = (np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0) & (position[:, 1] >= low - 1.0)
+        network.draw_disks(axes, position[inside], radius[inside])
+        point = network.pair_points(position, radius, *pairs)
+        shown = (point[:, 0] >= left) & (point[:, 0] <= right) & (point[:, 1] >= low)
+        network.draw_force_chains(axes, point[shown], added[index][shown], **scale)
+        network.draw_loaded_disk(axes, position[disk], float(radius[disk]))
+        # the force as a straight arrow to the disk's centre, a clockwise torque as an arc over it
+        network.draw_load(axes, position[disk], data["applied_force"].values, length=4.6)
+        network.draw_torque(axes, position[disk], -float(torques[index]))
+        network.draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
+        axes.set(**limits)
+        style.letter(axes, chr(ord("a") + index), place="above", text=_torque(float(torques[index])))
+    return figure
+
+
+def _reach(data: xr.Dataset) -> Figure:
+    """Not in the paper: what the torque changes, against the distance from the load."""
+    figure, panels = style.figure(1, 3, width="double", height=2.7, sharex=True, sharey=True)
+    torques = data["torque"].values
+    turned = np.flatnonzero(torques)
+    colours = style.ordered_colours(max(1, len(turned)))
+    panel_of = {
+        "force_change": "contact forces",
+        "stress_change": "stress tensor",
+        "antisymmetric_change": "antisymmetric stress",
+    }
+    changes = np.concatenate([data[name].values[turned].ravel() for name in panel_of])
+    changes = changes[changes > 0.0]  # none without a torque, or where the rings lie beyond the slab
+    named = zip(panels[0], letters("fig18_torque_reach"), panel_of.items(), strict=False)
+    for axes, letter, (name, text) in named:
+        for number, k in enumerate(turned):
+            look = {**style.marked_line(number), "color": colours[number]}
+            axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
+        axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None))
+        if changes.size:
+            axes.set(yscale="log", ylim=(0.6 * float(changes.min()), 1.6 * float(changes.max())))
+        style.letter(axes, letter, place="above", text=text)
+    panels[0, 0].set_ylabel("relative change by the torque")
+    if len(turned):
+        panels[0, 2].legend(title=rf"torque$\,/\,{style.TORQUE_UNIT}$", loc="upper right")
+    return figure
+
+
+def _torque(value: float) -> str:
+    return "no torque" if value == 0.0 else rf"torque ${value:g}\,{style.TORQUE_UNIT}$"

@@ -1,0 +1,152 @@
+"""A force on a slightly polydisperse slab together with a torque: Fig. 18 and claim T1 (Sec. V.G).
+
+``torques`` holds what each load adds at every contact, gravity subtracted as a vector; ``stress`` its
+coarse-grained stress; ``reach`` how much the torque changes contact forces and stress at growing distances from
+the load. The same packing and the same rest state serve every torque, and force and torque grow together from
+zero. The largest torque is bounded: beyond about half the force times the radius the loaded disk rolls away. The
+paper's "25 x 13" is read as 13 rows of 25 and 24 disks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe import stress as coarse
+from granular_response.observe.difference import pair_force_difference
+from granular_response.observe.network import contact_centre
+from granular_response.scene import Packing, Scene
+from granular_response.solve import Problem, loaded_states
+from granular_response.state import FloatArray, State
+from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
+from granular_response.sweeps.rest import rest_of
+from granular_response.sweeps.tasks import map_tasks
+from granular_response_paper.datasets import labelled, stress_components
+from granular_response_paper.groups.torque.parameters import Parameters
+
+
+def load(scene: Scene, rest: State) -> tuple[State, int]:
+    """The state under force and torque, and the loaded disk; raises what the solvers raise."""
+    problem = Problem.from_scene(scene).with_loads(rest.position)
+    _, states = loaded_states(problem, rest, [1.0])
+    return states[0], int(problem.load_disk[0])
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """Datasets ``torques``, ``stress`` and ``reach``."""
+    base, force, angle = parameters.base, parameters.force, np.radians(parameters.angle)
+    torques, edges = np.array(parameters.torques), np.array(parameters.distances)
+    direction = np.array([np.cos(angle), -np.sin(angle)])
+    scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in torques.tolist()]
+
+    (rest,) = map_tasks(rest_of, [scenes[0]], workers=1, what="rest")
+    results = map_tasks(partial(load, rest=rest), scenes, what="torques")
+    packing = base.packing.build()
+    rest, *loaded = common_candidates([rest, *(state for state, _ in results)], packing.radius)
+    disk = results[0][1]
+    coordinate = variable("torque", torques, "applied torque, clockwise, in mean disk weights times mean radius")
+    stress = _stress_dataset(packing, rest, loaded, parameters.stress_width, parameters.stress_spacing)
+    datasets = {
+        "torques": _states_dataset(packing, rest, loaded, disk, force * direction),
+        "stress": stress,
+        "reach": _reach_dataset(rest, loaded, disk, stress, edges),
+    }
+    datasets = {name: dataset.assign_coords(torque=coordinate) for name, dataset in datasets.items()}
+    return labelled(datasets, scenes[0])
+
+
+def _load(force: FloatArray, torque: float) -> dict[str, Any]:
+    """A load on the middle of the top row; the scene counts torques counter-clockwise."""
+    return {"disk": "top-centre", "force": [float(f) for f in force], "torque": -torque}
+
+
+def _states_dataset(packing: Packing, rest: State, loaded: Sequence[State], disk: int, force: FloatArray) -> xr.Dataset:
+    turned = [state.angle[disk] - rest.angle[disk] for state in loaded]
+    return added_forces_dataset([rest] * len(loaded), loaded, packing, "torque").assign(
+        rotation=variable("torque", turned, "rotation of the loaded disk by the load, counter-clockwise, in radians"),
+        loaded_disk=variable((), disk, "index of the loaded disk"),
+        applied_force=variable("axis", force, f"applied force x, z {FORCE}"),
+    )
+
+
+def _stress_dataset(packing: Packing, rest: State, loaded: Sequence[State], w: float, spacing: float) -> xr.Dataset:
+    x = np.arange(0.0, packing.width + 0.5 * spacing, spacing)
+    z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
+    points = coarse.grid_points(x, z)
+    fields = np.stack([coarse.coarse_grained_stress(coarse.load_forces(rest, s), points, w) for s in loaded])
+    unit = "in weights per mean radius, compression positive"
+    data = stress_components(("torque", "z", "x"), fields, unit, " of the added forces")
+    data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}")
+    return xr.Dataset(
+        data,
+        coords={
+            "x": variable("x", x, f"distance from the left wall {LENGTH}"),
+            "z": variable("z", z, f"height above the floor {LENGTH}"),
+        },
+    )
+
+
+def _reach_dataset(
+    rest: State, loaded: Sequence[State], disk: int, stress: xr.Dataset, edges: FloatArray
+) -> xr.Dataset:
+    """What the torque changes in rings around the load, each relative to what the force alone adds there."""
+    origin = rest.position[disk]
+    names = ("stress_xx", "stress_xz", "stress_zx", "stress_zz")
+    fields = np.stack([stress[name].values for name in names], axis=-1)
+    tensor = fields.reshape(*fields.shape[:-1], 2, 2)
+    x, z = np.meshgrid(stress["x"].values, stress["z"].values)
+    antisymmetric, pressure = coarse.antisymmetric_part(tensor), coarse.pressure(tensor)
+    force = np.stack([pair_force_difference(rest, state) for state in loaded])
+
+    in_field = np.hypot(x - origin[0], z - origin[1])
+    in_network = np.linalg.norm(contact_centre(rest) - origin, axis=1)
+    where = {
+        "force_change": (np.linalg.norm(force - force[0], axis=-1), np.linalg.norm(force[0], axis=-1), in_network),
+        "stress_change": (
+            np.linalg.norm(fields - fields[0], axis=-1),
+            np.linalg.norm(fields[0], axis=-1),
+            in_field,
+        ),
+        "antisymmetric_change": (
+            np.abs(antisymmetric - antisymmetric[0]),
+            np.abs(pressure[0]),
+            in_field,
+        ),
+    }
+    texts = {
+        "force_change": "sum of |change of a contact force| per sum of |added contact force|",
+        "stress_change": "sum of |change of the stress tensor| per sum of |added stress tensor|",
+        "antisymmetric_change": "sum of |change of the antisymmetric stress| per sum of |added pressure|",
+    }
+    values = {name: ring_ratio(*arrays, edges) for name, arrays in where.items()}
+    return xr.Dataset(
+        {
+            name: variable(
+                ("torque", "ring"), values[name], f"{text} of the force without torque, in a ring around the load"
+            )
+            for name, text in texts.items()
+        },
+        coords={
+            "ring": variable(
+                "ring", 0.5 * (edges[:-1] + edges[1:]), f"mean distance of the ring from the load {LENGTH}"
+            ),
+            "ring_inner": variable("ring", edges[:-1], f"inner radius of the ring {LENGTH}"),
+            "ring_outer": variable("ring", edges[1:], f"outer radius of the ring {LENGTH}"),
+        },
+    )
+
+
+def ring_ratio(change: FloatArray, reference: FloatArray, distance: FloatArray, edges: FloatArray) -> FloatArray:
+    """(k, rings) sum of ``change`` (k, ...) per sum of ``reference`` (...) where ``distance`` (...) is in a ring."""
+    result = np.full((len(change), len(edges) - 1), np.nan)
+    for ring, (inner, outer) in enumerate(pairwise(edges)):
+        here = (distance >= inner) & (distance < outer)
+        total = reference[here].sum()
+        if total > 0.0:
+            result[:, ring] = change[:, here].sum(axis=1) / total
+    return result

@@ -1,0 +1,55 @@
+"""From datasets to figures and their captions."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from granular_response.scene import SceneError, text
+from granular_response.store import atomic
+from granular_response.store import files as store
+from granular_response_paper import captions
+from granular_response_paper.pipeline import TOO_LITTLE, GroupError, figures_folder, group_member, stored
+
+
+def draw(group: str, data: Path | None = None, folder: Path | None = None) -> list[Path]:
+    """Draw the figures of a group from its datasets and write their captions; returns the paths of the files.
+
+    Raises
+    ------
+    granular_response_paper.pipeline.GroupError
+        If there is no such group, the datasets are those of another one or of other parameters than it has now, or
+        hold too little to be drawn.
+    granular_response.store.files.StoreError
+        If its datasets cannot be read.
+    """
+    function = group_member(group, "draw", "draw")
+    path, datasets = stored.datasets(group, data)
+    described = _parameters(group, path)
+    from granular_response.plot import style
+
+    target = folder or figures_folder(group)
+    paths: list[Path] = []
+    try:
+        figures = function(datasets)
+        panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
+        said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
+        for stem, figure in figures.items():
+            paths += style.save(figure, stem, target, inputs=[path])
+    except TOO_LITTLE as error:
+        problem = " ".join(f"{type(error).__name__}: {error}".split())
+        raise GroupError(f"{path}: {group} cannot be drawn with these parameters ({problem})") from error
+    beside = target / captions.FILE
+    atomic.check_writable(beside, [path])
+    atomic.write_bytes(beside, (json.dumps(said, ensure_ascii=False, indent=1) + "\n").encode())
+    return [*paths, beside]
+
+
+def _parameters(group: str, path: Path) -> Any:
+    """The validated parameters that the datasets were made with."""
+    kind = group_member(group, "parameters", "Parameters")
+    try:
+        return kind(**text.read(store.read_attributes(path).get("parameters", "{}")))
+    except SceneError as error:
+        raise GroupError(f"{path}: was made with parameters that {group} does not have now: {error}") from None

@@ -1,0 +1,230 @@
+"""The page a reader opens: verdicts, figures, readings, benchmarks, and how to run each part again.
+
+One HTML file that needs no network: pictures, style and script are inside. It is made from files that the pipeline
+stored, and has the same bytes for the same files.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import xarray as xr
+
+from granular_response import __version__
+from granular_response.errors import GranularError
+from granular_response.inputs import read_json
+from granular_response.store import atomic, generated
+from granular_response.store import files as store
+
+from . import against, benchmarks, beyond, explorer, pictures, readings
+from .typeset import typeset
+
+#: Where the page is kept.
+OUTPUT = Path("figures") / "report.html"
+
+#: Figure groups that the explorer shows, and the one whose table the readings come from.
+EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
+SENSITIVITY = "sensitivity"
+
+__all__ = ["OUTPUT", "ReportError", "page", "renew_beyond", "renew_figures", "renew_notes", "write"]
+
+
+class ReportError(GranularError):
+    """Something the page is made from is missing or damaged. The message is one line."""
+
+
+def write(
+    output: str | os.PathLike[str] = OUTPUT,
+    root: str | os.PathLike[str] = ".",
+    keep: Sequence[str | os.PathLike[str]] = (),
+) -> Path:
+    """Make the page from ``figures/``, ``data/`` and ``benchmarks/`` below ``root``; returns its path.
+
+    Raises
+    ------
+    ReportError
+        If ``figures/claims.json`` is missing or not JSON, or a ``captions.json`` is damaged.
+    granular_response.store.files.StoreError
+        If a dataset cannot be read.
+    OSError
+        If the page cannot be written, or would replace one of the files it is made from or of those to ``keep``.
+    """
+    target = Path(output)
+    folders = (Path(root) / name for name in ("figures", "data", "benchmarks"))
+    used = [file for folder in folders for file in folder.rglob("*") if file.suffix != ".html"]
+    inputs = [*used, Path(root) / "requirements.lock", *keep]
+    if target.parent.is_dir():  # before the work; else it is made when there is a page
+        atomic.check_writable(target, inputs)
+    else:
+        atomic.check_output(target, inputs)
+    made = page(Path(root), target.parent).encode()
+    target.parent.mkdir(parents=True, exist_ok=True)
+    atomic.write_bytes(target, made)
+    return target
+
+
+def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the table of readings in ``notes`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    granular_response.store.generated.GeneratedError
+        If the file cannot be read or has no place for the table.
+    granular_response.store.files.StoreError
+        If the dataset is missing or cannot be read.
+    """
+    datasets = store.read(Path(root) / "data" / f"{SENSITIVITY}.nc")
+    generated.renew(notes, readings.BLOCK, readings.markdown(datasets))
+
+
+def renew_figures(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the table of the captions' parameters in ``document`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    ReportError
+        If a parameter is not the paper's and nothing says why.
+    granular_response.store.generated.GeneratedError
+        If the file cannot be read or has no place for the table.
+    granular_response.store.files.StoreError
+        If a dataset is missing or cannot be read.
+    """
+    try:
+        lines = against.markdown(Path(root) / "data")
+    except ValueError as error:
+        raise ReportError(str(error)) from None
+    generated.renew(document, against.BLOCK, lines)
+
+
+def renew_beyond(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the tables of groups beyond the paper in ``document`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    granular_response.store.generated.GeneratedError
+        If the file cannot be read or has no place for a table.
+    granular_response.store.files.StoreError
+        If a dataset is missing or cannot be read.
+    """
+    for group, lines in beyond.BLOCKS.items():
+        generated.renew(document, group, "\n".join(lines(store.read(Path(root) / "data" / f"{group}.nc"))))
+
+
+def page(root: Path, folder: Path | None = None) -> str:
+    """The page as text. Figures, readings and benchmarks that are not there yet are left out or named as missing.
+
+    Its links to files of the project, to those that are there, begin at ``folder``: by default ``figures/``.
+    """
+    claims = _claims(root / "figures" / "claims.json")
+    try:
+        shown = pictures.collect(root / "figures")
+    except ValueError as error:
+        raise ReportError(str(error)) from None
+    data = root / "data"
+    explored = [_stored(data / f"{group}.nc") for group in EXPLORED]
+    states = explorer.payload(*explored) if explored[0] else None
+    sensitivity = data / f"{SENSITIVITY}.nc"
+    tried = readings.table(store.read(sensitivity)) if sensitivity.exists() else None
+    numbers: dict[str, set[int]] = {row["group"]: set() for row in claims["table"]}
+    for picture in shown.all():
+        numbers.setdefault(picture.group, set()).update([picture.number] if picture.number else [])
+    groups = [{"name": group, "figures": sorted(numbers[group])} for group in sorted(numbers)]
+    environment = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["typeset"] = typeset
+    template = environment.from_string(_resource("page.html.j2"))
+    values = {
+        "version": __version__,
+        "size": _SIZE,
+        "claims": claims,
+        "verdicts": [(k["verdict"], k["verdict"].replace(" ", "_")) for k in claims["verdict_kinds"]],
+        "numbered": shown.numbered,
+        "small": {figure.number: figure.pictures[0].small for figure in shown.numbered if figure.pictures},
+        "of_figure": lambda number: [row for row in claims["table"] if number in row.get("figures", ())],
+        "of_group": lambda group: [row for row in claims["table"] if row["group"] == group and not row.get("figures")],
+        "linked": lambda picture: _linked(picture, root, root / OUTPUT.parent if folder is None else folder),
+        "further": shown.further,
+        "states": _json_in_html(states) if states else None,
+        "explored": states and _choices(states["slabs"]),
+        "readings": tried,
+        "benchmarks": benchmarks.collect(root / "benchmarks"),
+        "goals": benchmarks.goals(root / "benchmarks"),
+        "groups": groups,
+        "versions": _versions(root / "requirements.lock"),
+        "style": _resource("style.css"),
+        "script": _resource("explorer.js"),
+        "enlarge": _resource("enlarge.js"),
+    }
+    try:
+        text = template.render(values) + "\n"
+    except jinja2.UndefinedError as error:
+        raise ReportError(f"{root / 'figures' / 'claims.json'}: is not a whole table of claims: {error}") from None
+    return text.replace(_SIZE, f"{len(text.encode()) / 1e6:.1f} MB")
+
+
+def _stored(path: Path) -> dict[str, xr.Dataset]:
+    """The datasets of a group, none if it has not run yet."""
+    return store.read(path) if path.exists() else {}
+
+
+def _linked(picture: pictures.Picture, root: Path, start: Path) -> list[tuple[str, str]]:
+    """The files of a picture that are there, in words, with their addresses from ``start``."""
+    there = [(name, root / path) for name, path in picture.files if (root / path).exists()]
+    return [(name, Path(os.path.relpath(path, start)).as_posix()) for name, path in there]
+
+
+def _choices(slabs: Sequence[dict[str, Any]]) -> dict[str, list[float]]:
+    """What the reader chooses between."""
+    names = {"packings": "polydispersity", "frictions": "friction", "ratios": "ratio"}
+    return {plural: sorted({slab[name] for slab in slabs}) for plural, name in names.items()}
+
+
+#: Stands for the size of the page until the page is there.
+_SIZE = "(size of the page)"
+
+#: What the digits and the pictures come from.
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")
+
+#: What the page needs of the table of claims.
+_CLAIMS = {"counts", "verdict_kinds", "words", "sensitivity", "table"}
+
+
+def _claims(path: Path) -> dict[str, Any]:
+    try:
+        found = read_json(path)
+        known = isinstance(found, dict) and set(found) >= _CLAIMS
+        known = known and all("group" in row for row in found["table"])
+        known = known and all("verdict" in kind for kind in found["verdict_kinds"])
+    except FileNotFoundError:
+        raise ReportError(f"{path}: no such file, make it with granular-response-paper claims") from None
+    except TypeError:
+        known = False
+    except (OSError, ValueError) as error:
+        raise ReportError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
+    if not known:
+        raise ReportError(f"{path}: is not a whole table of claims")
+    return found
+
+
+def _versions(lock: Path) -> list[tuple[str, str]]:
+    """Names and pinned versions of the libraries that results depend on, none without the file."""
+    if not lock.exists():
+        return []
+    pinned = dict(line.split("==") for line in lock.read_text(encoding="utf-8").split() if line.count("==") == 1)
+    return [(name, pinned[name]) for name in _LIBRARIES if name in pinned]
+
+
+def _resource(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _json_in_html(value: Any) -> str:
+    """JSON that cannot end the script element it stands in."""
+    return json.dumps(value, separators=(",", ":")).replace("<", "\\u003c")

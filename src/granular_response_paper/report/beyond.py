@@ -1,0 +1,132 @@
+"""Tables of ``docs/beyond.md`` that are made from the stored datasets of their groups, so that they are never old."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from granular_response.state import FloatArray
+
+Datasets = Mapping[str, xr.Dataset]
+
+#: Parts of a work or a force that count as none.
+NOTHING = 1e-8
+#: Within which most loops balance.
+BALANCED = 1e-4
+
+CONFINED = {"constant": "constant", "walls": "the paper's walls", "as weight": "as weight"}
+
+
+def crossovers(datasets: Datasets) -> list[str]:
+    """A line for each series of layers of the group ``crossover_scaling``: powers, and what they lead to."""
+    slabs, powers = datasets["slabs"], datasets["powers"]
+    far = f"two peaks at {powers.attrs['layers']:g} layers, extrapolated"
+    heads = ["friction, confinement", "layers", "two peaks: power of N", "region at the floor", "first opening", far]
+    lines = [_line(heads), "|---" * len(heads) + "|"]
+    for series in np.flatnonzero(powers["varied"].values == "layers"):
+        one = powers.isel(series=series)
+        rows = slabs["series"].values == str(one["series"].values)
+        layers, stored = slabs["layers"].values[rows], slabs["surveyed"].values[rows] > 0
+        deep = f", from {layers[stored].min()} on the survey's" if stored.any() else ""
+        cells = [
+            f"{float(one['friction']):g}, {CONFINED[str(one['confined'].values)]}",
+            f"{layers.min()} to {layers.max()}{deep}",
+            *(
+                _with_ends(one["exponent"].sel(event=event).values, lambda value: f"{round(value, 2) + 0.0:.2f}")
+                for event in ("crossover", "reaches_floor", "first_opening")
+            ),
+            _with_ends(one["extrapolated"].sel(event="crossover").values, lambda value: f"{float(f'{value:.2g}'):,.0f}")
+            + " mg",
+        ]
+        lines.append(_line(cells))
+    return lines
+
+
+def loops(datasets: Datasets) -> list[str]:
+    """A line for each packing of the group ``hysteresis``, of disorder median, least and largest; and the balance."""
+    measured, events = datasets["loops"], datasets["events"]
+    heads = ["packing", "first opening", "linear up to", "reversible up to", "F", "left on the floor"]
+    heads += ["lost, first loop", "second loop"]
+    lines = [_line(heads), "|---" * len(heads) + "|"]
+    off: dict[str, list[FloatArray]] = {"lattices": [], "disorder": []}
+    count = 0
+    for case in range(measured.sizes["case"]):
+        one, ends = measured.isel(case=case), events.isel(case=case)
+        delta, friction = float(one["polydispersity"]), float(one["friction"])
+        last = int(np.flatnonzero(np.isfinite(one["force"].values))[-1])
+        there = np.isfinite(one["work"].values[:, last])
+        count = max(count, int(there.sum()))
+        brackets = [
+            np.stack([ends[end].sel(event=event).values[there] for end in ("low", "high")], axis=1)
+            for event in ("first_opening", "linear_range", "reversible_range")
+        ]
+        one = one.isel(realization=there)
+        gone = [one[f"slid{again}"] + one[f"crossed{again}"] for again in ("", "_again")]
+        for again, lost in zip(("", "_again"), gone, strict=True):
+            balance = ((one[f"lost{again}"] - one[f"kept{again}"] - lost) / one["work"]).values
+            off["disorder" if delta else "lattices"].append(np.abs(balance[np.isfinite(balance)]))
+        at = one.isel(turn=last)
+        lines.append(
+            _line(
+                [
+                    f"δ = {delta:g}, µ = {friction:g}" if delta else f"lattice, µ = {friction:g}",
+                    *map(_range, brackets),
+                    f"{float(at['force']):g}",
+                    _part(at["floor_left"].values),
+                    *(_part((lost.isel(turn=last) / at["work"]).values) for lost in gone),
+                ]
+            )
+        )
+    lines += ["", f"Disorder: median of {count} realizations (least to largest)."]
+    for name, found in off.items():
+        every = np.concatenate(found) if found else np.zeros(0)
+        if every.size:
+            close = (every < BALANCED).mean()
+            lines.append(
+                f"Work, stored energy and what sliding takes balance within {every.max():.0e} of the work of the first "
+                f"loading in all loops of {name}, in {100.0 * close:.0f} % of them within {BALANCED:.0e}."
+            )
+    return lines
+
+
+#: Names of the generated lines, which are those of the groups.
+BLOCKS: Mapping[str, Callable[[Datasets], list[str]]] = {"crossover_scaling": crossovers, "hysteresis": loops}
+
+
+def _line(cells: Sequence[str]) -> str:
+    return "|" + "".join(f" {cell} |" for cell in cells)
+
+
+def _with_ends(values: FloatArray, said: Callable[[float], str]) -> str:
+    """A number and the ends of its interval."""
+    value, least, largest = (said(float(number)) for number in values)
+    return f"{value} ({least} to {largest})".replace("-", "\N{MINUS SIGN}")
+
+
+def _range(brackets: FloatArray) -> str:
+    """Forces (r, 2), nan above for what was not reached: the bracket of one packing, median and ends of several."""
+    low, high = brackets.T
+    if np.isnan(high).all():
+        return f"above {low.min():.3g}"
+    most = f"above {low[np.isnan(high)].max():.3g}" if np.isnan(high).any() else f"{high.max():.3g}"
+    if len(brackets) == 1:
+        least = f"{low[0]:.3g}"
+        return most if least == most else f"{least} to {most}"
+    middle = float(np.median(np.where(np.isnan(high), np.inf, 0.5 * (low + high))))
+    half = f"{middle:.3g}" if np.isfinite(middle) else "not half of them"
+    return f"{half} ({low.min():.3g} to {most})"
+
+
+def _part(values: FloatArray) -> str:
+    """Parts (r,) as per cent."""
+    if np.abs(values).max() < NOTHING:
+        return "nothing"
+
+    def said(value: float) -> str:
+        return f"{100.0 * value:.2g}" if abs(value) >= NOTHING else "0"
+
+    if len(values) == 1:
+        return f"{said(values[0])} %"
+    return f"{said(float(np.median(values)))} ({said(values.min())} to {said(values.max())}) %"

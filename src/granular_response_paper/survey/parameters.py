@@ -1,0 +1,52 @@
+"""Parameters of the survey: blocks of cases, each a file of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import product
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from granular_response.scene.base import Count, Description, Ratio
+from granular_response.scene.lattice import LatticeConstant
+from granular_response_paper.groups.polydisperse_averages.parameters import Case, EnsembleGroup, Spreads
+from granular_response_paper.parameters import Coefficients, Growing, some
+
+
+class Cases(Description):
+    """Every combination of polydispersities, frictions and starts under the same forces."""
+
+    polydispersities: Spreads
+    frictions: Coefficients
+    forces: Growing = Field(description="In mean disk weights.")
+    lattice_constants: Annotated[tuple[LatticeConstant, ...], AfterValidator(some)] | None = Field(
+        default=None, description="Of the starts; null: that of the scene."
+    )
+    wall_friction: Ratio | None = Field(default=None, description="null: the same as between disks.")
+    realizations: Count | None = Field(default=None, description="null: those of the survey.")
+
+
+class Parameters(EnsembleGroup):
+    """The survey's own parameter file. Realizations are those of ``polydisperse_averages`` and further ones."""
+
+    realizations: Count
+    blocks: Mapping[str, tuple[Cases, ...]]
+
+    def cases(self, block: str) -> list[Case]:
+        """The cases of a block. Raises KeyError if there is no such block."""
+        usual = self.scene.packing.model_dump()["lattice_constant"]
+        return [
+            Case(
+                delta,
+                mu,
+                start,
+                entry.forces,
+                (entry.realizations or self.realizations) if delta else 1,
+                entry.wall_friction,
+            )
+            for entry in self.blocks[block]
+            for delta, mu, start in product(
+                entry.polydispersities, entry.frictions, entry.lattice_constants or (usual,)
+            )
+        ]

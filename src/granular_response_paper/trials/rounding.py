@@ -1,0 +1,70 @@
+"""Rest states disturbed in their last digits: does the static response change?
+
+A rest state is displaced by about 1e-12 of a radius, brought back to equilibrium, and loaded as the undisturbed one
+was. Where a packing has one equilibrium nearby the response changes by rounding; where two branches meet, or a chain
+of small events decides, it changes by more, and then digits beyond that change mean nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from granular_response.observe.floor import floor_disks, floor_force
+from granular_response.scene import Scene
+from granular_response.solve import Problem, loaded_states, minimise, rest_state
+from granular_response.solve.equilibrium import finish
+from granular_response.state import State
+from granular_response_paper.slab_response import lost
+
+
+@dataclass(frozen=True)
+class Disturbed:
+    """What a displacement of the rest state changes."""
+
+    rest_change: float  #: largest displacement that is left after the return to equilibrium (mean radii)
+    response_change: float  #: largest change of the floor response, per its largest value
+    excess_coordination: float  #: contacts of bearing disks over what isostaticity needs, per bearing disk
+    loose_disks: int
+    negative_modes: int | None
+    lost: int  #: equilibria that the path has lost
+
+
+def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
+    """Solve a scene with one load as it is and, for each seed, from a rest state displaced by ``size`` (mean radii)."""
+    problem = Problem.from_scene(scene)
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    count = rest.contact_count()
+    bearing = count >= 2
+    # a contact has one force without friction and two with it; each disk has two equations or three
+    contacts = rest.pairs.touching.sum() + rest.walls.touching.sum() - count[~bearing].sum()
+    needed = 1.5 if problem.rotations else 2.0
+    certificate = rest.certificate
+    (loaded,) = loaded_states(problem, rest, [1.0])[1]
+    disks = floor_disks([rest, loaded])
+    response = floor_force(loaded, disks) - floor_force(rest, disks)
+    found = []
+    for seed in seeds:
+        generator = np.random.default_rng(seed)
+        moved = replace(rest, position=rest.position + size * generator.uniform(-1.0, 1.0, rest.position.shape))
+        again = _settled(problem, problem.with_static_forces(moved))
+        (other,) = loaded_states(problem, again, [1.0])[1]
+        changed = floor_force(other, disks) - floor_force(again, disks)
+        found.append(
+            Disturbed(
+                rest_change=float(np.abs(again.position - rest.position).max()),
+                response_change=float(np.abs(changed - response).max() / np.abs(response).max()),
+                excess_coordination=float(contacts / bearing.sum() - needed),
+                loose_disks=certificate.loose_disks,
+                negative_modes=certificate.negative_modes,
+                lost=len(lost([loaded])),
+            )
+        )
+    return found
+
+
+def _settled(problem: Problem, state: State) -> State:
+    return finish(problem, state) if problem.rotations else minimise(problem, state)
