@@ -44,7 +44,7 @@ def _known(found: float | Quantity) -> Quantity:
 
 
 def one_reading(summary: str, reading: str, *conditions: Condition, remark: str = "") -> Finding:
-    """What was measured in one reading alone."""
+    """What was measured in one interpretation alone."""
     return Finding(summary, [Reading(reading, *conditions)], remark)
 
 
@@ -54,10 +54,12 @@ def each(
     condition: Callable[[Quantity], Condition],
     unit: str = "",
     remark: str = "",
+    changed: Callable[[str], str] = lambda name: "",
 ) -> Finding:
-    """A number for each reading, by its name, and what is asked of each."""
+    """A number for each reading, by its name, and what is asked of each; ``changed`` says what a reading changes."""
     texts = ", ".join(f"{quantity.text(unit)} ({name})" for name, quantity in found.items())
-    return Finding(what + texts, [Reading(name, condition(quantity)) for name, quantity in found.items()], remark)
+    readings = [Reading(name, condition(quantity), change=changed(name)) for name, quantity in found.items()]
+    return Finding(what + texts, readings, remark)
 
 
 def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:

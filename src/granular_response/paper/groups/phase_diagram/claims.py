@@ -19,8 +19,11 @@ from ...claims.words import Bounds
 GROUP = "phase_diagram"
 CLAIMS = Claims(GROUP)
 
-#: The start that this project uses, first, and the literal one.
+#: The initial lattice that this project uses, first, and the literal one.
 STARTS = ("touching-largest", "2.0")
+
+#: The width of smoothing of Fig. 21, and another one with what it changes.
+WIDTHS = {6.0: "", 3.0: "smoothing"}
 
 #: What a case is called by.
 _LABELS = ("polydispersity", "friction", "lattice_constant")
@@ -48,14 +51,27 @@ def _case(dataset: xr.Dataset, polydispersity: float, friction: float, start: st
 
 
 def _starts(dataset: xr.Dataset, polydispersity: float) -> list[str]:
-    """The starts stored for a polydispersity, this project's first."""
+    """The initial lattices stored for a polydispersity: this project's, the literal one, then by their constants."""
     here = np.isclose(dataset["polydispersity"].values, polydispersity)
     stored = set(dataset["lattice_constant"].values[here].astype(str))
-    return [start for start in STARTS if start in stored]
+    return [start for start in STARTS if start in stored] + sorted(stored - set(STARTS))
 
 
-def title(start: str) -> str:
-    return "start with the largest disks touching" if start == STARTS[0] else f"start with lattice constant {start}"
+#: Ends the title of an initial lattice wider than any that the text allows.
+WIDER = "wider than with touching disks"
+
+
+def changed(name: str) -> str:
+    """What a reading of this name changes of the set-up."""
+    return "lattice" if name.endswith(WIDER) else ""
+
+
+def title(start: str, polydispersity: float = 0.01) -> str:
+    """An initial lattice in words."""
+    if start == STARTS[0]:
+        return "start with the largest disks touching"
+    wider = float(start) > 2.0 / (1.0 - 0.5 * polydispersity)
+    return f"start with lattice constant {start}{', ' + WIDER if wider else ''}"
 
 
 def _with_interval(case: xr.Dataset, name: str) -> Quantity:
@@ -102,6 +118,7 @@ def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
                 title(start),
                 asked.at_least("dip at friction 0", without, words, "visible", "%"),
                 asked.at_most("dip at friction 0.2", full, words, "visible", "%"),
+                change=changed(title(start)),
             )
         )
     return Finding(
@@ -178,7 +195,7 @@ def _smallest(steps: list[Quantity]) -> Quantity:
 def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
     """The smallest ratio of neighbouring crossover forces along one axis, for every value of the other; both widths."""
     readings, texts = [], []
-    for width in (6.0, 3.0):
+    for width, change in WIDTHS.items():
         found = {key: q for key, q in _crossovers(data, width, words).items() if key[0] > 0.0}
         along, across = (1, 0) if what == "friction" else (0, 1)
         conditions = []
@@ -199,7 +216,7 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
         if not conditions:
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds too few crossover forces to compare")
         texts.append(f"{clear} of {total} steps clear of their intervals (w = {width:g})")
-        readings.append(Reading(f"w = {width:g}", *conditions))
+        readings.append(Reading(f"w = {width:g}", *conditions, change=change))
     return Finding(f"crossover force {rising} with {what}: " + ", ".join(texts), readings)
 
 
@@ -240,28 +257,34 @@ def _away(crossovers: xr.Dataset, force: FloatArray, words: Bounds) -> tuple[NDA
     "D5",
     "VI.A",
     "number of peaks of means of five realizations against that of the mean of all, at forces beyond the interval "
-    "of the crossover and more than half away from it",
+    "of the crossover and more than half away from it, mean over these forces",
     "five are sufficient when the force is not too close to its crossover",
     21,
 )
 def five_enough(data: Data, words: Bounds) -> Finding:
-    shapes = at(data.get(GROUP, "shapes", "few_agree", "applied_force", "polydispersity"), width=6.0)
+    shapes = at(data.get(GROUP, "shapes", "few_agree", "applied_force", *_LABELS), width=6.0)
     crossover = at(data.get(GROUP, "crossovers", "force", "kind", "interval", "level", "realizations"), width=6.0)
     force = shapes["applied_force"].transpose("case", "step").values
-    usual = (shapes["polydispersity"].values > 0.0) & (shapes["lattice_constant"].values.astype(str) == STARTS[0])
     agree = shapes["few_agree"].transpose("case", "step").values
-    away = np.logical_or(*_away(crossover, force, words)) & (crossover["kind"].values == FOUND)[:, None]
-    chosen = agree[usual[:, None] & np.isfinite(agree) & away]
-    if chosen.size < 3:
+    chosen = np.isfinite(agree) & np.logical_or(*_away(crossover, force, words))
+    starts, deltas = shapes["lattice_constant"].values.astype(str), shapes["polydispersity"].values
+    typical = {}
+    for start in STARTS:
+        for delta in np.unique(deltas[deltas > 0.0]).tolist():
+            here = agree[(chosen & ((starts == start) & (deltas == delta))[:, None])]
+            if here.size:
+                found = over_realizations(here, np.mean) if here.size > 2 else Quantity.range(here, float(here.mean()))
+                typical[f"polydispersity {delta:g}, {title(start, delta)}"] = found
+    if not typical:
         raise NotMeasured(f"data/{GROUP}.nc: shapes holds too few forces away from a crossover")
-    typical = over_realizations(chosen, np.mean)
-    few = int(crossover["realizations"].values[usual].min())
-    return asked.one_reading(
-        f"means of five have as many peaks as the mean of all in {typical.text('%')} of the draws, mean over "
-        f"{chosen.size} forces away from the crossover; {chosen.min():.0%} at the worst of them",
-        "w = 6",
-        Condition("draws of five that agree", typical, 1.0 - words["holds"], words=("holds", "similar"), unit="%"),
-        remark=f"Five are drawn from {few} or more",
+    return asked.each(
+        "means of five have as many peaks as the mean of all in the part of the draws: ",
+        typical,
+        lambda part: Condition(
+            "draws of five that agree", part, 1.0 - words["holds"], words=("holds", "similar"), unit="%"
+        ),
+        "%",
+        f"Five are drawn from {int(crossover['realizations'].values[deltas > 0.0].min())} or more",
     )
 
 
@@ -273,7 +296,7 @@ def five_enough(data: Data, words: Bounds) -> Finding:
 )
 def below_lattice(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
-    for width in (6.0, 3.0):
+    for width, change in WIDTHS.items():
         found = _crossovers(data, width, words)
         ratios = {
             key: found[key].per(found[(0.0, key[1])])
@@ -292,6 +315,7 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
                     )
                     for (delta, mu), ratio in ratios.items()
                 ),
+                change=change,
             )
         )
     return Finding("crossover force below that of the lattice: " + ", ".join(texts), readings)
@@ -306,9 +330,9 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
 )
 def preparation(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
-    for width in (6.0, 3.0):
+    for width, change in WIDTHS.items():
         study = _defined(data, width, words)
-        if len(_starts(study, 0.01)) < len(STARTS):
+        if not set(STARTS) <= set(_starts(study, 0.01)):
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds one start alone")
         for mu in (0.0, 0.2):
             usual, literal = (_crossover(_case(study, 0.01, mu, start)) for start in STARTS)
@@ -323,6 +347,7 @@ def preparation(data: Data, words: Bounds) -> Finding:
                         words=("visible",),
                         strict=True,
                     ),
+                    change=change,
                 )
             )
     return Finding(
@@ -391,7 +416,12 @@ def coordination(data: Data, words: Bounds) -> Finding:
         for start, case in _packings(data, *names.values())
         for text, name in names.items()
     }
-    return asked.each("contacts per disk: ", means, lambda q: Condition("contacts per disk", q, low, high, ("about",)))
+    return asked.each(
+        "contacts per disk: ",
+        means,
+        lambda q: Condition("contacts per disk", q, low, high, ("about",)),
+        changed=changed,
+    )
 
 
 @CLAIMS.add(
@@ -413,6 +443,7 @@ def missing_horizontal(data: Data, words: Bounds) -> Finding:
         shares,
         lambda share: asked.at_least("horizontal part of the missing contacts", share, words, "marked", "%"),
         "%",
+        changed=changed,
     )
 
 
@@ -464,6 +495,7 @@ def fluctuations(data: Data, words: Bounds) -> Finding:
         "spread of the responses of realizations at 15 mg, friction 0 over 0.2: ",
         ratios,
         lambda ratio: Condition("spread without friction per spread with 0.2", ratio, 1.0, strict=True),
+        changed=changed,
     )
 
 
@@ -480,7 +512,9 @@ def evident(data: Data, words: Bounds) -> Finding:
         if min(without.size, full.size) < 5:
             raise NotMeasured(f"data/{GROUP}.nc: realizations holds too few responses at polydispersity 0.01")
         apart[title(start)] = over_realizations((without[:, None] > full[None, :]).mean(axis=1), np.mean)
-    return asked.each(f"{what}: ", apart, lambda part: asked.hardly_lower(what, part, words, "holds", "%"), "%")
+    return asked.each(
+        f"{what}: ", apart, lambda part: asked.hardly_lower(what, part, words, "holds", "%"), "%", changed=changed
+    )
 
 
 def linear_end(path: xr.Dataset, tolerance: float) -> Quantity:
