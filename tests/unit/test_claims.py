@@ -12,7 +12,7 @@ import yaml
 from claims_data import STARTS, dataset, everything, pile_study
 
 from granular_response.paper.claims import preparations, table, words
-from granular_response.paper.claims.bootstrap import over_brackets, over_realizations
+from granular_response.paper.claims.bootstrap import over_brackets, over_realizations, part_of
 from granular_response.paper.claims.claim import (
     Claim,
     Condition,
@@ -28,6 +28,7 @@ from granular_response.paper.claims.claim import (
 from granular_response.paper.claims.verdict import MEANINGS, SURVIVALS, judge, robustness_of, verdict_of
 from granular_response.paper.groups import NAMES
 from granular_response.paper.groups.frictionless_crossover import claims as slab_claims
+from granular_response.paper.groups.phase_diagram.claims import FOUND, Crossover, trend
 from granular_response.store import files as store
 from granular_response.store import generated
 
@@ -161,6 +162,15 @@ def width_three(factor):
         return data.assign(draws=data["draws"] * xr.where(lower, factor, 1.0))
 
     return lambda groups: changed(groups, PHASES, "crossovers", change)
+
+
+def two_hundred_ends(nonlinear_from):
+    """Linear ranges of two hundred packings."""
+    ends = np.broadcast_to(np.asarray(nonlinear_from), 200)
+    study = dataset(
+        linear_until=("realization", 0.9 * np.nan_to_num(ends, nan=1.0)), nonlinear_from=("realization", ends)
+    )
+    return lambda groups: {**groups, "superposition": {**groups["superposition"], "linear_range": study}}
 
 
 def by_case(columns):
@@ -323,8 +333,10 @@ PLANTED = [
     ("B3", scaled("hysteresis", "loops", "floor_repeated", [[[1.0]], [[1e3]]]), DEPENDS),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), DEPENDS),
-    ("U2", put("superposition", "linear_range", "nonlinear_from", NAN), "undecided"),
-    ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "contradicted"),
+    ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "undecided"),
+    ("U2", two_hundred_ends(3.0), "contradicted"),
+    ("U2", two_hundred_ends(NAN), "contradicted"),
+    ("U2", two_hundred_ends(np.geomspace(0.1, 3.0, 200)), "reproduced"),
     ("U3", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U4", put("superposition", "errors", "row_error", 0.1), "contradicted"),
     ("N1", scaled("numerics", "stop_energy", "loaded_error", 100.0), DEPENDS),
@@ -510,6 +522,39 @@ def test_the_bootstrap_knows_the_error_of_a_mean():
     assert over_realizations([*values, NAN], np.mean) == found
     with pytest.raises(NotMeasured, match="2 realizations"):
         over_realizations([1.0, NAN, 2.0])
+
+
+def test_the_interval_of_a_part_is_exact_and_open_at_its_ends():
+    none, few = part_of(np.zeros(20)), part_of(np.arange(20) < 5)
+    assert none.low == 0.0 and none.high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0))
+    assert (few.value, few.low, few.high) == pytest.approx((0.25, 0.0866, 0.4910), abs=1e-4)
+    assert part_of(np.ones(20)).high == 1.0
+    with pytest.raises(NotMeasured, match="no realizations"):
+        part_of([])
+
+
+@pytest.mark.parametrize(
+    ("cases", "step", "scatter", "least", "most"),
+    [(3, 1.0, 0.2, 0.0, 0.06), (4, 1.0, 0.2, 0.0, 0.03), (4, 2.0, 0.2, 0.95, 1.0), (4, 1.5, 0.4, 0.1, 0.5)],
+)
+def test_the_power_of_the_trend(cases, step, scatter, least, most):
+    """Crossover forces that grow by ``step`` from case to case and are known to ``scatter``, 200 times."""
+    rng = np.random.default_rng(0)
+
+    def line():
+        for centre in np.arange(cases) * np.log(step) + scatter * rng.standard_normal(cases):
+            draws = np.exp(centre + scatter * rng.standard_normal(500))
+            yield Crossover(Quantity.exact(np.exp(centre)), FOUND, draws, draws)
+
+    assert least <= np.mean([trend(list(line())).low > 0.0 for _ in range(200)]) <= most
+
+
+def test_what_is_not_ordered_widens_a_trend():
+    one = Crossover(Quantity.exact(1.0), FOUND, np.ones(50), np.ones(50))
+    later = Crossover(Quantity.exact(2.0), FOUND, 2.0 * one.low, 2.0 * one.low)
+    bound = Crossover(Quantity.bracket(1.5, NAN), FOUND, 1.5 * one.low, np.inf * one.low)
+    assert (trend([one, later]).low, trend([later, one]).high) == (1.0, -1.0)
+    assert (trend([one, bound]).low, trend([later, bound]).low, trend([later, bound]).high) == (1.0, -1.0, 1.0)
 
 
 def test_a_median_of_brackets_holds_what_is_not_known_of_each():

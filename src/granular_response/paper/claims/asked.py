@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
+from .bootstrap import OUTSIDE, part_of
 from .claim import Condition, Finding, NotMeasured, Quantity, Reading
 from .words import Bounds
 
@@ -37,6 +39,19 @@ def higher(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Cond
 def hardly_lower(what: str, ratio: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
     """The ratio is below 1 by the word's bound at most."""
     return Condition(what, _known(ratio), 1.0 - words[word], words=(word,), unit=unit)
+
+
+def one_of(what: str, values: ArrayLike, paper: float, words: Bounds, word: str) -> list[Condition]:
+    """The paper's number of one sample, within the word's bound, is none that single realizations rarely have.
+
+    Values (r,) below it and above it are each at least a fortieth of all: the central 95 %.
+    """
+    found, least = np.asarray(values, dtype=float), 0.5 * OUTSIDE
+    low, high = ((1.0 + sign * words[word]) * paper for sign in (-1.0, 1.0))
+    return [
+        Condition(f"realizations with {what} below {high:g}", part_of(found < high), least, words=(word,), unit="%"),
+        Condition(f"realizations with {what} above {low:g}", part_of(found > low), least, words=(word,), unit="%"),
+    ]
 
 
 def _known(found: float | Quantity) -> Quantity:

@@ -3,8 +3,9 @@ definition of two peaks (:mod:`granular_response.paper.survey.crossover`)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import xarray as xr
@@ -188,18 +189,30 @@ def _crossovers(data: Data, width: float, words: Bounds) -> dict[tuple[float, fl
     return {key: _crossover(_case(study, *key, STARTS[0])) for key in keys}
 
 
-def _smallest(steps: list[Quantity]) -> Quantity:
-    return Quantity(min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), "confidence")
+def trend(line: Sequence[Crossover]) -> Quantity:
+    """Kendall's tau of the order of crossover forces, with 95 % of the draws: 1 if all pairs rise, -1 if all fall.
+
+    Pairs whose order a draw leaves open, such as two bounds to the same side, widen the interval. Cases of as many
+    realizations were drawn alike.
+    """
+    pairs = list(combinations(line, 2))
+    up = np.mean([after.low > before.high for before, after in pairs], axis=0)
+    down = np.mean([after.high < before.low for before, after in pairs], axis=0)
+    low, high = (
+        float(np.quantile(ends, level, method="inverted_cdf"))
+        for ends, level in zip((2.0 * up - 1.0, 1.0 - 2.0 * down), LEVELS, strict=True)
+    )
+    return Quantity(float(np.median(up - down)), low, high, "confidence")
 
 
 def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
-    """The smallest ratio of neighbouring crossover forces along one axis, for every value of the other; both widths."""
+    """The trend of the crossover force along one axis, and steps against it, for every value of the other; both
+    widths."""
     readings, texts = [], []
     for width, change in WIDTHS.items():
         found = {key: q for key, q in _crossovers(data, width, words).items() if key[0] > 0.0}
         along, across = (1, 0) if what == "friction" else (0, 1)
-        conditions = []
-        clear = total = 0
+        conditions, trends = [], []
         for other in sorted({key[across] for key in found}):
             line = [found[key] for key in sorted(found, key=lambda key: key[along]) if key[across] == other]
             if rising == "falls":
@@ -207,15 +220,18 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
             steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
             if not steps:  # bounds alone
                 continue
-            total += len(steps)
-            clear += sum(step.low >= 1.0 for step in steps)
             name = f"{'polydispersity' if along else 'friction'} {other:g}"
-            conditions.append(
-                Condition(f"{name}, smallest ratio of neighbours", _smallest(steps), least=1.0, words=("visible",))
-            )
+            # what has two peaks at every force is below all others, and tells nothing of the trend among these
+            rest = [one for one in line if one.kind != BELOW]
+            trends.append(trend(rest if len(rest) > 1 else line))
+            back = Quantity.exact(sum(step.high < 1.0 for step in steps))
+            conditions += [
+                Condition(f"{name}, trend (Kendall's tau)", trends[-1], least=0.0, strict=True, words=("visible",)),
+                Condition(f"{name}, steps against it, clear of their intervals", back, most=0.0, words=("visible",)),
+            ]
         if not conditions:
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds too few crossover forces to compare")
-        texts.append(f"{clear} of {total} steps clear of their intervals (w = {width:g})")
+        texts.append(f"trend {', '.join(q.text() for q in trends)} (w = {width:g})")
         readings.append(Reading(f"w = {width:g}", *conditions, change=change))
     return Finding(f"crossover force {rising} with {what}: " + ", ".join(texts), readings)
 
@@ -223,7 +239,7 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
 @CLAIMS.add(
     "D3a",
     "VI.A, Figs. 21, 22",
-    "crossover force against friction at each polydispersity (0.01, 0.1, 0.25)",
+    "trend of the crossover force with friction at each polydispersity (0.01, 0.1, 0.25), and steps against it",
     "the larger the friction, the larger the crossover force",
 )
 def rises_with_friction(data: Data, words: Bounds) -> Finding:
@@ -233,7 +249,7 @@ def rises_with_friction(data: Data, words: Bounds) -> Finding:
 @CLAIMS.add(
     "D3b",
     "VI.A, Figs. 21, 22",
-    "crossover force against polydispersity at each friction",
+    "trend of the crossover force with polydispersity at each friction, and steps against it",
     "the crossover force decreases with increasing polydispersity",
 )
 def falls_with_disorder(data: Data, words: Bounds) -> Finding:
@@ -367,11 +383,15 @@ def preparation(data: Data, words: Bounds) -> Finding:
 def gradual(data: Data, words: Bounds) -> Finding:
     study = at(data.get(GROUP, "shapes", "largest_step", "largest_step_interval", "level", *_LABELS), width=6.0)
     rows = at(data.get(GROUP, "realizations", "shape", "asymmetry", *_LABELS), width=6.0)
+    crossovers = at(data.get(GROUP, "crossovers", "force", "kind", *_LABELS), width=6.0)
     singles, means, texts = [], [], []
     for delta in np.unique(study["polydispersity"].values[study["polydispersity"].values > 0.0]).tolist():
         try:
-            case, single = (_case(one, delta, 1.0, STARTS[0]) for one in (study, rows))
+            case, single, crossover = (_case(one, delta, 1.0, STARTS[0]) for one in (study, rows, crossovers))
         except NotMeasured:
+            continue
+        if int(crossover["kind"]) != FOUND:
+            texts.append(f"no crossover seen (polydispersity {delta:g})")
             continue
         step = _with_interval(case, "largest_step")
         dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
@@ -381,7 +401,7 @@ def gradual(data: Data, words: Bounds) -> Finding:
         means.append(asked.at_most(name, step, words, "gradual"))
         singles.append(asked.at_most(name, steps, words, "gradual"))
     if not means:
-        raise NotMeasured(f"data/{GROUP}.nc: shapes holds no disordered case with friction 1")
+        raise NotMeasured(f"data/{GROUP}.nc: shapes holds no disordered case with friction 1 and a crossover")
     return Finding(
         "largest change of dip or asymmetry between neighbouring forces, per largest response: " + "; ".join(texts),
         [Reading("mean of the realizations", *means), Reading("median realization", *singles)],
