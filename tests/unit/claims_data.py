@@ -7,6 +7,7 @@ import xarray as xr
 import yaml
 
 from granular_response.paper.groups.theory import simulate as theory
+from granular_response.state import SLIDING, STICKING
 
 ROOT = Path(__file__).parents[2]
 FORCES = np.unique(np.concatenate([0.1 * 1.05 ** np.arange(141), [15.0, 50.0]]))
@@ -71,6 +72,17 @@ def friction_study():
         {"friction": [0.0, 0.1, 0.2, 1.0]},
         central_dip=("friction", [0.9, 0.5, -0.01, -0.03]),
         floor_response=(("friction", "floor_disk"), (1.0 - away) * ELASTIC),
+        **{n: ("friction", [110.0, 80.0, 40.0, 0.0]) for n in ("opened_contacts", "teardrop_depth", "teardrop_width")},
+    )
+    # a column of disks below the loaded one, whose contacts slide one after the other
+    column = np.stack([np.zeros(9), -2.0 * np.arange(9.0)], axis=1)
+    states = dataset(
+        {"force": ("state", [0.0, 2.0, 4.0, 6.0])},
+        position=(("state", "disk", "axis"), np.stack([column] * 4)),
+        contact_disk=("contact", np.arange(8)),
+        contact_partner=("contact", np.arange(1, 9)),
+        contact_status=(("state", "contact"), np.where(np.arange(8) < [[0], [1], [3], [5]], SLIDING, STICKING)),
+        loaded_disk=((), 0),
     )
     table = events(
         ("first_opening", 0.0, 0.67, 0.69),
@@ -86,7 +98,13 @@ def friction_study():
         ("third_peak", 0.2, 38.0, 38.1),
         ("friction_crossover", np.nan, 0.15, 0.16),
     )
-    return {"response": response, "large_forces": large, "friction_axis": axis, "events": table}
+    return {
+        "response": response,
+        "large_forces": large,
+        "friction_axis": axis,
+        "states_mu_0.2": states,
+        "events": table,
+    }
 
 
 def breaking_study():

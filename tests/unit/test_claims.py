@@ -29,6 +29,7 @@ from granular_response.paper.claims.verdict import MEANINGS, SURVIVALS, judge, r
 from granular_response.paper.groups import NAMES
 from granular_response.paper.groups.frictionless_crossover import claims as slab_claims
 from granular_response.paper.groups.phase_diagram.claims import FOUND, Crossover, trend
+from granular_response.state import SLIDING, STICKING
 from granular_response.store import files as store
 from granular_response.store import generated
 
@@ -164,6 +165,12 @@ def width_three(factor):
     return lambda groups: changed(groups, PHASES, "crossovers", change)
 
 
+def sliding(where):
+    """Other contacts of the column below the load slide."""
+    slides = where(np.arange(8), np.arange(4)[:, None])
+    return put(FRICTION, "states_mu_0.2", "contact_status", np.where(slides, SLIDING, STICKING))
+
+
 def two_hundred_ends(nonlinear_from):
     """Linear ranges of two hundred packings."""
     ends = np.broadcast_to(np.asarray(nonlinear_from), 200)
@@ -211,6 +218,8 @@ WIDER = (
     start(PHASES, "shapes", "shape_interval", "2.5", 0.5),
 )
 
+SIZES = ("opened_contacts", "teardrop_depth", "teardrop_width")
+
 #: Anisotropy that grows again with friction, by both measures.
 AGAIN = (
     put(FRICTION, "friction_axis", "central_dip", [0.9, 0.5, 0.6, -0.03]),
@@ -245,6 +254,12 @@ PLANTED = [
     ("F10", scaled(SLAB, "stiffness", "crossover_bracket", [[2.0]] + [[2.0]] * 3 + [[1.0]]), "contradicted"),
     ("F11", scaled(FRICTION, "response", "response_at_centre", 1.0 + 0.1 * np.arange(3)[:, None]), "derivation"),
     ("F11", scaled(FRICTION, "response", "response_at_centre", np.geomspace(1.0, 9.0, 143)), "contradicted"),
+    ("F12", put(FRICTION, "friction_axis", "opened_contacts", [110, 80, 40, 70]), DEPENDS),
+    ("F12", both(*(put(FRICTION, "friction_axis", n, [110, 80, 40, 70]) for n in SIZES)), "contradicted"),
+    ("R12", sliding(lambda contact, state: contact < np.array([0, 2, 8, 8])[state]), DEPENDS),
+    ("R12", sliding(lambda contact, state: (contact > 3) & (state > 0)), "contradicted"),
+    ("R13", sliding(lambda contact, state: contact < np.array([0, 5, 3, 1])[state]), "contradicted"),
+    ("R13", sliding(lambda contact, state: contact < np.array([0, 1, 8, 8])[state]), "contradicted"),
     ("R1", moved(FRICTION, "linear_range", 1.0, 2.0, 2.1), DEPENDS),
     ("R1", moved(FRICTION, "linear_range", 0.0, 0.2, 0.9), "undecided"),
     ("R2a", put(FRICTION, "response", "double_peaked", 1), DEPENDS),

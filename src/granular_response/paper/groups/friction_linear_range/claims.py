@@ -1,12 +1,14 @@
-"""Claims F1 to F3, F11, R1 to R11 but R5a, A1, A2 and K4: ordered slabs with friction under growing forces (Sec. V)."""
+"""Claims F1 to F3, F11, F12, R1 to R13 but R5a, A1, A2, K4: ordered slabs with friction, growing forces (Sec. V)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import combinations
 
 import numpy as np
 import xarray as xr
 
+from ....state import SLIDING, FloatArray
 from ...claims import asked, preparations
 from ...claims.claim import (
     Claims,
@@ -444,6 +446,94 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
         f"the response at x = 0 changes by {change:.2%} up to the first opening at {event.text('mg')}",
         OWN,
         asked.at_most(what, change, words, "visible", "%"),
+    )
+
+
+@CLAIMS.add(
+    "F12",
+    "IV.A",
+    "size of the region of open contacts under 15 mg against friction: contacts, depth, width",
+    "its size decreases with friction",
+    (4, 8, 9),
+)
+def region_and_friction(data: Data, words: Bounds) -> Finding:
+    sizes = {"contacts": "opened_contacts", "depth": "teardrop_depth", "width": "teardrop_width"}
+    axis = data.get(GROUP, "friction_axis", *sizes.values(), "friction").sortby("friction")
+    readings = []
+    for what, name in sizes.items():
+        size = axis[name].values
+        if not size[0] > 0.0:
+            raise NotMeasured(f"data/{GROUP}.nc: friction_axis holds no open region without friction")
+        growth = float(np.diff(size).max() / size[0])
+        condition = asked.at_most("largest growth with friction, per size without", growth, words, "visible", "%")
+        readings.append(Reading(what, condition))
+    opened = axis["opened_contacts"].values.tolist()
+    return Finding(
+        "opened contacts at 15 mg: "
+        + ", ".join(
+            f"{n:.0f} (friction {mu:g})" for n, mu in zip(opened, axis["friction"].values.tolist(), strict=True)
+        ),
+        readings,
+    )
+
+
+#: "Near the point of application": within this distance (mean radii). Depths of sliding contacts: of this part.
+NEAR, DEEP = 6.0, 0.9
+
+
+def _sliding(data: Data) -> dict[float, FloatArray]:
+    """Where sliding contacts are, seen from the load (n, 2), by force below that of the paper's crossover."""
+    names = ("position", "contact_disk", "contact_partner", "contact_status", "loaded_disk", "force")
+    states = data.get(GROUP, "states_mu_0.2", *names)
+    first, second = states["contact_disk"].values, states["contact_partner"].values
+    found = {}
+    for k, force in enumerate(states["force"].values.tolist()):
+        position = states["position"].values[k]
+        slides = states["contact_status"].values[k] == SLIDING
+        away = 0.5 * (position[first] + position[second])[slides] - position[int(states["loaded_disk"])]
+        if 0.0 < force < 20.0 and away.size:
+            found[force] = away
+    if len(found) < 2:
+        raise NotMeasured(f"data/{GROUP}.nc: states_mu_0.2 holds sliding contacts at fewer than two forces below 20 mg")
+    return found
+
+
+@CLAIMS.add(
+    "R12",
+    "V.E",
+    f"friction 0.2: part of the sliding contacts within {NEAR:g} radii of the load, at forces below 20 mg",
+    "sliding occurs mainly near the point of application",
+    8,
+)
+def sliding_near(data: Data, words: Bounds) -> Finding:
+    near = {force: float((np.hypot(*away.T) < NEAR).mean()) for force, away in _sliding(data).items()}
+    what = f"sliding contacts within {NEAR:g} radii of the load"
+    return asked.each(
+        f"{what}: ",
+        {f"{force:g} mg": Quantity.exact(part) for force, part in near.items()},
+        lambda part: asked.at_least(what, part, words, "marked", "%"),
+        "%",
+        "The paper names no force",
+    )
+
+
+@CLAIMS.add(
+    "R13",
+    "V.E",
+    f"friction 0.2: depth above which {DEEP:.0%} of the sliding contacts are, against the force below 20 mg",
+    "sliding contacts spread gradually downward",
+    8,
+)
+def sliding_spreads(data: Data, words: Bounds) -> Finding:
+    deep = {force: float(np.quantile(-away[:, 1], DEEP)) for force, away in sorted(_sliding(data).items())}
+    depth = np.array(list(deep.values()))
+    # what differs by less than half a row is the same depth
+    back = np.mean([after < before - 0.5 * np.sqrt(3.0) for before, after in combinations(depth, 2)])
+    return asked.one_reading(
+        ", ".join(f"{end:.1f} R ({force:g} mg)" for force, end in deep.items()),
+        "forces below 20 mg",
+        asked.at_most("pairs of forces of which the larger has the less deep ones", float(back), words, "nearly", "%"),
+        asked.at_most("largest step per largest depth", float(np.diff(depth).max() / depth.max()), words, "gradual"),
     )
 
 
