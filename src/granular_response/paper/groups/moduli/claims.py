@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import xarray as xr
 
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claim, Condition, Data, Finding, Reading
+from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "moduli"
@@ -34,12 +36,12 @@ def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
         condition = Condition(what, found, most=words[WORD], words=(WORD,), unit="%")
         readings.append(Reading(f"{name}, {float(one['layers']):g} layers", condition))
     parts = [
-        f"{100.0 * min(these):.2g} to {100.0 * max(these):.2g} % {'with' if friction else 'without'} friction"
+        f"{Quantity.range(these, math.nan).text('%')} {'with' if friction else 'without'} friction"
         for friction, these in values.items()
         if these
     ]
     return Finding(
-        f"they differ by {', '.join(parts)} of the largest pressure",
+        f"part of the largest pressure by which they differ: {', '.join(parts)}",
         readings,
         "Mean over the small loads on the top disks of a packing, smoothed with w = 3; no parameter is fitted. Even in "
         "the presence of friction, says the paper, which includes none",
