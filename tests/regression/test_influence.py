@@ -52,7 +52,7 @@ def test_figures_have_their_panels(datasets):
 
 @pytest.mark.parametrize(
     ("lattice", "disordered", "verdict"),
-    [(2.0, 1.9, "reproduced"), (2.0, 1.2, "depends on the reading"), (1.0, 0.1, "contradicted")],
+    [(2.0, 1.9, "reproduced"), (2.0, 1.2, "depends on the interpretation"), (1.0, 0.1, "contradicted")],
 )
 def test_the_claim_follows_the_powers(lattice, disordered, verdict):
     exponent = np.full((2, 4, 1, 3), np.nan)

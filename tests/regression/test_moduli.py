@@ -104,8 +104,8 @@ def test_figures_have_their_panels_and_claims_are_judged(datasets):
     assert len(figures["moduli_lattice"].axes) == 3
     for claim in CLAIMS:
         entry = judge(claim, Data({"moduli": datasets}))
-        assert len(entry.finding.readings) == 1  # of the one case with friction
-        assert "Without friction" in entry.finding.remark
+        assert len(entry.finding.readings) == 2  # of the case with friction and the one without
+        assert "without friction" in entry.finding.summary
 
 
 def test_parameters_are_checked():

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 import yaml
 
+from granular_response.state import SLIDING, STICKING
 from granular_response_paper.groups.theory import simulate as theory
 
 ROOT = Path(__file__).parents[2]
@@ -34,12 +35,16 @@ def by_friction(*rows):
     return ("friction", "force"), np.stack([np.broadcast_to(row, FORCES.shape) for row in rows]).astype(float)
 
 
+#: An elastic response.
+ELASTIC = 0.07 * np.exp(-((X / 20.0) ** 2))
+
+
 def friction_study():
     floor = [3.5, 19.0, 10.9]
     depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in floor]
     opened = np.round(10.0 * FORCES)
     response = dataset(
-        {"friction": [0.0, 0.2, 1.0], "force": FORCES},
+        {"friction": [0.0, 0.2, 1.0], "force": FORCES, "x": ("floor_disk", X)},
         # one per cent off at these forces, five at five times as much
         response_at_centre=by_friction(*(0.07 * (1.0 - 0.01 * FORCES / end) for end in (0.9, 5.5, 7.5))),
         double_peaked=by_friction(FORCES > 3.0, FORCES > 20.1, 0.0),
@@ -50,6 +55,7 @@ def friction_study():
         teardrop_width=by_friction(*depth),
         reaches_floor=by_friction(*(f < FORCES for f in floor)),
         opened_contacts=by_friction(opened, 0.2 * opened, 0.2 * opened),
+        floor_response=(("friction", "force", "floor_disk"), np.broadcast_to(ELASTIC, (3, FORCES.size, X.size))),
     )
     one_side = np.where(X > 0.0, 0.08, 0.01)
     profiles = np.stack([np.exp(-((X / 20.0) ** 2)) * 0.07] * 2 + [one_side, one_side[::-1]])
@@ -61,7 +67,23 @@ def friction_study():
         mobilised_contacts=(("force", "margin"), np.array([[10, 20], [10, 20], [1, 2], [1, 2]])),
         floor_response=(("force", "floor_disk"), profiles),
     )
-    axis = dataset({"friction": [0.0, 0.1, 0.2, 1.0]}, central_dip=("friction", [0.9, 0.5, -0.01, -0.03]))
+    away = np.array([0.8, 0.3, 0.1, 0.05])[:, None]
+    axis = dataset(
+        {"friction": [0.0, 0.1, 0.2, 1.0]},
+        central_dip=("friction", [0.9, 0.5, -0.01, -0.03]),
+        floor_response=(("friction", "floor_disk"), (1.0 - away) * ELASTIC),
+        **{n: ("friction", [110.0, 80.0, 40.0, 0.0]) for n in ("opened_contacts", "teardrop_depth", "teardrop_width")},
+    )
+    # a column of disks below the loaded one, whose contacts slide one after the other
+    column = np.stack([np.zeros(9), -2.0 * np.arange(9.0)], axis=1)
+    states = dataset(
+        {"force": ("state", [0.0, 2.0, 4.0, 6.0])},
+        position=(("state", "disk", "axis"), np.stack([column] * 4)),
+        contact_disk=("contact", np.arange(8)),
+        contact_partner=("contact", np.arange(1, 9)),
+        contact_status=(("state", "contact"), np.where(np.arange(8) < [[0], [1], [3], [5]], SLIDING, STICKING)),
+        loaded_disk=((), 0),
+    )
     table = events(
         ("first_opening", 0.0, 0.67, 0.69),
         ("first_opening", 0.2, 3.9, 3.92),
@@ -76,7 +98,13 @@ def friction_study():
         ("third_peak", 0.2, 38.0, 38.1),
         ("friction_crossover", np.nan, 0.15, 0.16),
     )
-    return {"response": response, "large_forces": large, "friction_axis": axis, "events": table}
+    return {
+        "response": response,
+        "large_forces": large,
+        "friction_axis": axis,
+        "states_mu_0.2": states,
+        "events": table,
+    }
 
 
 def breaking_study():
@@ -178,7 +206,7 @@ def fields_study():
         ),
         "profiles": dataset(
             {"friction": [0.0, 1.0], "row": [2.5, 9.5]},
-            axis_magnitude=(("friction", "row"), np.array([[0.2, 0.2], [1.0, 0.9]])),
+            axis_magnitude=(("friction", "row"), np.array([[0.2, 0.2], [1.0, 0.995]])),
         ),
     }
 
@@ -192,7 +220,7 @@ def pile_study():
             floor_dip=("case", [0.08, 0.08, -0.01]),
             central_open_contacts=("case", [49.0, 49.0, 50.0]),
             central_height=("case", [14.0, 14.0, 14.0]),
-            central_width=("case", [16.0, 16.0, 18.0]),
+            central_width=("case", [16.0, 16.0, 20.0]),
         ),
     }
 
@@ -524,11 +552,11 @@ def width_study():
 
 
 def moduli_study():
-    """Two cases with friction and one without, which alone differs much from its slab."""
+    """Two cases with friction and one without."""
     difference = np.full((3, 2, 4, 4, 2), np.nan)
     spread = np.array([-0.004, 0.0, 0.002, 0.004])[:, None, None]
     difference[:, 0] = 0.3
-    difference[:2, 1], difference[2, 1] = 0.03 + spread, 0.9 + spread
+    difference[:, 1] = 0.03 + spread
     return {
         "packings": dataset(
             {
@@ -542,8 +570,13 @@ def moduli_study():
     }
 
 
+def law_study():
+    forces = {"friction": [0.0, 0.2], "force": [1.0, 15.0]}
+    return {"responses": dataset(forces, difference=(("friction", "force"), np.full((2, 2), 0.1)))}
+
+
 def everything():
-    """Datasets in which every claim of the paper that is measured holds, in every reading."""
+    """Datasets in which every claim holds, in every interpretation and every variant."""
     return {
         "frictionless_crossover": frictionless_study(),
         "friction_linear_range": friction_study(),
@@ -565,4 +598,5 @@ def everything():
         "crossover_scaling": scaling_study(),
         "peak_width": width_study(),
         "moduli": moduli_study(),
+        "contact_law": law_study(),
     }

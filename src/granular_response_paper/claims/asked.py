@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
+from .bootstrap import OUTSIDE, part_of
 from .claim import Condition, Finding, NotMeasured, Quantity, Reading
 from .words import Bounds
 
@@ -39,12 +41,25 @@ def hardly_lower(what: str, ratio: float | Quantity, words: Bounds, word: str, u
     return Condition(what, _known(ratio), 1.0 - words[word], words=(word,), unit=unit)
 
 
+def one_of(what: str, values: ArrayLike, paper: float, words: Bounds, word: str) -> list[Condition]:
+    """The paper's number of one sample, within the word's bound, is none that single realizations rarely have.
+
+    Values (r,) below it and above it are each at least a fortieth of all: the central 95 %.
+    """
+    found, least = np.asarray(values, dtype=float), 0.5 * OUTSIDE
+    low, high = ((1.0 + sign * words[word]) * paper for sign in (-1.0, 1.0))
+    return [
+        Condition(f"realizations with {what} below {high:g}", part_of(found < high), least, words=(word,), unit="%"),
+        Condition(f"realizations with {what} above {low:g}", part_of(found > low), least, words=(word,), unit="%"),
+    ]
+
+
 def _known(found: float | Quantity) -> Quantity:
     return found if isinstance(found, Quantity) else Quantity.exact(found)
 
 
 def one_reading(summary: str, reading: str, *conditions: Condition, remark: str = "") -> Finding:
-    """What was measured in one reading alone."""
+    """What was measured in one interpretation alone."""
     return Finding(summary, [Reading(reading, *conditions)], remark)
 
 
@@ -54,10 +69,12 @@ def each(
     condition: Callable[[Quantity], Condition],
     unit: str = "",
     remark: str = "",
+    changed: Callable[[str], str] = lambda name: "",
 ) -> Finding:
-    """A number for each reading, by its name, and what is asked of each."""
+    """A number for each reading, by its name, and what is asked of each; ``changed`` says what a reading changes."""
     texts = ", ".join(f"{quantity.text(unit)} ({name})" for name, quantity in found.items())
-    return Finding(what + texts, [Reading(name, condition(quantity)) for name, quantity in found.items()], remark)
+    readings = [Reading(name, condition(quantity), change=changed(name)) for name, quantity in found.items()]
+    return Finding(what + texts, readings, remark)
 
 
 def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:

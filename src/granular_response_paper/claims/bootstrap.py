@@ -1,4 +1,4 @@
-"""Confidence of a statistic of a few realizations: 95 % of the bootstrap draws over them."""
+"""Confidence of a statistic of a few realizations: 95 % of the bootstrap draws, or the exact interval of a part."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import betaincinv
 
 from granular_response.state import FloatArray
 
@@ -29,6 +30,18 @@ def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Qu
     picked = np.random.default_rng(0).integers(0, found.size, (DRAWS, found.size))
     low, high = np.quantile(statistic(found[picked], axis=1), [0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE])
     return Quantity(float(statistic(found, axis=0)), float(low), float(high), "confidence")
+
+
+def part_of(hits: ArrayLike) -> Quantity:
+    """The part of realizations that are hits (r,), with its exact binomial interval (Clopper and Pearson): it is open
+    where all or none are. Raises NotMeasured without realizations."""
+    found = np.asarray(hits, dtype=bool)
+    number, hit = found.size, int(np.count_nonzero(found))
+    if not number:
+        raise NotMeasured("no realizations")
+    low = float(betaincinv(hit, number - hit + 1, 0.5 * OUTSIDE)) if hit else 0.0
+    high = float(betaincinv(hit + 1, number - hit, 1.0 - 0.5 * OUTSIDE)) if hit < number else 1.0
+    return Quantity(hit / number, low, high, "confidence")
 
 
 def over_brackets(each: Sequence[Quantity]) -> Quantity:

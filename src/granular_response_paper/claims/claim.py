@@ -1,8 +1,8 @@
 """What a claim of the paper is: stored numbers with their uncertainty, compared with bounds in one or more readings.
 
-A claim is measured by a function that reads datasets and returns a :class:`Finding`: *readings* of what the paper
-leaves open, each with *conditions*, each a :class:`Quantity` against a bound. :mod:`verdict` alone turns them into a
-verdict.
+A claim is measured by a function that reads datasets and returns a :class:`Finding`: *readings*, which are
+interpretations of the text or variants of its set-up, each with *conditions*, each a :class:`Quantity` against a bound.
+:mod:`verdict` alone turns them into a verdict and a robustness.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import xarray as xr
 
 from granular_response.errors import GranularError
 
+from .changes import CHANGES
 from .words import Bounds
 
 #: What an interval means: none (a number of one deterministic run); the event lies inside; 95 % of the bootstrap draws;
@@ -143,16 +144,24 @@ class Condition:
 
 @dataclass(frozen=True)
 class Reading:
-    """One way to read the paper's set-up or words, and what the claim asks for in it."""
+    """An interpretation of the paper's set-up or words, or a variant of its set-up, and what the claim asks for in it.
+
+    ``change`` is what a variant changes, a key of :data:`~granular_response_paper.claims.changes.CHANGES`; an
+    interpretation changes nothing. Raises ValueError without conditions, KeyError for another change.
+    """
 
     name: str
     conditions: tuple[Condition, ...]
+    change: str = ""
 
-    def __init__(self, name: str, *conditions: Condition) -> None:
+    def __init__(self, name: str, *conditions: Condition, change: str = "") -> None:
         if not conditions:
             raise ValueError(f"{name}: a reading needs conditions")
+        if change and change not in CHANGES:
+            raise KeyError(f"{name}: {change} is no change of the set-up")
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "conditions", conditions)
+        object.__setattr__(self, "change", change)
 
     @property
     def outcome(self) -> Outcome:
@@ -162,10 +171,10 @@ class Reading:
 
 @dataclass(frozen=True)
 class Finding:
-    """What was measured for a claim; the first reading is the one this project uses.
+    """What was measured for a claim; the first reading is an interpretation, the one this project uses.
 
     ``summary`` is for readers; ``quantity`` the number that stands for the claim, by default that of the first
-    condition over all readings; ``remark`` is shown beside the verdict.
+    condition over all interpretations; ``remark`` is shown beside the verdict.
     """
 
     summary: str
@@ -173,13 +182,29 @@ class Finding:
     remark: str = ""
 
     @property
+    def interpretations(self) -> list[Reading]:
+        return [reading for reading in self.readings if not reading.change]
+
+    @property
+    def variants(self) -> list[Reading]:
+        """In the order of the changes."""
+        order = list(CHANGES)
+        return sorted((r for r in self.readings if r.change), key=lambda reading: order.index(reading.change))
+
+    @property
     def quantity(self) -> Quantity:
-        """The first condition's number: its own interval, or the range over the readings that measure the same."""
-        first = self.readings[0].conditions[0]
-        same = [r.conditions[0].found for r in self.readings if r.conditions[0].what == first.what]
-        if len(same) < 2:
-            return first.found
-        return Quantity(first.found.value, min(q.low for q in same), max(q.high for q in same), "range")
+        """The first condition's number: its own interval, or the range over the interpretations that measure the
+        same."""
+        return range_over(self.interpretations)
+
+
+def range_over(readings: Sequence[Reading]) -> Quantity:
+    """The number of the first condition of the first reading; the range if others measure the same."""
+    first = readings[0].conditions[0]
+    same = [r.conditions[0].found for r in readings if r.conditions[0].what == first.what]
+    if len(same) < 2:
+        return first.found
+    return Quantity(first.found.value, min(q.low for q in same), max(q.high for q in same), "range")
 
 
 Measure = Callable[["Data", Bounds], Finding]

@@ -1,8 +1,8 @@
-"""Other readings of how a slab is prepared and loaded, for claims that hang on them.
+"""How else a slab can be prepared and loaded, for claims that hang on it.
 
-The text says neither how gravity comes nor how long the force grows, and its equation for the spring differs from its
-words. What other ways to bring gravity change is in the group ``preparation``; the group ``sensitivity`` has responses
-at 15 mg under other readings of the loading.
+By the text the packing relaxes under gravity, which acts at once; other preparations are variants, measured in the
+group ``preparation``. The text does not say how long the force grows, and its equation for the spring differs from its
+words: the group ``sensitivity`` has responses at 15 mg in these interpretations.
 """
 
 from __future__ import annotations
@@ -20,7 +20,10 @@ from .words import Bounds
 
 GROUP, LOADING = "preparation", "sensitivity"
 
-#: Readings that the text leaves open, by variant of ``sensitivity``.
+#: What other preparations change.
+CHANGE = "gravity"
+
+#: Other readings, by variant of ``sensitivity``; all but the first are interpretations.
 OPEN = {
     "slow_gravity": "gravity grown slowly",
     "ramp_80": "force grown over 80 sqrt(R/g)",
@@ -50,16 +53,24 @@ def one_peak_at_15(data: Data, friction: float, words: Bounds) -> list[Reading]:
     if LOADING not in data.groups:
         return []
     return [
-        Reading(f"{name} (15 mg)", asked.at_most("dip at x = 0 at 15 mg", dip, words, "visible", "%"))
+        Reading(
+            f"{name} (15 mg)",
+            asked.at_most("dip at x = 0 at 15 mg", dip, words, "visible", "%"),
+            change=change(name),
+        )
         for name, dip in dips(data, friction).items()
     ]
+
+
+def change(name: str) -> str:
+    """What a reading of ``OPEN`` changes."""
+    return CHANGE if name == OPEN["slow_gravity"] else ""
 
 
 def events(data: Data, name: str, friction: float, wall_friction: float = 0.0) -> dict[str, Quantity]:
     """The brackets of an event for each other way to bring gravity; none without the study.
 
-    Dashpots are the paper's: those that differ are no reading of the text. Without friction rest is one minimum,
-    whatever came before, and there is none.
+    Dashpots are the paper's. Without friction the equilibrium is one minimum, whatever came before, and there is none.
     """
     if GROUP not in data.groups:
         return {}
@@ -75,13 +86,13 @@ def events(data: Data, name: str, friction: float, wall_friction: float = 0.0) -
 def readings(
     data: Data, name: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]]
 ) -> list[Reading]:
-    """A reading for each other way to bring gravity of which the event is stored at all ``frictions``.
+    """A variant for each other way to bring gravity of which the event is stored at all ``frictions``.
 
     ``conditions`` makes its conditions of the brackets in that order.
     """
     found = [events(data, name, friction) for friction in frictions]
     return [
-        Reading(way, *conditions(*(brackets[way] for brackets in found)))
+        Reading(way, *conditions(*(brackets[way] for brackets in found)), change=CHANGE)
         for way in found[-1]
         if all(way in brackets for brackets in found)
     ]

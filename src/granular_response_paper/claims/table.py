@@ -22,8 +22,9 @@ from granular_response.store import files as store
 
 from ..groups import NAMES
 from . import preparations
+from .changes import CHANGES
 from .claim import Claim, Condition, Data, Quantity, rounded
-from .verdict import MEANINGS, Entry, Verdict, judge
+from .verdict import MEANINGS, SURVIVALS, Entry, Verdict, judge
 from .words import TABLE, bounds
 
 #: Kinds of claims by the first letter, in the order of the table.
@@ -57,11 +58,21 @@ BLOCK = "claims"
 FACTORS = (0.5, 2.0)
 
 #: Intervals as they are named for readers.
-KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "range": "range over readings"}
+KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
 
 
 #: What a stored table holds.
-KEYS = {"counts", "verdicts", "verdict_kinds", "words", "sensitivity", "table"}
+KEYS = {
+    "counts",
+    "robustness",
+    "verdicts",
+    "verdict_kinds",
+    "robustness_kinds",
+    "changes",
+    "words",
+    "sensitivity",
+    "table",
+}
 
 
 class ClaimsError(GranularError):
@@ -132,20 +143,29 @@ def _conditions(entry: Entry) -> list[Condition]:
 def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
     """Everything about the verdicts, as it is stored.
 
-    ``counts`` and ``verdicts`` are scalars for ``dvc metrics show``, which passes over lists.
+    ``counts``, ``robustness`` and ``verdicts`` are scalars for ``dvc metrics show``, which passes over lists.
     """
     verdicts = {
         entry.claim.id: {
             "verdict": entry.verdict,
+            "robustness": entry.robustness,
             **({"value": rounded(entry.finding.quantity.value)} if entry.finding else {}),
         }
         for entry in entries
     }
-    papers = [entry.verdict for entry in entries if not entry.claim.beyond]
+    own = [entry for entry in entries if not entry.claim.beyond]
+    survivals = [entry.robustness for entry in own]
     return {
-        "counts": {**counts(papers), "total": len(papers), "beyond": len(entries) - len(papers)},
+        "counts": {
+            **counts([entry.verdict for entry in own]),
+            "total": len(own),
+            "beyond": len(entries) - len(own),
+        },
+        "robustness": {_key(kind): survivals.count(kind) for kind in SURVIVALS},
         "verdicts": verdicts,
         "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
+        "robustness_kinds": [{"robustness": kind, "meaning": meaning} for kind, meaning in SURVIVALS.items()],
+        "changes": [{"change": change, "sentence": sentence} for change, sentence in CHANGES.items()],
         "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
         "sensitivity": sensitivity(data, entries),
         "table": [_row(entry) for entry in entries],
@@ -161,6 +181,8 @@ def _row(entry: Entry) -> dict[str, Any]:
         "paper": claim.paper,
         "verdict": entry.verdict,
         "reason": entry.reason,
+        "robustness": entry.robustness,
+        "survival": entry.survival,
         "figures": list(claim.figures),
         "group": claim.group,
         "beyond": claim.beyond,
@@ -175,6 +197,7 @@ def _row(entry: Entry) -> dict[str, Any]:
         row["readings"] = [
             {
                 "name": reading.name,
+                "change": reading.change,
                 "outcome": reading.outcome,
                 "conditions": [
                     {
@@ -234,7 +257,7 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
     if not isinstance(found, dict) or not set(found) >= KEYS:
         raise ClaimsError(f"{path}: is not a table of claims")
     try:
-        sentence(found), firmness(found)
+        sentence(found), robustness(found), firmness(found)
         whole = all(set(row) >= _LISTED for row in found["table"])
     except (AttributeError, KeyError, TypeError, ValueError):
         whole = False
@@ -244,7 +267,7 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
 
 
 #: What is listed of each claim.
-_LISTED = {"id", "verdict", "ours", "reason", "interval_kind"}
+_LISTED = {"id", "verdict", "robustness", "survival", "ours", "reason", "interval_kind"}
 
 
 def sentence(found: dict[str, Any]) -> str:
@@ -253,11 +276,11 @@ def sentence(found: dict[str, Any]) -> str:
     named = [(number[_key(v)], v) for v in MEANINGS if v not in ("derivation", "not measured")]
     judged = sum(n for n, _ in named)
     parts = [
-        f"{n} {'depend' if n != 1 else 'depends'} on the reading" if v.startswith("depends") else f"{n} {v}"
+        f"{n} {'depend' if n != 1 else 'depends'} on the interpretation" if v.startswith("depends") else f"{n} {v}"
         for n, v in named
         if n
     ]
-    text = f"Of {judged} claims of the paper that were measured: {', '.join(parts)}."
+    text = f"Of {judged} claims of the paper that were measured in its own set-up: {', '.join(parts)}."
     algebra, missing, beyond = number["derivation"], number["not_measured"], number.get("beyond", 0)
     if algebra:
         text += f" {algebra} more {'are' if algebra != 1 else 'is'} algebra that no simulation can fail."
@@ -266,6 +289,17 @@ def sentence(found: dict[str, Any]) -> str:
     if missing:
         text += f" {missing} {'are' if missing != 1 else 'is'} not measured."
     return text
+
+
+def robustness(found: dict[str, Any]) -> str:
+    """The counts of the second column in words."""
+    number = found["robustness"]
+    varied = sum(n for kind, n in number.items() if kind != "not_varied")
+    changes = ", ".join(row["change"] for row in found["changes"])
+    return (
+        f"Of {varied} that were also measured in variants of it ({changes}): "
+        f"{number['robust']} hold in all, {number['breaks']} fail in one or more, {number['open']} are open."
+    )
 
 
 def firmness(found: dict[str, Any]) -> str:
@@ -280,4 +314,4 @@ def firmness(found: dict[str, Any]) -> str:
 
 def renew(readme: str | os.PathLike[str], found: dict[str, Any]) -> None:
     """Renew the counts that a file quotes. Raises GeneratedError if it cannot be read or has no place for them."""
-    generated.renew(readme, BLOCK, f"{sentence(found)}\n{firmness(found)}")
+    generated.renew(readme, BLOCK, f"{sentence(found)}\n{robustness(found)}\n{firmness(found)}")

@@ -8,6 +8,7 @@ Numbers that the paper states itself (1 %, 1e-22) are no words.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -30,9 +31,9 @@ TABLE: tuple[Word, ...] = (
     ),
     Word(
         "almost",
-        0.5,
-        "Almost ten times is from half of ten up to ten: the paper itself calls 4/0.75 and 6/0.75 almost an order of "
-        "magnitude.",
+        math.log10(2.0),
+        "Almost an order of magnitude, on the logarithmic scale to which the paper points: within a factor of two, 0.3 "
+        "of a decade, of ten. It calls 4/0.75 and 6/0.75 so.",
     ),
     Word("slightly", 0.25, "Slightly smaller, a little below, is at most a quarter less."),
     Word("small", 0.25, "Small is at most a quarter of what it is compared with."),

@@ -193,7 +193,7 @@ _SIZE = "(size of the page)"
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")
 
 #: What the page needs of the table of claims.
-_CLAIMS = {"counts", "verdict_kinds", "words", "sensitivity", "table"}
+_CLAIMS = {"counts", "verdict_kinds", "robustness", "robustness_kinds", "changes", "words", "sensitivity", "table"}
 
 
 def _claims(path: Path) -> dict[str, Any]:

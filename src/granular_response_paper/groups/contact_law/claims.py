@@ -1,4 +1,4 @@
-"""Claim N8: the linear law against the power 3/2 (Sec. III.B)."""
+"""Claim B10, beyond the paper: the linear law against the power 3/2 (Sec. III.B)."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ CLAIMS = Claims(GROUP)
 
 
 @CLAIMS.add(
-    "N8",
-    "III.B",
+    "B10",
+    "beyond the paper, III.B",
     "responses with the linear normal force against the 3/2 power, matched at the typical overlap",
     "a linear force describes the disks quite well",
 )

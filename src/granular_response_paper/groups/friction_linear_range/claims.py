@@ -1,11 +1,14 @@
-"""Claims F1 to F3, F11, R1 to R11 but R5a, A1, A2 and K4: ordered slabs with friction under growing forces (Sec. V)."""
+"""Claims F1 to F3, F11, F12, R1 to R13 but R5a, A1, A2, K4: ordered slabs with friction, growing forces (Sec. V)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import combinations
 
 import numpy as np
 import xarray as xr
+
+from granular_response.state import SLIDING, FloatArray
 
 from ...claims import asked, preparations
 from ...claims.claim import (
@@ -28,6 +31,9 @@ GROUP = "friction_linear_range"
 BREAKING = "symmetry_breaking"
 CLAIMS = Claims(GROUP)
 
+#: The paper's preparation.
+OWN = "gravity at once"
+
 
 def _ways(
     data: Data, event: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]], own: str
@@ -46,7 +52,7 @@ def at_force(
         def wanted(end: Quantity) -> list[Condition]:
             return [sampled(what, end, paper, words) if first_sampled else about(what, end, paper, words, "mg")]
 
-        own = "the first sampled force at or above it" if first_sampled else "gravity at once"
+        own = "the first sampled force at or above it" if first_sampled else OWN
         found = data.event(GROUP, event, friction)
         return Finding(f"{text} {found.text('mg')}", _ways(data, event, (friction,), wanted, own))
 
@@ -86,7 +92,7 @@ def _by_end(
     return [
         *(Reading(name, *wanted(*ends)) for name, ends in found.items()),
         *(
-            Reading(f"{name}, {reading.name}", *reading.conditions)
+            Reading(f"{name}, {reading.name}", *reading.conditions, change=reading.change)
             for name, event in _OTHERWISE.items()
             for reading in preparations.readings(
                 data, event, frictions, lambda *ends, without=found[name][0]: wanted(without, *ends)
@@ -103,9 +109,9 @@ def _by_end(
 )
 def linear_range(data: Data, words: Bounds) -> Finding:
     def wanted(without: Quantity, *ends: Quantity) -> list[Condition]:
-        least = (1.0 - words["almost"]) * 10.0
+        least, most = (10.0 ** (1.0 + sign * words["almost"]) for sign in (-1.0, 1.0))
         return [
-            Condition(f"times larger at friction {mu:g}", end.per(without), least, 10.0, ("almost",))
+            Condition(f"times larger at friction {mu:g}", end.per(without), least, most, ("almost",))
             for mu, end in zip((0.2, 1.0), ends, strict=True)
         ]
 
@@ -114,7 +120,7 @@ def linear_range(data: Data, words: Bounds) -> Finding:
     return Finding(
         "at friction 0.2 and 1: " + ", ".join(f"{' and '.join(r)} times ({name})" for name, r in ratios.items()),
         _by_end(data, found, (0.2, 1.0), wanted),
-        "The paper does not say how far off a response is no longer linear, nor how gravity came",
+        "The paper does not say how far off a response is no longer linear",
     )
 
 
@@ -135,15 +141,19 @@ def _up_to_50(data: Data, *names: str) -> xr.Dataset:
 @CLAIMS.add("R2a", "V.A, Fig. 7", "friction 1: forces up to 50 mg with two peaks", "a single peak up to 50 mg")
 def single_peak(data: Data, words: Bounds) -> Finding:
     curve = _up_to_50(data, "double_peaked")
-    ways = {"gravity at once": (curve["force"].values, curve["double_peaked"].values)}
+    ways = {OWN: (curve["force"].values, curve["double_peaked"].values)}
     ways |= preparations.curves(data, 1.0, "double_peaked")
     double = {way: int(np.count_nonzero(values[force <= 50.0])) for way, (force, values) in ways.items()}
     size = curve.sizes["force"]
     return Finding(
-        f"one peak at {size - double['gravity at once']} of {size} forces up to 50 mg",
+        f"one peak at {size - double[OWN]} of {size} forces up to 50 mg",
         [
             *(
-                Reading(way, Condition("forces up to 50 mg with two peaks", Quantity.exact(number), most=0.0))
+                Reading(
+                    way,
+                    Condition("forces up to 50 mg with two peaks", Quantity.exact(number), most=0.0),
+                    change="" if way == OWN else preparations.CHANGE,
+                )
                 for way, number in double.items()
             ),
             *preparations.one_peak_at_15(data, 1.0, words),
@@ -164,7 +174,7 @@ def sharper(data: Data, words: Bounds) -> Finding:
     return asked.one_reading(
         f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[-1]:.1f} R, the height "
         f"grows from {height[0]:.4f} to {height[-1]:.4f}",
-        "gravity at once",
+        OWN,
         narrower,
     )
 
@@ -329,7 +339,7 @@ def floor_earlier(data: Data, words: Bounds) -> Finding:
     low, high = (data.event(GROUP, "reaches_floor", mu) for mu in (1.0, 0.2))
     return Finding(
         f"at the floor from {low.text('mg')} (friction 1) and {high.text('mg')} (friction 0.2)",
-        _ways(data, "reaches_floor", (1.0, 0.2), wanted, "gravity at once"),
+        _ways(data, "reaches_floor", (1.0, 0.2), wanted, OWN),
     )
 
 
@@ -343,7 +353,7 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     double = int(np.count_nonzero(curve["double_peaked"].values[beyond]))
     return asked.one_reading(
         f"two peaks at {double} of {beyond.sum()} forces beyond {floor.high:.4g} mg",
-        "gravity at once",
+        OWN,
         Condition("forces beyond it with two peaks", Quantity.exact(double), most=0.0),
     )
 
@@ -366,7 +376,7 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
         "two peaks from, by friction: "
         + ", ".join(f"{end.text('mg')} ({mu:g})" for mu, end in zip(frictions, ends, strict=True)),
         [
-            Reading("gravity at once", rises("crossover force", ends)),
+            Reading(OWN, rises("crossover force", ends)),
             *preparations.readings(
                 data, "crossover", tuple(frictions[1:]), lambda *after: [rises("crossover force", [ends[0], *after])]
             ),
@@ -393,7 +403,7 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     return asked.one_reading(
         f"opened contacts at friction 0.2 per those without, until the region reaches the floor: {ratio.min():.2f} to "
         f"{ratio.max():.2f}",
-        "gravity at once",
+        OWN,
         asked.lower("opened contacts per those without friction, same force", found, words, "marked"),
     )
 
@@ -413,7 +423,7 @@ def floor_later(data: Data, words: Bounds) -> Finding:
             "reaches_floor",
             (0.2,),
             lambda end: [asked.higher("force with friction per without", end.per(early), words, "marked")],
-            "gravity at once",
+            OWN,
         ),
     )
 
@@ -423,6 +433,7 @@ def floor_later(data: Data, words: Bounds) -> Finding:
     "V.A, Fig. 6",
     "without friction: change of the response at x = 0 over the forces at which no contact has opened",
     "a linear range even for frictionless particles",
+    derivation=True,
 )
 def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "first_opening", 0.0)
@@ -434,8 +445,96 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     what = "change of the response before a contact opens"
     return asked.one_reading(
         f"the response at x = 0 changes by {change:.2%} up to the first opening at {event.text('mg')}",
-        "gravity at once",
+        OWN,
         asked.at_most(what, change, words, "visible", "%"),
+    )
+
+
+@CLAIMS.add(
+    "F12",
+    "IV.A",
+    "size of the region of open contacts under 15 mg against friction: contacts, depth, width",
+    "its size decreases with friction",
+    (4, 8, 9),
+)
+def region_and_friction(data: Data, words: Bounds) -> Finding:
+    sizes = {"contacts": "opened_contacts", "depth": "teardrop_depth", "width": "teardrop_width"}
+    axis = data.get(GROUP, "friction_axis", *sizes.values(), "friction").sortby("friction")
+    readings = []
+    for what, name in sizes.items():
+        size = axis[name].values
+        if not size[0] > 0.0:
+            raise NotMeasured(f"data/{GROUP}.nc: friction_axis holds no open region without friction")
+        growth = float(np.diff(size).max() / size[0])
+        condition = asked.at_most("largest growth with friction, per size without", growth, words, "visible", "%")
+        readings.append(Reading(what, condition))
+    opened = axis["opened_contacts"].values.tolist()
+    return Finding(
+        "opened contacts at 15 mg: "
+        + ", ".join(
+            f"{n:.0f} (friction {mu:g})" for n, mu in zip(opened, axis["friction"].values.tolist(), strict=True)
+        ),
+        readings,
+    )
+
+
+#: "Near the point of application": within this distance (mean radii). Depths of sliding contacts: of this part.
+NEAR, DEEP = 6.0, 0.9
+
+
+def _sliding(data: Data) -> dict[float, FloatArray]:
+    """Where sliding contacts are, seen from the load (n, 2), by force below that of the paper's crossover."""
+    names = ("position", "contact_disk", "contact_partner", "contact_status", "loaded_disk", "force")
+    states = data.get(GROUP, "states_mu_0.2", *names)
+    first, second = states["contact_disk"].values, states["contact_partner"].values
+    found = {}
+    for k, force in enumerate(states["force"].values.tolist()):
+        position = states["position"].values[k]
+        slides = states["contact_status"].values[k] == SLIDING
+        away = 0.5 * (position[first] + position[second])[slides] - position[int(states["loaded_disk"])]
+        if 0.0 < force < 20.0 and away.size:
+            found[force] = away
+    if len(found) < 2:
+        raise NotMeasured(f"data/{GROUP}.nc: states_mu_0.2 holds sliding contacts at fewer than two forces below 20 mg")
+    return found
+
+
+@CLAIMS.add(
+    "R12",
+    "V.E",
+    f"friction 0.2: part of the sliding contacts within {NEAR:g} radii of the load, at forces below 20 mg",
+    "sliding occurs mainly near the point of application",
+    8,
+)
+def sliding_near(data: Data, words: Bounds) -> Finding:
+    near = {force: float((np.hypot(*away.T) < NEAR).mean()) for force, away in _sliding(data).items()}
+    what = f"sliding contacts within {NEAR:g} radii of the load"
+    return asked.each(
+        f"{what}: ",
+        {f"{force:g} mg": Quantity.exact(part) for force, part in near.items()},
+        lambda part: asked.at_least(what, part, words, "marked", "%"),
+        "%",
+        "The paper names no force",
+    )
+
+
+@CLAIMS.add(
+    "R13",
+    "V.E",
+    f"friction 0.2: depth above which {DEEP:.0%} of the sliding contacts are, against the force below 20 mg",
+    "sliding contacts spread gradually downward",
+    8,
+)
+def sliding_spreads(data: Data, words: Bounds) -> Finding:
+    deep = {force: float(np.quantile(-away[:, 1], DEEP)) for force, away in sorted(_sliding(data).items())}
+    depth = np.array(list(deep.values()))
+    # what differs by less than half a row is the same depth
+    back = np.mean([after < before - 0.5 * np.sqrt(3.0) for before, after in combinations(depth, 2)])
+    return asked.one_reading(
+        ", ".join(f"{end:.1f} R ({force:g} mg)" for force, end in deep.items()),
+        "forces below 20 mg",
+        asked.at_most("pairs of forces of which the larger has the less deep ones", float(back), words, "nearly", "%"),
+        asked.at_most("largest step per largest depth", float(np.diff(depth).max() / depth.max()), words, "gradual"),
     )
 
 
@@ -461,20 +560,38 @@ def range_grows(data: Data, words: Bounds) -> Finding:
 @CLAIMS.add(
     "A2",
     "abstract",
-    "dip of the floor response at x = 0 under 15 mg against friction",
+    "floor response under 15 mg against friction: dip at x = 0, and rms difference from the elastic response",
     "the larger the friction, the smaller the anisotropy",
     12,
 )
 def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
-    axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
+    axis = data.get(GROUP, "friction_axis", "central_dip", "floor_response", "friction").sortby("friction")
     dip = axis["central_dip"].values
     back = float(np.diff(dip).max())
-    return asked.one_reading(
+    largest = float(data.get(GROUP, "response", "friction")["friction"].max())
+    elastic = _curve(data, largest, "response_at_centre", "floor_response")
+    small = elastic["floor_response"].transpose("force", "floor_disk").values[0]
+    response = axis["floor_response"].transpose("friction", "floor_disk").values
+    off = np.sqrt(((response - small) ** 2).sum(axis=1) / (small**2).sum())
+    away = float(np.diff(off).max())
+    return Finding(
         f"dip at x = 0 at 15 mg from {dip[0]:.0%} without friction to {dip[-1]:.1%} at friction "
-        f"{float(axis['friction'][-1]):g}; largest step back {back:.2%} of the largest response",
-        "floor response at 15 mg",
-        asked.at_most("largest growth of the dip with friction", back, words, "visible", "%"),
-        asked.at_least("fall of the dip over all", dip[0] - dip[-1], words, "marked"),
+        f"{float(axis['friction'][-1]):g}; rms difference from the elastic response "
+        + ", ".join(f"{d:.1%} ({mu:g})" for mu, d in zip(axis["friction"].values.tolist(), off.tolist(), strict=True)),
+        [
+            Reading(
+                "dip at x = 0",
+                asked.at_most("largest growth of the dip with friction", back, words, "visible", "%"),
+                asked.at_least("fall of the dip over all", dip[0] - dip[-1], words, "marked"),
+            ),
+            Reading(
+                "difference from the elastic response",
+                asked.at_most("largest growth of the difference with friction", away, words, "visible", "%"),
+                asked.lower("the difference with the largest friction per without", off[-1] / off[0], words, "marked"),
+            ),
+        ],
+        "A response can be wider than the elastic one or narrower (Sec. II.A); a dip shows the first alone. Elastic is "
+        "the response to the smallest force at the largest friction",
     )
 
 
@@ -497,7 +614,10 @@ def friction_crossover(data: Data, words: Bounds) -> Finding:
         )
 
     largest = float(axis["friction"][-1])
-    readings = [Reading("gravity at once", Condition("friction", event, 0.0, largest), *wanted(last))]
+    readings = [Reading(OWN, Condition("friction", event, 0.0, largest), *wanted(last))]
     if preparations.LOADING in data.groups:
-        readings += [Reading(name, *wanted(dip)) for name, dip in preparations.dips(data, 1.0).items()]
+        readings += [
+            Reading(name, *wanted(dip), change=preparations.change(name))
+            for name, dip in preparations.dips(data, 1.0).items()
+        ]
     return Finding(f"two peaks up to friction {event.text()}, one above", readings)

@@ -162,13 +162,18 @@ def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
                 )
                 if what == "depth":
                     texts.append(f"{ratio.value:.2f} in {slabs['layers'].values[k]:.0f} layers (k_N = {stiffness:g})")
-            readings.append(Reading(f"{slabs['layers'].values[k]:.0f} layers, k_N = {stiffness:g}", *conditions))
+            name = f"{slabs['layers'].values[k]:.0f} layers, k_N = {stiffness:g}"
+            readings.append(Reading(name, *conditions, change=_change(stiffness)))
     return Finding(
         "depth of the open region per that in the thinnest slab, same forces: " + ", ".join(texts),
         readings,
         "The paper does not name its sizes. With its stiffness gravity presses horizontal contacts of deep slabs "
         "together, and they open later",
     )
+
+
+def _change(stiffness: float) -> str:
+    return "" if np.isclose(stiffness, STIFFNESS) else "stiffness"
 
 
 def _deep_and_shallow(slabs: xr.Dataset, alike: str) -> list[tuple[int, int]]:
@@ -204,7 +209,9 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
                 where = f"{shapes[0]} against {shapes[1]} disks, k_N = {stiffness:g}"
                 readings.append(
                     Reading(
-                        where, Condition("crossover force, deep per shallow", ends[1].per(ends[0]), 1.0, strict=True)
+                        where,
+                        Condition("crossover force, deep per shallow", ends[1].per(ends[0]), 1.0, strict=True),
+                        change=_change(stiffness),
                     )
                 )
                 texts.append(f"{ends[1].text('mg')} against {ends[0].text('mg')} ({where})")

@@ -36,7 +36,9 @@ def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
         by = {words_of_it: one.sel(definition=definition) for definition, words_of_it in WIDTHS.items()}
         readings.append(
             Reading(
-                material(one), *(about(f"{what}, {width}", power(these), ELASTIC, words) for width, these in by.items())
+                material(one),
+                *(about(f"{what}, {width}", power(these), ELASTIC, words) for width, these in by.items()),
+                change="gravity" if str(one["gravity"].values) == "frictionless" else "",
             )
         )
         found += [condition.found for condition in readings[-1].conditions]

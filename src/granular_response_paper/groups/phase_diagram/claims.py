@@ -3,8 +3,9 @@ definition of two peaks (:mod:`granular_response_paper.survey.crossover`)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import xarray as xr
@@ -20,8 +21,11 @@ from ...claims.words import Bounds
 GROUP = "phase_diagram"
 CLAIMS = Claims(GROUP)
 
-#: The start that this project uses, first, and the literal one.
+#: The initial lattice that this project uses, first, and the literal one.
 STARTS = ("touching-largest", "2.0")
+
+#: The width of smoothing of Fig. 21, and another one with what it changes.
+WIDTHS = {6.0: "", 3.0: "smoothing"}
 
 #: What a case is called by.
 _LABELS = ("polydispersity", "friction", "lattice_constant")
@@ -49,14 +53,27 @@ def _case(dataset: xr.Dataset, polydispersity: float, friction: float, start: st
 
 
 def _starts(dataset: xr.Dataset, polydispersity: float) -> list[str]:
-    """The starts stored for a polydispersity, this project's first."""
+    """The initial lattices stored for a polydispersity: this project's, the literal one, then by their constants."""
     here = np.isclose(dataset["polydispersity"].values, polydispersity)
     stored = set(dataset["lattice_constant"].values[here].astype(str))
-    return [start for start in STARTS if start in stored]
+    return [start for start in STARTS if start in stored] + sorted(stored - set(STARTS))
 
 
-def title(start: str) -> str:
-    return "start with the largest disks touching" if start == STARTS[0] else f"start with lattice constant {start}"
+#: Ends the title of an initial lattice wider than any that the text allows.
+WIDER = "wider than with touching disks"
+
+
+def changed(name: str) -> str:
+    """What a reading of this name changes of the set-up."""
+    return "lattice" if name.endswith(WIDER) else ""
+
+
+def title(start: str, polydispersity: float = 0.01) -> str:
+    """An initial lattice in words."""
+    if start == STARTS[0]:
+        return "start with the largest disks touching"
+    wider = float(start) > 2.0 / (1.0 - 0.5 * polydispersity)
+    return f"start with lattice constant {start}{', ' + WIDER if wider else ''}"
 
 
 def _with_interval(case: xr.Dataset, name: str) -> Quantity:
@@ -103,6 +120,7 @@ def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
                 title(start),
                 asked.at_least("dip at friction 0", without, words, "visible", "%"),
                 asked.at_most("dip at friction 0.2", full, words, "visible", "%"),
+                change=changed(title(start)),
             )
         )
     return Finding(
@@ -172,18 +190,30 @@ def _crossovers(data: Data, width: float, words: Bounds) -> dict[tuple[float, fl
     return {key: _crossover(_case(study, *key, STARTS[0])) for key in keys}
 
 
-def _smallest(steps: list[Quantity]) -> Quantity:
-    return Quantity(min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), "confidence")
+def trend(line: Sequence[Crossover]) -> Quantity:
+    """Kendall's tau of the order of crossover forces, with 95 % of the draws: 1 if all pairs rise, -1 if all fall.
+
+    Pairs whose order a draw leaves open, such as two bounds to the same side, widen the interval. Cases of as many
+    realizations were drawn alike.
+    """
+    pairs = list(combinations(line, 2))
+    up = np.mean([after.low > before.high for before, after in pairs], axis=0)
+    down = np.mean([after.high < before.low for before, after in pairs], axis=0)
+    low, high = (
+        float(np.quantile(ends, level, method="inverted_cdf"))
+        for ends, level in zip((2.0 * up - 1.0, 1.0 - 2.0 * down), LEVELS, strict=True)
+    )
+    return Quantity(float(np.median(up - down)), low, high, "confidence")
 
 
 def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
-    """The smallest ratio of neighbouring crossover forces along one axis, for every value of the other; both widths."""
+    """The trend of the crossover force along one axis, and steps against it, for every value of the other; both
+    widths."""
     readings, texts = [], []
-    for width in (6.0, 3.0):
+    for width, change in WIDTHS.items():
         found = {key: q for key, q in _crossovers(data, width, words).items() if key[0] > 0.0}
         along, across = (1, 0) if what == "friction" else (0, 1)
-        conditions = []
-        clear = total = 0
+        conditions, trends = [], []
         for other in sorted({key[across] for key in found}):
             line = [found[key] for key in sorted(found, key=lambda key: key[along]) if key[across] == other]
             if rising == "falls":
@@ -191,23 +221,26 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
             steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
             if not steps:  # bounds alone
                 continue
-            total += len(steps)
-            clear += sum(step.low >= 1.0 for step in steps)
             name = f"{'polydispersity' if along else 'friction'} {other:g}"
-            conditions.append(
-                Condition(f"{name}, smallest ratio of neighbours", _smallest(steps), least=1.0, words=("visible",))
-            )
+            # what has two peaks at every force is below all others, and tells nothing of the trend among these
+            rest = [one for one in line if one.kind != BELOW]
+            trends.append(trend(rest if len(rest) > 1 else line))
+            back = Quantity.exact(sum(step.high < 1.0 for step in steps))
+            conditions += [
+                Condition(f"{name}, trend (Kendall's tau)", trends[-1], least=0.0, strict=True, words=("visible",)),
+                Condition(f"{name}, steps against it, clear of their intervals", back, most=0.0, words=("visible",)),
+            ]
         if not conditions:
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds too few crossover forces to compare")
-        texts.append(f"{clear} of {total} steps clear of their intervals (w = {width:g})")
-        readings.append(Reading(f"w = {width:g}", *conditions))
+        texts.append(f"trend {', '.join(q.text() for q in trends)} (w = {width:g})")
+        readings.append(Reading(f"w = {width:g}", *conditions, change=change))
     return Finding(f"crossover force {rising} with {what}: " + ", ".join(texts), readings)
 
 
 @CLAIMS.add(
     "D3a",
     "VI.A, Figs. 21, 22",
-    "crossover force against friction at each polydispersity (0.01, 0.1, 0.25)",
+    "trend of the crossover force with friction at each polydispersity (0.01, 0.1, 0.25), and steps against it",
     "the larger the friction, the larger the crossover force",
 )
 def rises_with_friction(data: Data, words: Bounds) -> Finding:
@@ -217,7 +250,7 @@ def rises_with_friction(data: Data, words: Bounds) -> Finding:
 @CLAIMS.add(
     "D3b",
     "VI.A, Figs. 21, 22",
-    "crossover force against polydispersity at each friction",
+    "trend of the crossover force with polydispersity at each friction, and steps against it",
     "the crossover force decreases with increasing polydispersity",
 )
 def falls_with_disorder(data: Data, words: Bounds) -> Finding:
@@ -241,28 +274,34 @@ def _away(crossovers: xr.Dataset, force: FloatArray, words: Bounds) -> tuple[NDA
     "D5",
     "VI.A",
     "number of peaks of means of five realizations against that of the mean of all, at forces beyond the interval "
-    "of the crossover and more than half away from it",
+    "of the crossover and more than half away from it, mean over these forces",
     "five are sufficient when the force is not too close to its crossover",
     21,
 )
 def five_enough(data: Data, words: Bounds) -> Finding:
-    shapes = at(data.get(GROUP, "shapes", "few_agree", "applied_force", "polydispersity"), width=6.0)
+    shapes = at(data.get(GROUP, "shapes", "few_agree", "applied_force", *_LABELS), width=6.0)
     crossover = at(data.get(GROUP, "crossovers", "force", "kind", "interval", "level", "realizations"), width=6.0)
     force = shapes["applied_force"].transpose("case", "step").values
-    usual = (shapes["polydispersity"].values > 0.0) & (shapes["lattice_constant"].values.astype(str) == STARTS[0])
     agree = shapes["few_agree"].transpose("case", "step").values
-    away = np.logical_or(*_away(crossover, force, words)) & (crossover["kind"].values == FOUND)[:, None]
-    chosen = agree[usual[:, None] & np.isfinite(agree) & away]
-    if chosen.size < 3:
+    chosen = np.isfinite(agree) & np.logical_or(*_away(crossover, force, words))
+    starts, deltas = shapes["lattice_constant"].values.astype(str), shapes["polydispersity"].values
+    typical = {}
+    for start in STARTS:
+        for delta in np.unique(deltas[deltas > 0.0]).tolist():
+            here = agree[(chosen & ((starts == start) & (deltas == delta))[:, None])]
+            if here.size:
+                found = over_realizations(here, np.mean) if here.size > 2 else Quantity.range(here, float(here.mean()))
+                typical[f"polydispersity {delta:g}, {title(start, delta)}"] = found
+    if not typical:
         raise NotMeasured(f"data/{GROUP}.nc: shapes holds too few forces away from a crossover")
-    typical = over_realizations(chosen, np.mean)
-    few = int(crossover["realizations"].values[usual].min())
-    return asked.one_reading(
-        f"means of five have as many peaks as the mean of all in {typical.text('%')} of the draws, mean over "
-        f"{chosen.size} forces away from the crossover; {chosen.min():.0%} at the worst of them",
-        "w = 6",
-        Condition("draws of five that agree", typical, 1.0 - words["holds"], words=("holds", "similar"), unit="%"),
-        remark=f"Five are drawn from {few} or more",
+    return asked.each(
+        "means of five have as many peaks as the mean of all in the part of the draws: ",
+        typical,
+        lambda part: Condition(
+            "draws of five that agree", part, 1.0 - words["holds"], words=("holds", "similar"), unit="%"
+        ),
+        "%",
+        f"Five are drawn from {int(crossover['realizations'].values[deltas > 0.0].min())} or more",
     )
 
 
@@ -274,7 +313,7 @@ def five_enough(data: Data, words: Bounds) -> Finding:
 )
 def below_lattice(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
-    for width in (6.0, 3.0):
+    for width, change in WIDTHS.items():
         found = _crossovers(data, width, words)
         ratios = {
             key: found[key].per(found[(0.0, key[1])])
@@ -293,6 +332,7 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
                     )
                     for (delta, mu), ratio in ratios.items()
                 ),
+                change=change,
             )
         )
     return Finding("crossover force below that of the lattice: " + ", ".join(texts), readings)
@@ -307,9 +347,9 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
 )
 def preparation(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
-    for width in (6.0, 3.0):
+    for width, change in WIDTHS.items():
         study = _defined(data, width, words)
-        if len(_starts(study, 0.01)) < len(STARTS):
+        if not set(STARTS) <= set(_starts(study, 0.01)):
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds one start alone")
         for mu in (0.0, 0.2):
             usual, literal = (_crossover(_case(study, 0.01, mu, start)) for start in STARTS)
@@ -324,6 +364,7 @@ def preparation(data: Data, words: Bounds) -> Finding:
                         words=("visible",),
                         strict=True,
                     ),
+                    change=change,
                 )
             )
     return Finding(
@@ -343,11 +384,15 @@ def preparation(data: Data, words: Bounds) -> Finding:
 def gradual(data: Data, words: Bounds) -> Finding:
     study = at(data.get(GROUP, "shapes", "largest_step", "largest_step_interval", "level", *_LABELS), width=6.0)
     rows = at(data.get(GROUP, "realizations", "shape", "asymmetry", *_LABELS), width=6.0)
+    crossovers = at(data.get(GROUP, "crossovers", "force", "kind", *_LABELS), width=6.0)
     singles, means, texts = [], [], []
     for delta in np.unique(study["polydispersity"].values[study["polydispersity"].values > 0.0]).tolist():
         try:
-            case, single = (_case(one, delta, 1.0, STARTS[0]) for one in (study, rows))
+            case, single, crossover = (_case(one, delta, 1.0, STARTS[0]) for one in (study, rows, crossovers))
         except NotMeasured:
+            continue
+        if int(crossover["kind"]) != FOUND:
+            texts.append(f"no crossover seen (polydispersity {delta:g})")
             continue
         step = _with_interval(case, "largest_step")
         dips, leans = (single[name].transpose("realization", "step").values for name in ("shape", "asymmetry"))
@@ -357,7 +402,7 @@ def gradual(data: Data, words: Bounds) -> Finding:
         means.append(asked.at_most(name, step, words, "gradual"))
         singles.append(asked.at_most(name, steps, words, "gradual"))
     if not means:
-        raise NotMeasured(f"data/{GROUP}.nc: shapes holds no disordered case with friction 1")
+        raise NotMeasured(f"data/{GROUP}.nc: shapes holds no disordered case with friction 1 and a crossover")
     return Finding(
         "largest change of dip or asymmetry between neighbouring forces, per largest response: " + "; ".join(texts),
         [Reading("mean of the realizations", *means), Reading("median realization", *singles)],
@@ -392,7 +437,12 @@ def coordination(data: Data, words: Bounds) -> Finding:
         for start, case in _packings(data, *names.values())
         for text, name in names.items()
     }
-    return asked.each("contacts per disk: ", means, lambda q: Condition("contacts per disk", q, low, high, ("about",)))
+    return asked.each(
+        "contacts per disk: ",
+        means,
+        lambda q: Condition("contacts per disk", q, low, high, ("about",)),
+        changed=changed,
+    )
 
 
 @CLAIMS.add(
@@ -414,6 +464,7 @@ def missing_horizontal(data: Data, words: Bounds) -> Finding:
         shares,
         lambda share: asked.at_least("horizontal part of the missing contacts", share, words, "marked", "%"),
         "%",
+        changed=changed,
     )
 
 
@@ -465,6 +516,7 @@ def fluctuations(data: Data, words: Bounds) -> Finding:
         "spread of the responses of realizations at 15 mg, friction 0 over 0.2: ",
         ratios,
         lambda ratio: Condition("spread without friction per spread with 0.2", ratio, 1.0, strict=True),
+        changed=changed,
     )
 
 
@@ -481,7 +533,9 @@ def evident(data: Data, words: Bounds) -> Finding:
         if min(without.size, full.size) < 5:
             raise NotMeasured(f"data/{GROUP}.nc: realizations holds too few responses at polydispersity 0.01")
         apart[title(start)] = over_realizations((without[:, None] > full[None, :]).mean(axis=1), np.mean)
-    return asked.each(f"{what}: ", apart, lambda part: asked.hardly_lower(what, part, words, "holds", "%"), "%")
+    return asked.each(
+        f"{what}: ", apart, lambda part: asked.hardly_lower(what, part, words, "holds", "%"), "%", changed=changed
+    )
 
 
 def linear_end(path: xr.Dataset, tolerance: float) -> Quantity:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...claims import asked
 from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
@@ -47,8 +48,8 @@ def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
 @CLAIMS.add(
     "P3",
     "V.F, Fig. 17e, f",
-    "size of the region of open contacts on the axis, with friction over without",
-    "quite similar in size",
+    "size of the region of open contacts on the axis, with friction over without; and its shape, width per height",
+    "quite similar in size, but its shape is different",
 )
 def regions(data: Data, words: Bounds) -> Finding:
     names = {"central_open_contacts": "contacts", "central_height": "height", "central_width": "width"}
@@ -58,12 +59,16 @@ def regions(data: Data, words: Bounds) -> Finding:
         for name, text in names.items()
     }
     limit = 1.0 + words["similar"]
+    aspect = ratios["width"] / ratios["height"]
+    shape = asked.higher("width per height, one pile over the other", max(aspect, 1.0 / aspect), words, "nearly")
     return Finding(
-        "with friction over without: " + ", ".join(f"{text} {ratio:.2f}" for text, ratio in ratios.items()),
+        "with friction over without: "
+        + ", ".join(f"{text} {ratio:.2f}" for text, ratio in (ratios | {"width per height": aspect}).items()),
         [
             Reading(
                 f"size as {text}",
                 Condition("size with friction per without", Quantity.exact(ratio), 1.0 / limit, limit, ("similar",)),
+                shape,
             )
             for text, ratio in ratios.items()
         ],

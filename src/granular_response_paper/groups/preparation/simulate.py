@@ -1,8 +1,8 @@
 """The same slab prepared in several ways: what a growing force does to each, and from which force on (Sec. V).
 
-The paper says neither how gravity came nor for how long; with friction the slab at rest remembers it. Each way to
-prepare it is loaded by the same forces, on one path. Without friction rest is one minimum of the energy, and
-one way stands for all.
+In the paper the packing relaxes under gravity, which acts at once (Sec. III.C); with friction the slab at rest
+remembers how it came. Each way to prepare it is loaded by the same forces, on one path. Without friction rest is one
+minimum of the energy, and one way stands for all.
 """
 
 from __future__ import annotations

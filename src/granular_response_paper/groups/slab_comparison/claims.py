@@ -38,6 +38,7 @@ def large_systems(data: Data, words: Bounds) -> Finding:
                 f"friction {mu:g}, {floor} floor, gravity {gravity}, {wide:g} disks a row per layer",
                 asked.at_most("difference from the elastic slab in the deepest one", deep, words, "holds", "%"),
                 Condition("that per the one in the thinnest", Quantity.exact(deep / thin), most=1.0),
+                change="" if gravity == "at-once" else "gravity",
             )
         )
     values = [reading.conditions[0].found.value for reading in readings]

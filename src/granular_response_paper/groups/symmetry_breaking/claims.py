@@ -32,5 +32,6 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
         found,
         lambda event: Condition("loss of symmetry", event, 91.0, 95.0, unit="mg"),
         "mg",
-        "The paper says neither how long the force grows nor how gravity came",
+        "The paper does not say how long the force grows",
+        lambda name: "walls" if "rough walls" in name else "" if name.startswith("ramp") else preparations.CHANGE,
     )
