@@ -484,8 +484,7 @@ class _Path:
     def _lost(self, point: Point, reason: str) -> Point:
         """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
         new = self._towards(point.factor, self.options.beyond / self.unit)
-        guess = self.system.displaced(point.known.q, new)
-        found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+        found = self._increased(point, new)
         if found is not None:
             n = 2 * self.problem.n
             moved = found.configuration.q - point.known.q
