@@ -73,6 +73,9 @@ def test_a_table_counts_by_its_content(tmp_path):
     (tmp_path / "a" / "disks.csv").unlink()
     with pytest.raises(Indistinct, match=r"disks.csv cannot be read"):
         digest(one)
+    (tmp_path / "a" / "disks.csv").symlink_to("/dev/zero")  # which never ends
+    with pytest.raises(Indistinct, match=r"disks.csv cannot be read: is not a regular file"):
+        digest(one)
 
 
 def scaled(factor):

@@ -6,14 +6,15 @@ frictionless arrays):
 
 1. :class:`.rates.RateProblem` gives the statuses with which the equilibrium goes on, and the rates of displacements;
 2. the load at which the next contact changes follows from the rates; Newton's method with the statuses as they are
-   finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``;
+   finds equilibrium there, and by the way the load at which the change is exact to ``PathOptions.event``; slip that
+   turns round on the way, which it does only where stiffnesses vary, is bracketed;
 3. contacts that are at their change change, a mirror pair together, and so on from 1.
 
-Where no statuses are found for the rates the equilibrium under a slightly larger load is looked for with the limits of
-friction held fixed (:func:`.increment.solve_increment`): mostly the path goes on. An equilibrium is lost where there is
-none nearby (a snap-through), or where the tangent has an unstable direction along which the contacts that slide go on
-sliding (divergence; at a bifurcation of a symmetric branch). The motion of the disks then leads to the next one
-(:mod:`.settle`). Both are events of the result.
+An equilibrium is lost where the rates have no solution, where there is no equilibrium a little further with these
+statuses (a snap-through), or where the tangent has an unstable direction along which the contacts that slide go on
+sliding (divergence; at a bifurcation of a symmetric branch). The next one is looked for nearby under a slightly larger
+load, with the limits of friction held fixed (:func:`.increment.solve_increment`); where there is none the motion of the
+disks leads to it (:mod:`.settle`). All are events of the result.
 
 In packings too large for a banded factorisation events are taken together within an increment of the load; what that
 leaves out is measured by a path in increments of twice the length.
@@ -484,8 +485,7 @@ class _Path:
     def _lost(self, point: Point, reason: str) -> Point:
         """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
         new = self._towards(point.factor, self.options.beyond / self.unit)
-        guess = self.system.displaced(point.known.q, new)
-        found = solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
+        found = self._increased(point, new)
         if found is not None:
             n = 2 * self.problem.n
             moved = found.configuration.q - point.known.q

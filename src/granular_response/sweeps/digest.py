@@ -26,6 +26,7 @@ from typing import Any
 import cloudpickle
 
 from ..errors import GranularError
+from ..inputs import check_regular
 from ..scene.base import Description
 from ..scene.table import FilePacking
 
@@ -140,6 +141,7 @@ class _Pickler(cloudpickle.Pickler):
 
 def _table(packing: FilePacking) -> bytes:
     try:
+        check_regular(packing.file)
         return packing.file.read_bytes()
     except OSError as error:
         raise Indistinct(f"{packing.file} cannot be read: {error.strerror}") from None
