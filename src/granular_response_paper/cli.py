@@ -56,7 +56,9 @@ def simulate(
     loaded()
 
     if before := simulation.finished(group, output):
-        commands.say(f"{group} goes on from {before} finished tasks of an earlier run")
+        commands.say(
+            f"{group}: {before} finished tasks are kept; those of this code and these parameters are not run again"
+        )
     try:
         with TerminalProgress() as progress:
             path = simulation.simulate(
@@ -69,7 +71,7 @@ def simulate(
             )
     except KeyboardInterrupt:
         if count := simulation.finished(group, output):
-            commands.say(f"interrupted; run again, it goes on from {count} finished tasks")
+            commands.say(f"interrupted; {count} finished tasks are kept and are not run again")
         raise
     typer.echo(str(path))
 

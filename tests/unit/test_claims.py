@@ -258,8 +258,6 @@ PLANTED = [
     ("F12", both(*(put(FRICTION, "friction_axis", n, [110, 80, 40, 70]) for n in SIZES)), "contradicted"),
     ("R12", sliding(lambda contact, state: contact < np.array([0, 2, 8, 8])[state]), DEPENDS),
     ("R12", sliding(lambda contact, state: (contact > 3) & (state > 0)), "contradicted"),
-    ("R13", sliding(lambda contact, state: contact < np.array([0, 5, 3, 1])[state]), "contradicted"),
-    ("R13", sliding(lambda contact, state: contact < np.array([0, 1, 8, 8])[state]), "contradicted"),
     ("R1", moved(FRICTION, "linear_range", 1.0, 2.0, 2.1), DEPENDS),
     ("R1", moved(FRICTION, "linear_range", 0.0, 0.2, 0.9), "undecided"),
     ("R2a", put(FRICTION, "response", "double_peaked", 1), DEPENDS),

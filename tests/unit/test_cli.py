@@ -403,12 +403,13 @@ def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, c
     monkeypatch.setattr(simulation, "simulate", lambda *args, **kind: whole(*args, **{**kind, "progress": interrupt}))
     with pytest.raises(KeyboardInterrupt):
         paper.simulate(group, workers=1, params=simulation.PARAMETERS)
-    said = "granular-response-paper: interrupted; run again, it goes on from 2 finished tasks\n"
+    said = "granular-response-paper: interrupted; 2 finished tasks are kept and are not run again\n"
     assert capsys.readouterr().err == said
     monkeypatch.setattr(simulation, "simulate", whole)
     paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     again = capsys.readouterr()
-    assert again.err == f"granular-response-paper: {group} goes on from 2 finished tasks of an earlier run\n"
+    kept = "2 finished tasks are kept; those of this code and these parameters are not run again"
+    assert again.err == f"granular-response-paper: {group}: {kept}\n"
     paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     assert capsys.readouterr().err == ""
 

@@ -1,9 +1,8 @@
-"""Claims F1 to F3, F11, F12, R1 to R13 but R5a, A1, A2, K4: ordered slabs with friction, growing forces (Sec. V)."""
+"""Claims F1 to F3, F11, F12, R1 to R12 but R5a, A1, A2, K4: ordered slabs with friction, growing forces (Sec. V)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import combinations
 
 import numpy as np
 import xarray as xr
@@ -478,8 +477,8 @@ def region_and_friction(data: Data, words: Bounds) -> Finding:
     )
 
 
-#: "Near the point of application": within this distance (mean radii). Depths of sliding contacts: of this part.
-NEAR, DEEP = 6.0, 0.9
+#: "Near the point of application": within this distance (mean radii).
+NEAR = 6.0
 
 
 def _sliding(data: Data) -> dict[float, FloatArray]:
@@ -515,26 +514,6 @@ def sliding_near(data: Data, words: Bounds) -> Finding:
         lambda part: asked.at_least(what, part, words, "marked", "%"),
         "%",
         "The paper names no force",
-    )
-
-
-@CLAIMS.add(
-    "R13",
-    "V.E",
-    f"friction 0.2: depth above which {DEEP:.0%} of the sliding contacts are, against the force below 20 mg",
-    "sliding contacts spread gradually downward",
-    8,
-)
-def sliding_spreads(data: Data, words: Bounds) -> Finding:
-    deep = {force: float(np.quantile(-away[:, 1], DEEP)) for force, away in sorted(_sliding(data).items())}
-    depth = np.array(list(deep.values()))
-    # what differs by less than half a row is the same depth
-    back = np.mean([after < before - 0.5 * np.sqrt(3.0) for before, after in combinations(depth, 2)])
-    return asked.one_reading(
-        ", ".join(f"{end:.1f} R ({force:g} mg)" for force, end in deep.items()),
-        "forces below 20 mg",
-        asked.at_most("pairs of forces of which the larger has the less deep ones", float(back), words, "nearly", "%"),
-        asked.at_most("largest step per largest depth", float(np.diff(depth).max() / depth.max()), words, "gradual"),
     )
 
 
