@@ -58,7 +58,7 @@ quote: setup ## Renew the lines that README and documents quote from stored resu
 	"$(BIN)/granular-response-paper" claims --list --readme README.md > /dev/null & claims=$$!; \
 	"$(BIN)/granular-response" keys --page docs/scene-reference.md & keys=$$!; \
 	"$(BIN)/granular-response-paper" report --notes docs/reproduction-notes.md --figures docs/figures.md \
-	  --beyond docs/beyond.md && wait $$claims && wait $$keys
+	  --beyond docs/beyond.md --data data/README.md && wait $$claims && wait $$keys
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	@"$(BIN)/dvc" commit --quiet --force report < /dev/null
 

@@ -165,15 +165,23 @@ def report(
         Path | None,
         typer.Option(help="Renew the tables of groups beyond the paper in this file.", show_default=False),
     ] = None,
+    data: Annotated[
+        Path | None, typer.Option(help="Renew the table of stored datasets in this file.", show_default=False)
+    ] = None,
 ) -> None:
     """Make the page that shows verdicts, figures and benchmarks. It needs no network."""
     from . import report as reporting
 
     loaded()
 
-    typer.echo(str(reporting.write(output, root, keep=[file for file in (notes, figures, beyond) if file])))
-    renewed = (notes, reporting.renew_notes), (figures, reporting.renew_figures), (beyond, reporting.renew_beyond)
-    for file, renew in renewed:
+    documents = {
+        reporting.renew_notes: notes,
+        reporting.renew_figures: figures,
+        reporting.renew_beyond: beyond,
+        reporting.renew_data: data,
+    }
+    typer.echo(str(reporting.write(output, root, keep=[file for file in documents.values() if file])))
+    for renew, file in documents.items():
         if file is not None:
             renew(file, root)
 

@@ -22,7 +22,7 @@ from granular_response_paper import groups, report
 from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
-from granular_response_paper.report import against, benchmarks, beyond, explorer, pictures, readings
+from granular_response_paper.report import against, benchmarks, beyond, contents, explorer, pictures, readings
 from granular_response_paper.report.typeset import typeset
 
 ROOT = Path(__file__).parents[2]
@@ -285,6 +285,13 @@ def test_the_document_holds_the_parameters_of_the_stored_datasets():
         pytest.skip(f"not simulated yet: {', '.join(sorted(missing))}")
     text = (ROOT / "docs" / "figures.md").read_text()
     assert generated.replace(text, against.BLOCK, against.markdown(ROOT / "data")) == text, "make quote"
+
+
+def test_the_page_of_the_data_has_every_stored_dataset():
+    text = (ROOT / "data" / "README.md").read_text()
+    assert set(re.findall(r"^\| `(\w+)/", text, re.MULTILINE)) == set(groups.NAMES)
+    for row in contents.markdown(ROOT / "data").splitlines():  # of those that are there
+        assert row in text, "make quote"
 
 
 @pytest.mark.parametrize("group", beyond.BLOCKS)

@@ -22,7 +22,7 @@ from granular_response.inputs import read_json
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
-from . import against, benchmarks, beyond, explorer, pictures, readings
+from . import against, benchmarks, beyond, contents, explorer, pictures, readings
 from .typeset import typeset
 
 #: Where the page is kept.
@@ -114,6 +114,19 @@ def renew_beyond(document: str | os.PathLike[str], root: str | os.PathLike[str] 
     """
     for group, lines in beyond.BLOCKS.items():
         generated.renew(document, group, "\n".join(lines(store.read(Path(root) / "data" / f"{group}.nc"))))
+
+
+def renew_data(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the table of datasets in ``document`` from ``data/`` below ``root``.
+
+    Raises
+    ------
+    granular_response.store.generated.GeneratedError
+        If the file cannot be read or has no place for the table.
+    granular_response.store.files.StoreError
+        If a dataset cannot be read.
+    """
+    generated.renew(document, contents.BLOCK, contents.markdown(Path(root) / "data"))
 
 
 def page(root: Path, folder: Path | None = None) -> str:

@@ -1,0 +1,40 @@
+"""What the stored datasets hold: the table of ``data/README.md``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import xarray as xr
+
+from granular_response.store import files as store
+
+from ..groups import NAMES
+
+#: The lines between these marks of the document are made.
+BLOCK = "datasets"
+
+
+def markdown(folder: Path) -> str:
+    """A row for each dataset of each figure group stored in ``folder``; those that are not there have none.
+
+    Raises
+    ------
+    granular_response.store.files.StoreError
+        If a dataset cannot be read.
+    """
+    rows = ["| dataset | dimensions | variables (units) |", "|---|---|---|"]
+    for group in NAMES:
+        if (path := folder / f"{group}.nc").exists():
+            rows += [_row(f"{group}/{name}", data) for name, data in store.read(path).items()]
+    return "\n".join(rows)
+
+
+def _row(name: str, data: xr.Dataset) -> str:
+    sizes = ", ".join(f"{dimension} {size}" for dimension, size in data.sizes.items())
+    variables = ", ".join(_with_unit(str(variable), data[variable]) for variable in data.data_vars)
+    return f"| `{name}` | {sizes} | {variables} |"
+
+
+def _with_unit(name: str, variable: xr.DataArray) -> str:
+    unit = variable.attrs.get("units", "1")
+    return f"`{name}`" if unit == "1" else f"`{name}` ({unit})"
