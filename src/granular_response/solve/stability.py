@@ -11,6 +11,7 @@ they oscillate, and decay or grow (flutter) by the dashpots.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
+from ..errors import SolveError
 from ..kernels.events import SLIDES, STICKS
 from ..state import SLIDING, STICKING, FloatArray
 from .rates import next_changes
@@ -33,8 +35,8 @@ ROUGH, FEW = 1e-3, 6
 #: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that is
 #: known roughly.
 SOUGHT, AMONG, AMONG_FEW = 4, 14, 6
-#: Restarts with so many vectors, and how many times as many are tried in turn where these do not do.
-RESTARTS, WIDER = 300, (1, 4, 16)
+#: How many times as many vectors are tried in turn, and the restarts with these: 0.2 s each in a slab of 15 layers.
+WIDER = (1, 300), (3, 30)
 #: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it is
 #: where it is so many times as far from zero as the accuracy of this distance.
 ACCURACIES, CERTAIN = (1e-3, 1e-4, 1e-5, 1e-6), 10.0
@@ -51,8 +53,15 @@ LEAST_SIDEWAYS = 1e-6
 ROUNDS = 12
 
 
+class Clustered(SolveError, ArithmeticError):
+    """Eigenvalues so near each other that none of them is found."""
+
+    def __init__(self) -> None:
+        super().__init__("the lowest eigenvalues of an equilibrium lie so near each other that none of them is found")
+
+
 def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
-    """Number of real negative eigenvalues with the statuses of a trial; None where rounding decides.
+    """Number of real negative eigenvalues with the statuses of a trial; None where it cannot be determined.
 
     With sliding contacts no eigenvalue has a smaller real part than the lowest of the symmetric part (Bendixson). Is
     that negative, the eigenvalue nearest to a point still further to the left is computed, as accurately as its sign
@@ -70,13 +79,16 @@ def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
     left = _left_of_all(system, matrix)
     nearest = _nearest_to(system, left, matrix)
     known: dict[str, Any] = {}
-    for accuracy in (*ACCURACIES, SIGN * (NEUTRAL / -left)):
-        values, vectors = nearest(1, tol=accuracy, **known)
-        lowest = float(values[0].real)
-        if abs(lowest) > CERTAIN * accuracy * (lowest - left):
-            break
-        known = {"v0": vectors[:, 0].real, "ncv": AMONG_FEW}
-    return int((nearest(SOUGHT)[0].real < 0).sum()) if lowest < 0 else 0
+    try:
+        for accuracy in (*ACCURACIES, SIGN * (NEUTRAL / -left)):
+            values, vectors = nearest(1, tol=accuracy, **known)
+            lowest = float(values[0].real)
+            if abs(lowest) > CERTAIN * accuracy * (lowest - left):
+                break
+            known = {"v0": vectors[:, 0].real, "ncv": AMONG_FEW}
+        return int((nearest(SOUGHT)[0].real < 0).sum()) if lowest < 0 else 0
+    except Clustered:
+        return None
 
 
 def unstable_direction(system: StaticSystem, trial: Trial, *, rough: bool = False) -> FloatArray:
@@ -124,7 +136,10 @@ def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
     """
     if not negative_modes(system, trial):
         return None
-    lowest = unstable_direction(system, trial)
+    try:
+        lowest = unstable_direction(system, trial)
+    except Clustered:
+        return None
     sliding = np.flatnonzero(trial.status == SLIDING)
     if not len(sliding):
         return lowest
@@ -142,7 +157,10 @@ def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
             here = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
             if not negative_modes(system, here):
                 break
-            turned = unstable_direction(system, here)
+            try:
+                turned = unstable_direction(system, here)
+            except Clustered:
+                return None
             direction = turned if float(turned @ direction) >= 0.0 else -turned
         else:
             return direction
@@ -211,13 +229,10 @@ def _nearest_to(
     def nearest(
         count: int, *, tol: float = SIGN * (NEUTRAL / -left), v0: FloatArray = start, ncv: int = AMONG
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        for more in WIDER:
+        for more, restarts in WIDER:
             among = min(more * ncv, system.dof - 1)
-            try:
-                return eigs(matrix, k=count, sigma=left, OPinv=inverse, v0=v0, tol=tol, ncv=among, maxiter=RESTARTS)
-            except ArpackNoConvergence:
-                if more == WIDER[-1]:
-                    raise
-        raise AssertionError
+            with suppress(ArpackNoConvergence):
+                return eigs(matrix, k=count, sigma=left, OPinv=inverse, v0=v0, tol=tol, ncv=among, maxiter=restarts)
+        raise Clustered
 
     return nearest
