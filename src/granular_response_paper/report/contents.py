@@ -8,14 +8,12 @@ import xarray as xr
 
 from granular_response.store import files as store
 
-from ..groups import NAMES
-
 #: The lines between these marks of the document are made.
 BLOCK = "datasets"
 
 
 def markdown(folder: Path) -> str:
-    """A row for each dataset of each figure group stored in ``folder``; those that are not there have none.
+    """A row for each dataset of each file of ``folder``.
 
     Raises
     ------
@@ -23,9 +21,8 @@ def markdown(folder: Path) -> str:
         If a dataset cannot be read.
     """
     rows = ["| dataset | dimensions | variables (units) |", "|---|---|---|"]
-    for group in NAMES:
-        if (path := folder / f"{group}.nc").exists():
-            rows += [_row(f"{group}/{name}", data) for name, data in store.read(path).items()]
+    for path in sorted(folder.glob("*.nc")):
+        rows += [_row(f"{path.stem}/{name}", data) for name, data in store.read(path).items()]
     return "\n".join(rows)
 
 
