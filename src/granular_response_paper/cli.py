@@ -141,8 +141,8 @@ def claims(
         kind = f" [{row['interval_kind']}]" if row["interval_kind"] else ""
         typer.echo(f"{row['id']:4} {row['verdict']:22} {row['ours'] or '-'}{kind}")
         typer.echo(f"{'':27} {row['reason']}")
-        if row["survival"]:
-            typer.echo(f"{'':27} Variants ({row['robustness']}): {row['survival']}")
+        if row["robustness_reason"]:
+            typer.echo(f"{'':27} Variants ({row['robustness']}): {row['robustness_reason']}")
     typer.echo(f"{output}: {judging.sentence(found)}")
     typer.echo(judging.robustness(found))
     typer.echo(judging.firmness(found))

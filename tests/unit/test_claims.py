@@ -28,7 +28,7 @@ from granular_response_paper.claims.claim import (
     rises,
     sampled,
 )
-from granular_response_paper.claims.verdict import MEANINGS, SURVIVALS, judge, robustness_of, verdict_of
+from granular_response_paper.claims.verdict import MEANINGS, ROBUSTNESS_MEANINGS, judge, robustness_of, verdict_of
 from granular_response_paper.groups import NAMES
 from granular_response_paper.groups.frictionless_crossover import claims as slab_claims
 from granular_response_paper.groups.phase_diagram.claims import FOUND, Crossover, trend
@@ -428,8 +428,10 @@ def test_planted_data_changes_the_verdict(good, id_, change, expected):
 @pytest.mark.parametrize(("id_", "change", "expected"), VARIED, ids=[f"{p[0]}-{p[2]}" for p in VARIED])
 def test_a_variant_changes_the_robustness_alone(good, id_, change, expected):
     entry = judge(CLAIM[id_], Data(change(good)))
-    assert (entry.verdict, entry.robustness) == ("reproduced", expected), entry.survival
-    assert entry.survival.startswith("Holds in ") and ("Breaks first" in entry.survival) == (expected == "breaks")
+    assert (entry.verdict, entry.robustness) == ("reproduced", expected), entry.robustness_reason
+    assert entry.robustness_reason.startswith("Holds in ") and ("Breaks first" in entry.robustness_reason) == (
+        expected == "breaks"
+    )
 
 
 def test_every_claim_can_fail_and_every_kind_comes_out():
@@ -469,7 +471,7 @@ def test_robustness_follows_from_variants_alone():
     assert robustness_of([holds, fails]) == "not varied" and robustness_of([fails, same]) == "robust"
     assert robustness_of([holds, same, open_]) == "open" and robustness_of([holds, open_, broken]) == "breaks"
     assert verdict_of([holds, broken, open_]) == "reproduced" and verdict_of([fails, same]) == "contradicted"
-    assert {robustness_of([holds]), robustness_of([same]), "breaks", "open"} == set(SURVIVALS)
+    assert {robustness_of([holds]), robustness_of([same]), "breaks", "open"} == set(ROBUSTNESS_MEANINGS)
     with pytest.raises(KeyError, match="no change"):
         reading(1.0, 2.0, change="weather")
 
@@ -481,7 +483,7 @@ def test_what_breaks_first_is_said_in_the_order_of_the_changes():
 
     entry = judge(Claim("F1", "", "", "", measure), Data({}))
     assert (entry.verdict, entry.robustness) == ("reproduced", "breaks") and entry.finding.quantity.high == 2.0
-    assert entry.survival == (
+    assert entry.robustness_reason == (
         "Holds in 1 of 3; number: 1 to 4. Breaks first with another gravity: slow: number: 2.75 (2.5 to 3) "
         "(asked: 1 to 2)."
     )
@@ -638,8 +640,8 @@ def test_stored_table_and_metrics_agree(tmp_path):
     others = dict.fromkeys((v.replace(" ", "_") for v in MEANINGS), 0)
     paper = {**others, "reproduced": 3, "not_measured": PAPERS - 3, "total": PAPERS}
     assert stored["counts"] == {**paper, "beyond": BEYOND}
-    survived = dict.fromkeys((kind.replace(" ", "_") for kind in SURVIVALS), 0)
-    assert stored["robustness"] == {**survived, "not_varied": PAPERS}
+    degrees = dict.fromkeys((kind.replace(" ", "_") for kind in ROBUSTNESS_MEANINGS), 0)
+    assert stored["robustness"] == {**degrees, "not_varied": PAPERS}
     assert stored["verdicts"]["P1"] == {"verdict": "reproduced", "robustness": "not varied", "value": 0.07}
     row = next(row for row in stored["table"] if row["id"] == "P1")
     assert (row["interval"], row["interval_kind"]) == ([0.07, 0.08], "range")
@@ -661,7 +663,7 @@ def test_the_counts_in_words(good):
     data = Data({**{k: v for k, v in good.items() if k != "symmetry_breaking"}, "pile_dip": pile})
     found = table.document(data, table.evaluate(data))
     text = table.sentence(found)
-    varied = sum(bool(row["survival"]) and not row["beyond"] for row in found["table"])
+    varied = sum(bool(row["robustness_reason"]) and not row["beyond"] for row in found["table"])
     assert table.robustness(found) == (
         f"Of {varied} that were also measured in variants of it (gravity, walls, stiffness, lattice, smoothing): "
         f"{varied} hold in all, 0 fail in one or more, 0 are open."

@@ -162,10 +162,10 @@ def test_one_row_for_every_claim_with_its_verdict(root, page):
     assert {verdict: int(number) for verdict, number in tiles} == {
         verdict: number for verdict, number in stored["counts"].items() if verdict not in ("total", "beyond")
     }
-    survivals = re.findall(r'<div class="survival tile (\w+)"><b>(\d+)</b>', page)
-    assert {kind: int(number) for kind, number in survivals} == stored["robustness"]
-    shown = [span["class"] for span in elements.named("span") if span.get("class", "").startswith("survival chip")]
-    assert shown == [f"survival chip {row['robustness']}" for row in stored["table"] if row["survival"]]
+    degrees = re.findall(r'<div class="robustness tile (\w+)"><b>(\d+)</b>', page)
+    assert {kind: int(number) for kind, number in degrees} == stored["robustness"]
+    shown = [span["class"] for span in elements.named("span") if span.get("class", "").startswith("robustness chip")]
+    assert shown == [f"robustness chip {row['robustness']}" for row in stored["table"] if row["robustness_reason"]]
 
 
 def test_the_page_needs_no_network_and_no_other_file(page):

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,7 @@ from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
 from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
 from .increment import Work, solve_increment
+from .linear.updated import Updated
 from .problem import Problem
 from .rates import Changes, RateProblem, Rates, changed
 from .settle import CROSSING, CROSSING_STOP, NotSettled, nudged, settle
@@ -188,31 +190,32 @@ class _Path:
         if self.asked is None and self.system.dissected:
             self.together = min(self.options.together * self.problem.n**0.5, self.options.longest)
         if self.together is None or point.factor == target:
-            return self._followed(start)
+            return self._followed(point, start)
         # what increments leave out, from those of twice the length
         once, self.together = self.together, 2.0 * self.together
-        coarse = self._followed(start).wall_force()
+        coarse = self._followed(point, start).wall_force()
         self.together = once
-        state = self._followed(start)
+        state = self._followed(self._at(start), start)
         off = np.abs(state.wall_force() - coarse).max(initial=0.0) if len(coarse) == len(state.wall_force()) else np.inf
         error = float(off) / (self.unit * abs(target - start.load_factor))
         return replace(state, reached=replace(state.reached, events_within=once, events_error=error))
 
-    def _followed(self, start: State, watched: bool = False) -> State:
-        """The certified state at the target.
+    def _followed(self, point: Point, start: State, watched: bool = False) -> State:
+        """The certified state at the target, from ``point``, where ``start`` is.
 
         ``watched`` : whether stability is looked at wherever a contact changes, with a factorisation each; needed only
         where the equilibrium at the target turns out to be unstable.
         """
         del self.record.events[self.begun :]
         self.singly_until = start.load_factor
-        point = self._balanced(self._at(start))
+        point = self._balanced(point)
         while True:
             still = 0  #: points in turn at one load
             while point.factor != self.target:
-                before, system, lost = point, self.system, self._lost_so_far()
+                before, system, known = point, self.system, len(self.record.events)
                 point = self._advance(point, still > self.options.still)
-                if watched and self.system is system and self._lost_so_far() == lost:
+                lost = any(event.lost for event in self.record.events[known:])
+                if watched and self.system is system and not lost:
                     point = self._first_unstable(before, point)
                 still = still + 1 if abs(point.factor - before.factor) * self.unit < self.event else 0
                 self._look_down(point)
@@ -222,11 +225,8 @@ class _Path:
             if state.certificate.stable is not False:
                 return replace(state, reached=replace(state.reached, events=tuple(self.record.events[self.begun :])))
             if not watched:
-                return self._followed(start, watched=True)
+                return self._followed(self._at(start), start, watched=True)
             point = self._by_motion(point, "bifurcation", "unstable", None)
-
-    def _lost_so_far(self) -> int:
-        return sum(event.lost for event in self.record.events)
 
     def _first_unstable(self, before: Point, point: Point) -> Point:
         """``point``, if it is stable with the statuses of its increment; else the one that motion leads to.
@@ -351,8 +351,8 @@ class _Path:
                 length = np.inf  # the contact changes later than its rate said
                 continue
             far = np.abs(trial.configuration.q - point.known.q)[: 2 * self.problem.n].max(initial=0.0)
-            turned = self.varying or far > self.options.straight
-            velocity = self._velocity(trial, rates.sense) if turned else rates.velocity
+            again = self.varying or far > self.options.straight  # whether rates are found at the end too
+            velocity = self._velocity(trial, rates.sense) if again else rates.velocity
             then = self.rates.changes(trial, velocity, rates.sense)
             passed = np.flatnonzero((then.rate > 0.0) & (then.left < -self.event))
             if len(passed):  # another contact came first
@@ -360,25 +360,30 @@ class _Path:
                 contact = int(passed[np.argmax(back)])
                 what, length = int(then.what[contact]), max(abs(factor - point.factor) - float(back.max()), 0.0)
                 continue
-            turn = self._turn(point, rates, then, abs(factor - point.factor)) if turned else None
+            turn = self._turn(point, rates, then, abs(factor - point.factor)) if again else None
             if turn is not None:
                 left, length = turn, np.inf
                 continue
             self.record.work.increments += 1
             self.jump = self.options.jump / self.unit
             due = then.due(self.event)
-            if not turned:  # what the rates of the start say of contacts that bear nothing is the turn on the way
+            if not again:  # what the rates of the start say of contacts that bear nothing is the turn on the way
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
             return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
         return None
 
     def _velocity(self, trial: Trial, sense: np.ndarray) -> FloatArray:
         """(dof,) rates at a trial with signed statuses ``sense``; zero where the tangent is singular."""
+        renewed = self._renewed(trial, sense)
+        return np.zeros(self.system.dof) if renewed is None else renewed[1]
+
+    def _renewed(self, trial: Trial, sense: np.ndarray) -> tuple[Updated, FloatArray] | None:
+        """Factorisation of the tangent at a trial and the (dof,) rates by it; None where it is exactly singular."""
         try:
             factor = self.system.renewed_factor(trial.configuration, sense)
-            return self.rates.velocity(trial.configuration, sense, factor)
+            return factor, self.rates.velocity(trial.configuration, sense, factor)
         except RuntimeError:
-            return np.zeros(self.system.dof)
+            return None
 
     def _turn(self, point: Point, rates: Rates, then: Changes, length: float) -> float | None:
         """Where the first slip has turned round within an increment of a ``length``, by less than a force; or None."""
@@ -391,6 +396,7 @@ class _Path:
         for k in np.flatnonzero(late)[np.argsort(turns[late], kind="stable")]:
             c, w = int(back[k]), int(way[k])
 
+            @cache  # the ends are asked for twice
             def slip(part: float, c: int = c, w: int = w) -> float:
                 found = (point.factor, point.trial) if part == 0.0 else self._smooth(point, rates, part, None)
                 if found is None:
@@ -400,7 +406,9 @@ class _Path:
 
             # slip beyond its turn grows as the square of the length
             beyond = float(np.sqrt(self.event * length / (ahead[k] + then.rate[c])))
-            turn = float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) if slip(0.0) > 0.0 > slip(length) else 0.0
+            if slip(0.0) > 0.0 and slip(length) >= 0.0:
+                return 0.5 * length  # the event that was found lies on another branch, beyond a limit point
+            turn = float(brentq(slip, 0.0, length, xtol=0.25 * beyond)) if slip(0.0) > 0.0 else 0.0
             if length > turn + 1.5 * beyond:
                 return turn + beyond
         return None
@@ -434,11 +442,10 @@ class _Path:
                 return factor, trial
             stalled = size > options.slow * before
             if stalled or done % options.same_tangent == options.same_tangent - 1:
-                try:
-                    by = system.renewed_factor(trial.configuration, rates.sense)
-                    velocity = self.rates.velocity(trial.configuration, rates.sense, by)
-                except RuntimeError:  # exactly singular
+                renewed = self._renewed(trial, rates.sense)
+                if renewed is None:
                     return None
+                by, velocity = renewed
             before = size
             step = system.deinterleave(by.solve(system.interleave(force)))
             longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))

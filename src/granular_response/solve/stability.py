@@ -35,7 +35,7 @@ ROUGH, FEW = 1e-3, 6
 #: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that is
 #: known roughly.
 SOUGHT, AMONG, AMONG_FEW = 4, 14, 6
-#: How many times as many vectors are tried in turn, and the restarts with these: 0.2 s each in a slab of 15 layers.
+#: How many times as many vectors are tried in turn, and the restarts with these, after which there is no answer.
 WIDER = (1, 300), (3, 30)
 #: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it is
 #: where it is so many times as far from zero as the accuracy of this distance.
@@ -129,17 +129,21 @@ def unstable_direction(system: StaticSystem, trial: Trial, *, rough: bool = Fals
 
 
 def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
-    """(dof,) direction in which an equilibrium leaves by itself, or None.
+    """(dof,) direction in which an equilibrium leaves by itself; None where there is none, or none is determined.
 
     An unstable direction of the tangent counts only if the contacts that slide do go on sliding along it: those that
     would slip back stick, which makes another tangent with another lowest direction, and so on until they agree.
     """
-    if not negative_modes(system, trial):
-        return None
     try:
-        lowest = unstable_direction(system, trial)
+        return _divergence(system, trial)
     except Clustered:
         return None
+
+
+def _divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
+    if not negative_modes(system, trial):
+        return None
+    lowest = unstable_direction(system, trial)
     sliding = np.flatnonzero(trial.status == SLIDING)
     if not len(sliding):
         return lowest
@@ -157,10 +161,7 @@ def divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
             here = system.trial(trial.configuration, trial.configuration.q, fixed=sense)
             if not negative_modes(system, here):
                 break
-            try:
-                turned = unstable_direction(system, here)
-            except Clustered:
-                return None
+            turned = unstable_direction(system, here)
             direction = turned if float(turned @ direction) >= 0.0 else -turned
         else:
             return direction

@@ -430,7 +430,7 @@ class StaticSystem:
         n, radius, box = self.problem.n, self.problem.packing.radius, self.problem.packing.box
         position = self.reference + q[: 2 * n].reshape(2, n).T
         first, second = close_pairs(position, radius, 0.0, box.period)
-        listed = self.first * n + self.second
+        listed, listed_at_wall = self.split(self.keys())
         if box.periodic:  # a listed pair may have met on its other side
             d = position[self.first] - position[self.second] - self.reference[self.first] + self.reference[self.second]
             apart = np.hypot(d[:, 0] + self.dx0, d[:, 1] + self.dz0)
@@ -438,4 +438,4 @@ class StaticSystem:
         if np.isin(first.astype(np.int64) * n + second, listed, invert=True).any():
             return True
         disk, wall = box.near_walls(position, radius, 0.0)
-        return bool(np.isin(disk * 3 + wall, self.wall_disk * 3 + self.wall, invert=True).any())
+        return bool(np.isin(n * n + disk * 3 + wall, listed_at_wall, invert=True).any())

@@ -24,7 +24,7 @@ from ..groups import NAMES
 from . import preparations
 from .changes import CHANGES
 from .claim import Claim, Condition, Data, Quantity, rounded
-from .verdict import MEANINGS, SURVIVALS, Entry, Verdict, judge
+from .verdict import MEANINGS, ROBUSTNESS_MEANINGS, Entry, Verdict, judge
 from .words import TABLE, bounds
 
 #: Kinds of claims by the first letter, in the order of the table.
@@ -154,17 +154,17 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
         for entry in entries
     }
     own = [entry for entry in entries if not entry.claim.beyond]
-    survivals = [entry.robustness for entry in own]
+    degrees = [entry.robustness for entry in own]
     return {
         "counts": {
             **counts([entry.verdict for entry in own]),
             "total": len(own),
             "beyond": len(entries) - len(own),
         },
-        "robustness": {_key(kind): survivals.count(kind) for kind in SURVIVALS},
+        "robustness": {_key(kind): degrees.count(kind) for kind in ROBUSTNESS_MEANINGS},
         "verdicts": verdicts,
         "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
-        "robustness_kinds": [{"robustness": kind, "meaning": meaning} for kind, meaning in SURVIVALS.items()],
+        "robustness_kinds": [{"robustness": kind, "meaning": meaning} for kind, meaning in ROBUSTNESS_MEANINGS.items()],
         "changes": [{"change": change, "sentence": sentence} for change, sentence in CHANGES.items()],
         "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
         "sensitivity": sensitivity(data, entries),
@@ -182,7 +182,7 @@ def _row(entry: Entry) -> dict[str, Any]:
         "verdict": entry.verdict,
         "reason": entry.reason,
         "robustness": entry.robustness,
-        "survival": entry.survival,
+        "robustness_reason": entry.robustness_reason,
         "figures": list(claim.figures),
         "group": claim.group,
         "beyond": claim.beyond,
@@ -267,7 +267,7 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
 
 
 #: What is listed of each claim.
-_LISTED = {"id", "verdict", "robustness", "survival", "ours", "reason", "interval_kind"}
+_LISTED = {"id", "verdict", "robustness", "robustness_reason", "ours", "reason", "interval_kind"}
 
 
 def sentence(found: dict[str, Any]) -> str:

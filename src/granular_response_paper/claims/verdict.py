@@ -27,7 +27,7 @@ MEANINGS: dict[Verdict, str] = {
 
 
 #: Every robustness and what it says.
-SURVIVALS: dict[Robustness, str] = {
+ROBUSTNESS_MEANINGS: dict[Robustness, str] = {
     "robust": "it holds in every variant of the set-up that was measured",
     "breaks": "it fails in a variant",
     "open": "the uncertainty of a variant straddles the line",
@@ -40,14 +40,14 @@ SHOWN = 2
 
 @dataclass(frozen=True)
 class Entry:
-    """A claim with its verdict and its robustness; ``reason`` and ``survival`` say why in a sentence."""
+    """A claim with its verdict and its robustness; ``reason`` and ``robustness_reason`` say why in a sentence."""
 
     claim: Claim
     verdict: Verdict
     finding: Finding | None
     reason: str
     robustness: Robustness = "not varied"
-    survival: str = ""
+    robustness_reason: str = ""
 
 
 def verdict_of(readings: Sequence[Reading], *, derivation: bool = False) -> Verdict:
@@ -78,10 +78,12 @@ def judge(claim: Claim, data: Data, words: Bounds | None = None) -> Entry:
         verdict = verdict_of(finding.readings, derivation=claim.derivation)
     except NotMeasured as missing:
         return Entry(claim, "not measured", None, str(missing))
-    return Entry(claim, verdict, finding, _reason(finding), robustness_of(finding.readings), _survival(finding))
+    return Entry(
+        claim, verdict, finding, _reason(finding), robustness_of(finding.readings), _robustness_reason(finding)
+    )
 
 
-def _survival(finding: Finding) -> str:
+def _robustness_reason(finding: Finding) -> str:
     """In how many variants it holds, over which range, and what breaks it first."""
     variants = finding.variants
     if not variants:
