@@ -338,6 +338,7 @@ class _Path:
             left = self.options.listed_again / fastest
         contact, length = changes.first()
         what = int(changes.what[contact])
+        passed_at = np.inf  #: length of an increment within which a contact is known to change
         for _ in range(self.options.landings):
             event = (contact, what) if length < left else None
             found = self._smooth(point, rates, min(length, left), event)
@@ -348,7 +349,8 @@ class _Path:
                 continue
             factor, trial = found
             if event is not None and self.direction * (factor - point.factor) > left:
-                length = np.inf  # the contact changes later than its rate said
+                # the contact changes later than its rate said, or this is another branch if it is known to change before
+                left, length = (0.5 * left if left == passed_at else left), np.inf
                 continue
             far = np.abs(trial.configuration.q - point.known.q)[: 2 * self.problem.n].max(initial=0.0)
             again = self.varying or far > self.options.straight  # whether rates are found at the end too
@@ -358,7 +360,8 @@ class _Path:
             if len(passed):  # another contact came first
                 back = -then.left[passed] / then.rate[passed]
                 contact = int(passed[np.argmax(back)])
-                what, length = int(then.what[contact]), max(abs(factor - point.factor) - float(back.max()), 0.0)
+                left = passed_at = abs(factor - point.factor)
+                what, length = int(then.what[contact]), max(left - float(back.max()), 0.0)
                 continue
             turn = self._turn(point, rates, then, abs(factor - point.factor)) if again else None
             if turn is not None:

@@ -104,6 +104,8 @@ class RateProblem:
         load[system.held] = 0.0
         self._load = load
         self._right = system.interleave(load)
+        friction = system.problem.pair_law.friction, system.problem.wall_law.friction
+        self._frictional = np.repeat(np.array(friction) > 0.0, [len(system.first), len(system.wall_disk)])
         #: (dof,) rates of what loads hold
         self._held = np.zeros(system.dof)
         self._held[system.held] = direction * system.problem.held.travel
@@ -146,6 +148,7 @@ class RateProblem:
         sense = np.where((np.abs(sense) == SLIDING) & (trial.normal <= self.force), STICKING, sense).astype(sense.dtype)
         for rounds, worst, anew in WAYS:
             now, tried = sense, {sense.tobytes()}
+            had: dict[int, set[int]] = {}  #: statuses, in these rounds, of contacts that opened or closed
             for _ in range(rounds):
                 factored = self.system.renewed_factor if anew else self.system.updated_factor
                 try:
@@ -163,6 +166,11 @@ class RateProblem:
                     rates = found.rate[due]
                     due = due[rates >= AS_BAD * rates.max()]
                 now = changed(now, due, found.what)
+                for c in due[self._frictional[due] & np.isin(found.what[due], (events.OPENS, events.CLOSES))].tolist():
+                    # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
+                    had.setdefault(c, {int(sense[c])})
+                    now[c] = next((way for way in (now[c], SLIDING, -SLIDING) if int(way) not in had[c]), now[c])
+                    had[c].add(int(now[c]))
                 if now.tobytes() in tried:
                     break
                 tried.add(now.tobytes())
