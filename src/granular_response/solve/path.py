@@ -349,7 +349,7 @@ class _Path:
                 continue
             factor, trial = found
             if event is not None and self.direction * (factor - point.factor) > left:
-                # the contact changes later than its rate said, or this is another branch if it is known to change before
+                # the contact changes later than its rate said; or this is another branch, if it changes before
                 left, length = (0.5 * left if left == passed_at else left), np.inf
                 continue
             far = np.abs(trial.configuration.q - point.known.q)[: 2 * self.problem.n].max(initial=0.0)
