@@ -14,7 +14,7 @@ of the energy whatever ``method`` says.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Any, get_args
 
 import numpy as np
@@ -25,7 +25,6 @@ from granular_response.observe.peaks import central_dip
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
@@ -33,6 +32,8 @@ from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
+from granular_response_paper.records import axes
+from granular_response_paper.tasks import computed
 
 BODIES: tuple[Body, ...] = get_args(Body)
 ROTATIONS: tuple[lattice.Rotations, ...] = get_args(lattice.Rotations)
@@ -48,85 +49,57 @@ EVENTS = {
 }
 
 
-@dataclass(frozen=True)
-class Ratio:
-    """One stiffness ratio of a scene with one load of unit force."""
-
-    base: Scene
-    stiffness_ratio: float
-    force: float
-
-    def scene(self) -> Scene:
-        changes: dict[str, Any] = {"contact.stiffness_ratio": self.stiffness_ratio}
-        if self.stiffness_ratio == 0.0:
-            changes["protocol.method"] = "auto"
-        return self.base.updated(changes)
+RATIO = "tangential stiffness over normal stiffness"
 
 
-def measure(task: Ratio) -> tuple[xr.Dataset, str]:
+def measure(base: Scene, ratio: float, force: float) -> tuple[xr.Dataset, str]:
     """The measured response of a packing at one stiffness ratio, and the method that found it."""
-    path = slab.LoadPath.of(task.scene())
-    state = path.at(task.force)
+    changes: dict[str, Any] = {"contact.stiffness_ratio": ratio}
+    if ratio == 0.0:
+        changes["protocol.method"] = "auto"
+    path = slab.LoadPath.of(base.updated(changes))
+    state = path.at(force)
     return slab.measured(slab.Measures(path), [state]), path.method
 
 
-@dataclass(frozen=True)
-class Search:
-    """An event between two stiffness ratios, to be narrowed."""
-
-    name: str
-    base: Scene
-    force: float
-    low: float
-    high: float
-    tolerance: float
-
-
-def narrow(search: Search) -> slab.Event:
-    """Bisect an event of ``EVENTS``; every evaluation settles and loads a packing."""
-    happened = _HAPPENED[search.name]
-
-    def predicate(ratio: float) -> bool:
-        return happened(measure(Ratio(search.base, ratio, search.force))[0])
-
-    bracket = bisect_event(predicate, search.low, search.high, search.tolerance, at_low=False, at_high=True)
-    return _event(search.name, search.base, bracket.low, bracket.high)
+def narrow(name: str, base: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
+    """Bisect an event of ``EVENTS`` between two ratios; every evaluation settles and loads a packing."""
+    happened = _HAPPENED[name]
+    found = bisect_event(
+        lambda ratio: happened(measure(base, ratio, force)[0]), low, high, tolerance, at_low=False, at_high=True
+    )
+    return found.low, found.high
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``elastic`` and ``events``."""
     base, force, tolerance = parameters.base, parameters.force, parameters.tolerance
     ratios = np.array(parameters.ratios)
+    results = computed({ratio: partial(measure, base, ratio, force) for ratio in ratios.tolist()}, "stiffness ratios")
+    measured = [result for result, _ in results.values()]
 
-    tasks = [Ratio(base, ratio, force) for ratio in ratios.tolist()]
-    results = map_tasks(measure, tasks, what="stiffness ratios")
-    measured = [result for result, _ in results]
+    brackets = _brackets(ratios, measured)
+    searches = {
+        name: partial(narrow, name, base, force, low, high, tolerance)
+        for name, (low, high) in brackets.items()
+        if np.isfinite(high) and low > 0.0 and high - low > tolerance
+    }
+    brackets |= computed(searches, "crossovers")
+    events = slab.events_dataset(
+        [slab.Event(name, base.contact.friction, *brackets[name], text) for name, text in EVENTS.items()]
+    ).drop_vars("friction")
+    events["low"].attrs["long_name"] = "stiffness ratio before the event"
 
-    found: list[slab.Event] = []
-    searches: list[Search] = []
-    for name, low, high in _brackets(ratios, measured):
-        if np.isfinite(high) and low > 0.0 and high - low > tolerance:
-            searches.append(Search(name, base, force, low, high, tolerance))
-        else:
-            found.append(_event(name, base, low, high))
-    found += map_tasks(narrow, searches, what="crossovers")
-    found.sort(key=lambda event: list(EVENTS).index(event.name))
-
-    response = slab.measured_along("stiffness_ratio", measured).assign_coords(stiffness_ratio=_ratio(ratios))
+    response = slab.measured_along("stiffness_ratio", measured).assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
     response["force"] = variable((), force, f"applied force {FORCE}")
     response["methods"] = variable(
-        "stiffness_ratio", [method for _, method in results], "method that found the loaded state"
+        "stiffness_ratio", [method for _, method in results.values()], "method that found the loaded state"
     )
     packing = base.packing.build()
-    datasets = {
-        "response": response,
-        "elastic": elastic_bodies(
-            np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
-        ),
-        "events": slab.events_dataset(found).drop_vars("friction"),
-    }
-    datasets["events"]["low"].attrs["long_name"] = "stiffness ratio before the event"
-    return labelled(datasets, base)
+    elastic = elastic_bodies(
+        np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
+    )
+    return labelled({"response": response, "elastic": elastic, "events": events}, base)
 
 
 def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float) -> xr.Dataset:
@@ -178,10 +151,11 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
             ),
         },
         coords={
-            "stiffness_ratio": _ratio(ratios),
+            **axes(stiffness_ratio=(ratios, RATIO)),
             "x": variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
-            "body": variable("body", list(BODIES), "elastic body that carries the force"),
-            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
+            **axes(
+                body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn")
+            ),
         },
     )
 
@@ -200,21 +174,13 @@ _HAPPENED: dict[str, Callable[[xr.Dataset], bool]] = {
 }
 
 
-def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> list[tuple[str, float, float]]:
+def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> dict[str, tuple[float, float]]:
     """Where on the axis each event lies."""
     ended = [_two_peaks_ended(one) for one in measured]
     central = [_largest_at_centre(one) for one in measured]
     # the last stretch of ratios with the maximum at the centre; there may be others below it
     begun = [all(central[k:]) for k in range(len(central))]
-    return [
-        ("two_peaks_end", *slab.first_change(ratios, ended)),
-        ("central_maximum_begins", *slab.first_change(ratios, begun)),
-    ]
-
-
-def _event(name: str, base: Scene, low: float, high: float) -> slab.Event:
-    return slab.Event(name, base.contact.friction, low, high, EVENTS[name])
-
-
-def _ratio(ratios: FloatArray) -> xr.Variable:
-    return variable("stiffness_ratio", ratios, "tangential stiffness over normal stiffness")
+    return {
+        "two_peaks_end": slab.first_change(ratios, ended),
+        "central_maximum_begins": slab.first_change(ratios, begun),
+    }
