@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from types import MappingProxyType
 from typing import Any, TypeVar, dataclass_transform, get_type_hints
 
 import numpy as np
@@ -33,11 +34,14 @@ class Column:
     long_name: str
     dims: tuple[str, ...]
     later: bool  #: whether files of earlier versions lack it; there it is read as nan
+    attributes: Mapping[str, Any]  #: further ones of the variable
 
 
-def column(long_name: str, *dims: str, later: bool = False) -> Any:
+def column(
+    long_name: str, *dims: str, later: bool = False, attributes: Mapping[str, Any] = MappingProxyType({})
+) -> Any:
     """Declare a field of a record: a number or a text, or an array along ``dims``."""
-    return field(metadata={_DECLARED: Column(long_name, dims, later)})
+    return field(metadata={_DECLARED: Column(long_name, dims, later, attributes)})
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(column,))
@@ -72,7 +76,7 @@ def table(records: Mapping[Place, Any] | Sequence[Any], *dims: str, kind: type |
     for name, one in columns(kind).items():
         number = hints[name] if hints[name] in (float, int, str) else None
         values = stacked({place: getattr(record, name) for place, record in placed.items()}, number)
-        data[name] = variable((*dims, *one.dims), values, one.long_name)
+        data[name] = variable((*dims, *one.dims), values, one.long_name, **one.attributes)
     return xr.Dataset(data)
 
 
