@@ -26,7 +26,9 @@ def computed(
         If a task raises.
     """
     order = sorted(tasks, key=work, reverse=True) if work else list(tasks)
-    found = dict(zip(order, map_tasks(_call, [tasks[place] for place in order], what=what), strict=True))
+    alone = 1 if len(order) == 1 else None  # in this process: one task is not worth another
+    results = map_tasks(_call, [tasks[place] for place in order], workers=alone, what=what)
+    found = dict(zip(order, results, strict=True))
     return {place: found[place] for place in tasks}
 
 

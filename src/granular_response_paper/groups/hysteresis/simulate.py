@@ -217,24 +217,27 @@ class Packing:
             self.known_left[force] = self.left(state, self.after(state, [0.0])[0])
         return self.known_left[force]
 
-    def turn(self, states: Sequence[State], turn: int, smallest: State) -> tuple[Turn, Shown]:
-        """What is found on the ``states`` of two loops from rest on, which turn at place ``turn`` of the first way."""
+    def turn(self, states: Sequence[State], turn: int, force: float, smallest: float) -> tuple[Turn, Shown]:
+        """What is found on the ``states`` of two loops from rest on, which turn at place ``turn`` and at ``force``.
+
+        ``smallest`` is the force up to which the response counts as linear.
+        """
         bottom = 2 * turn
         up, back, again = states[: turn + 1], states[turn : bottom + 1], states[bottom:]
         once, down, more = (keep_books(self.problem, branch) for branch in (up, back, again))
         loop, second_loop = once + down, down + more
         loaded, unloaded, second = states[turn], states[bottom], states[-1]
-        self.known_left[loaded.load_factor] = self.left(loaded, unloaded)
+        self.known_left[force] = self.left(loaded, unloaded)
         opened = states[0].pairs.touching & ~loaded.pairs.touching
         added = np.stack([self.added(state) for state in (loaded, unloaded, second)])
         measured = Turn(
-            floor_left=self.known_left[loaded.load_factor],
+            floor_left=self.known_left[force],
             floor_repeated=np.abs(added[2] - added[0]).max() / np.abs(added[0]).max(),
             displacement=self.sunk(loaded),
             displacement_left=self.sunk(unloaded),
             displacement_repeated=self.sunk(second),
-            nonlinearity=self.centre(loaded) / self.centre(smallest) - 1.0,
-            opened_contacts=self.measures.opened(self.path.known[loaded.load_factor]),
+            nonlinearity=self.centre(loaded) / self.centre(self.path.known[smallest]) - 1.0,
+            opened_contacts=self.measures.opened(self.path.known[force]),
             sliding_contacts=loaded.pairs.sliding.sum() + loaded.walls.sliding.sum(),
             work=once.work,
             lost=loop.work,
@@ -291,7 +294,7 @@ def compute(
         turn = loads.index(force)
         ways = [*loads[turn - 1 :: -1], *loads[1 : turn + 1]]
         states = common_candidates([*first[: turn + 1], *packing.after(first[turn], ways)], radius)
-        found.append(packing.turn(states, turn, path.known[forces[0]]))
+        found.append(packing.turn(states, turn, force, forces[0]))
     return Outcome(
         np.array([astuple(turn) for turn, _ in found], float),
         np.array(packing.events(forces, left, tolerance)),

@@ -33,7 +33,7 @@ from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, Slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.moduli.parameters import Parameters
-from granular_response_paper.records import axes, column, columns, labels, record, stacked, table
+from granular_response_paper.records import axes, column, labels, record, stacked, table
 from granular_response_paper.survey.packings import chosen
 from granular_response_paper.tasks import computed
 
@@ -70,12 +70,15 @@ def nearest_isotropic(moduli: FloatArray) -> FloatArray:
     return np.array([bulk + shear, bulk + shear, bulk - shear, 2.0 * shear])
 
 
+FRICTION = "friction between disks and of the floor"
+
+
 @record
 class Disordered:
     """What tells a packing from others."""
 
     polydispersity: float = column("polydispersity")
-    friction: float = column("friction between disks and of the floor")
+    friction: float = column(FRICTION)
     layers: int = column("number of rows")
     realization: int = column("realization of the disorder")
 
@@ -356,12 +359,11 @@ def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outco
         ),
     }
     components = ["xx", "zz", "xz"]
-    texts = {name: columns(Disordered)[name].long_name for name in ("polydispersity", "friction")}
     return (
         found.drop_vars("springs_alone")
         .assign(derived)
         .assign_coords(
-            labels("case", cases, **texts)
+            labels("case", cases, polydispersity="polydispersity", friction=FRICTION)
             | axes(
                 following=(FOLLOWING, "how displacements and rotations follow the strain"),
                 solid=(SOLIDS, "moduli of the elastic slab"),
