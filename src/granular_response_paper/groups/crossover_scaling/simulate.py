@@ -316,47 +316,42 @@ def slab_and_path_tables(
     return {"slabs": slabs.assign_coords(kept).assign_coords(coordinates), "paths": paths}
 
 
-def power_table(table: xr.Dataset, parameters: Parameters) -> xr.Dataset:
+_RANGE = "range over the fits with and without the smallest, and over the brackets"
+
+
+@record
+class Fitted:
+    """The power law of an event in a series."""
+
+    exponent: FloatArray = column(f"power of what is varied with which the event's force grows; {_RANGE}", "end")
+    extrapolated: FloatArray = column(
+        f"force {FORCE} of the event by this power law; {_RANGE}, and the largest slab with the power of the continuum",
+        "end",
+    )
+
+
+def power_table(slabs: xr.Dataset, parameters: Parameters) -> xr.Dataset:
     """Powers of what each series varies, and where its events are at ``extrapolated`` layers."""
     ends, events = ("value", "least", "largest"), ("first_opening", "crossover", "reaches_floor")
-    shape = (len(parameters.series), len(events), len(ends))
-    exponents, far = np.full(shape, np.nan), np.full(shape, np.nan)
+    found = {}
     for s, series in enumerate(parameters.series):
-        one = table.isel(slab=np.flatnonzero(table["series"].values == series.name))
+        one = slabs.isel(slab=np.flatnonzero(slabs["series"].values == series.name))
         at = _varied(one, series)
         for e, event in enumerate(events):
             law = Power(at, *one[f"{event}_bracket"].values.T)
-            exponents[s, e] = law.exponent()
+            far = np.full(len(ends), np.nan)
             if series.varied == "layers":
-                far[s, e] = law.at_size(
-                    parameters.extrapolated, continuum(series) if event != "first_opening" else None
-                )
-    dims = ("series", "event", "end")
-    range_ = "range over the fits with and without the smallest, and over the brackets"
-    data = xr.Dataset(
-        {
-            "exponent": variable(
-                dims, exponents, f"power of what is varied with which the event's force grows; {range_}"
-            ),
-            "extrapolated": variable(
-                dims,
-                far,
-                f"force {FORCE} of the event by this power law; {range_}, and the largest slab with the power of the "
-                "continuum",
-            ),
-        },
-        coords={
-            "series": variable("series", [one.name for one in parameters.series], "series"),
-            **labels(
-                "series", parameters.series, friction="coefficient of friction", varied="what differs along the series"
-            ),
-            "confined": variable(
-                "series",
-                ["walls" if one.sides == "walls" else one.confined for one in parameters.series],
-                "what sets the force of horizontal contacts at rest",
-            ),
-            **axes(event=(events, "event"), end=(ends, "value and ends of the interval")),
-        },
+                far = law.at_size(parameters.extrapolated, continuum(series) if event != "first_opening" else None)
+            found[s, e] = Fitted(law.exponent(), far)
+    texts = {"name": "series", "friction": "coefficient of friction", "varied": "what differs along the series"}
+    coordinates = labels("series", parameters.series, **texts)
+    confined = ["walls" if one.sides == "walls" else one.confined for one in parameters.series]
+    data = (
+        table(found, "series", "event")
+        .assign_coords(series=coordinates.pop("name"))
+        .assign_coords(coordinates)
+        .assign_coords(confined=variable("series", confined, "what sets the force of horizontal contacts at rest"))
+        .assign_coords(axes(event=(events, "event"), end=(ends, "value and ends of the interval")))
     )
     data.attrs["layers"] = parameters.extrapolated
     return data

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import product
 from typing import Any, get_args
 
 import numpy as np
@@ -28,11 +29,12 @@ from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
+from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
-from granular_response_paper.records import axes
+from granular_response_paper.records import axes, column, record, stacked, table
 from granular_response_paper.tasks import computed
 
 BODIES: tuple[Body, ...] = get_args(Body)
@@ -102,6 +104,14 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled({"response": response, "elastic": elastic, "events": events}, base)
 
 
+@record
+class Elastic:
+    """An elastic body."""
+
+    profile: FloatArray = column("force on a floor disk per applied force", "floor_disk")
+    central_dip: float = column("how far the profile at x = 0 is below the lower maximum beside it, per largest value")
+
+
 def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float) -> xr.Dataset:
     """Response of elastic bodies with the moduli of the spring model without horizontal springs (Sec. V.C).
 
@@ -110,54 +120,51 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a ratio of zero, where the lattice
     resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
     """
-    height = np.sqrt(3.0) * layers
-    node, weight = np.polynomial.legendre.leggauss(8)
-    profile = np.full((len(ROTATIONS), len(BODIES), len(ratios), len(x)), np.nan)
-    error = np.full((len(ROTATIONS), len(ratios)), np.nan)
-    for r, rotations in enumerate(ROTATIONS):
-        for k, ratio in enumerate(ratios.tolist()):
-            if ratio == 0.0:
-                continue
-            springs = Springs(0.0, 1.0, 0.0, ratio)
-            moduli = lattice.moduli(springs, rotations)
-            exact = moduli.matrix()
-            error[r, k] = np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max()
-            for b, body in enumerate(BODIES):
-                if body == "half plane":
-                    profile[r, b, k] = half_plane.pressure(x[:, None] + node, height, moduli) @ weight
-                else:
-                    floor: Floor = "smooth" if body == "smooth floor" else "rough"
-                    profile[r, b, k] = response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
-    dip = np.full(profile.shape[:3], np.nan)
-    for index in np.ndindex(dip.shape):
-        if np.isfinite(profile[index]).all():
-            dip[index] = central_dip(x, profile[index])
-    dims = ("rotations", "body", "stiffness_ratio")
-    return xr.Dataset(
-        {
-            "profile": variable((*dims, "floor_disk"), profile, "force on a floor disk per applied force"),
-            "central_dip": variable(
-                dims, dip, "how far the profile at x = 0 is below the lower maximum beside it, per largest value"
-            ),
-            "root": variable(
-                "rotations",
-                [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
-                "k_2t/k_2n at which r of Sec. V.C is 0",
-            ),
-            "moduli_error": variable(
-                ("rotations", "stiffness_ratio"),
-                error,
-                "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest",
-            ),
-        },
-        coords={
-            **axes(stiffness_ratio=(ratios, RATIO)),
-            "x": variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
-            **axes(
-                body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn")
-            ),
-        },
+    found = {}
+    for (r, rotations), (b, body), (k, ratio) in product(
+        enumerate(ROTATIONS), enumerate(BODIES), enumerate(ratios.tolist())
+    ):
+        if ratio > 0.0:
+            profile = _profile(lattice.moduli(Springs(0.0, 1.0, 0.0, ratio), rotations), body, x, layers, width)
+            found[r, b, k] = Elastic(profile, central_dip(x, profile))
+    error = {
+        (r, k): _moduli_error(Springs(0.0, 1.0, 0.0, ratio), rotations)
+        for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist()))
+        if ratio > 0.0
+    }
+    dataset = table(found, "rotations", "body", "stiffness_ratio").assign(
+        root=variable(
+            "rotations",
+            [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
+            "k_2t/k_2n at which r of Sec. V.C is 0",
+        ),
+        moduli_error=variable(
+            ("rotations", "stiffness_ratio"),
+            stacked(error),
+            "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest",
+        ),
     )
+    place = variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}")
+    return (
+        dataset.assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
+        .assign_coords(x=place)
+        .assign_coords(
+            axes(body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn"))
+        )
+    )
+
+
+def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: float) -> FloatArray:
+    if body == "half plane":
+        node, weight = np.polynomial.legendre.leggauss(8)
+        return half_plane.pressure(x[:, None] + node, np.sqrt(3.0) * layers, moduli) @ weight
+    floor: Floor = "smooth" if body == "smooth floor" else "rough"
+    return response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
+
+
+def _moduli_error(springs: Springs, rotations: lattice.Rotations) -> float:
+    exact = lattice.moduli(springs, rotations).matrix()
+    return float(np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max())
 
 
 def _two_peaks_ended(measured: xr.Dataset) -> bool:
