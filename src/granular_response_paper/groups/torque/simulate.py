@@ -42,22 +42,21 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``torques``, ``stress`` and ``reach``."""
     base, force, angle = parameters.base, parameters.force, np.radians(parameters.angle)
     edges, direction = np.array(parameters.distances), np.array([np.cos(angle), -np.sin(angle)])
-    scenes = {torque: base.updated({"loads": [_load(force * direction, torque)]}) for torque in parameters.torques}
-    first = scenes[parameters.torques[0]]
+    scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in parameters.torques]
 
-    rest = computed({"rest": partial(rest_of, first)}, "rest")["rest"]
-    results = computed({torque: partial(load, scene, rest) for torque, scene in scenes.items()}, "torques")
+    rest = computed({"rest": partial(rest_of, scenes[0])}, "rest")["rest"]
+    results = computed({k: partial(load, scene, rest) for k, scene in enumerate(scenes)}, "torques")
     packing = base.packing.build()
     rest, *loaded = common_candidates([rest, *(state for state, _ in results.values())], packing.radius)
-    disk = results[parameters.torques[0]][1]
+    disk = results[0][1]
     stress = _stress_dataset(packing, rest, loaded, parameters.stress_width, parameters.stress_spacing)
     datasets = {
         "torques": _states_dataset(packing, rest, loaded, disk, force * direction),
         "stress": stress,
         "reach": _reach_dataset(rest, loaded, disk, stress, edges),
     }
-    coordinate = axes(torque=(results, "applied torque, clockwise, in mean disk weights times mean radius"))
-    return labelled({name: dataset.assign_coords(coordinate) for name, dataset in datasets.items()}, first)
+    coordinate = axes(torque=(parameters.torques, "applied torque, clockwise, in mean disk weights times mean radius"))
+    return labelled({name: dataset.assign_coords(coordinate) for name, dataset in datasets.items()}, scenes[0])
 
 
 def _load(force: FloatArray, torque: float) -> dict[str, Any]:
