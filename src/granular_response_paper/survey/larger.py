@@ -8,9 +8,6 @@ their tasks by what tells them apart, so they are made as those of the pipeline 
 from __future__ import annotations
 
 import functools
-import time
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +19,7 @@ from granular_response_paper import PACKAGE
 from granular_response_paper.datasets import labelled
 from granular_response_paper.pipeline import group_member, simulation
 from granular_response_paper.survey import packings
-from granular_response_paper.survey.simulate import origin
+from granular_response_paper.survey.simulate import clocked, origin
 
 #: Groups with packings of this kind.
 GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
@@ -32,21 +29,6 @@ def sources_of(group: str) -> tuple[str, ...]:
     """The sources that an outcome depends on."""
     mechanics = ("contact", "kernels", "machine", "observe", "scene", "solve", "state", "theory")
     return (*mechanics, f"{PACKAGE}/slab_response.py", f"{PACKAGE}/groups/{group}/simulate.py")
-
-
-@dataclass(frozen=True)
-class Timed:
-    """A packing and the processor time that it took, in seconds."""
-
-    outcome: Any
-    seconds: float
-
-
-def timed(task: Callable[[], Any]) -> Timed:
-    """One packing."""
-    start = time.process_time()
-    outcome = task()
-    return Timed(outcome, time.process_time() - start)
 
 
 def run(
@@ -72,7 +54,7 @@ def run(
     order = sorted(tasks, key=lambda key: tasks[key].args[0].packing.disk_count)
     with using(packages=(PACKAGE,)):
         found = map_tasks(
-            timed,
+            clocked,
             [tasks[key] for key in order],
             workers=workers,
             scheduler=scheduler,
@@ -82,7 +64,7 @@ def run(
             what=f"packings of {group}",
         )
     by_key = dict(zip(order, found, strict=True))
-    dataset = packings.dataset({key: by_key[key].outcome for key in tasks}, [by_key[key].seconds for key in tasks])
+    dataset = packings.dataset({key: by_key[key].found for key in tasks}, [by_key[key].seconds for key in tasks])
     scene = parameters.base  # type: ignore[attr-defined]
     attributes = {"block": group, "parameters": text.write(given)} | origin(sources_of(group), scene)
     store.write(output, labelled({packings.DATASET: dataset}, scene), attributes)

@@ -99,9 +99,9 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``slabs``."""
     base, force = parameters.base, parameters.force
     tasks = {
-        (c, layers): partial(compute, base, case, layers, force)
+        (c, k): partial(compute, base, case, layers, force)
         for c, case in enumerate(parameters.cases)
-        for layers in case.layers
+        for k, layers in enumerate(case.layers)
     }
     slabs, states = zip(*computed(tasks, "slabs").values(), strict=True)
     dataset = table(slabs, "slab").assign(certificates_dataset(states, "slab").variables)
