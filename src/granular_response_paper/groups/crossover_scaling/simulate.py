@@ -346,12 +346,10 @@ def power_table(slabs: xr.Dataset, parameters: Parameters) -> xr.Dataset:
     texts = {"name": "series", "friction": "coefficient of friction", "varied": "what differs along the series"}
     coordinates = labels("series", parameters.series, **texts)
     confined = ["walls" if one.sides == "walls" else one.confined for one in parameters.series]
-    data = (
-        table(found, "series", "event")
-        .assign_coords(series=coordinates.pop("name"))
-        .assign_coords(coordinates)
-        .assign_coords(confined=variable("series", confined, "what sets the force of horizontal contacts at rest"))
-        .assign_coords(axes(event=(events, "event"), end=(ends, "value and ends of the interval")))
+    data = table(found, "series", "event").assign_coords(
+        {"series": coordinates.pop("name"), **coordinates}
+        | {"confined": variable("series", confined, "what sets the force of horizontal contacts at rest")}
+        | axes(event=(events, "event"), end=(ends, "value and ends of the interval"))
     )
     data.attrs["layers"] = parameters.extrapolated
     return data

@@ -285,7 +285,9 @@ def _profiles_dataset(packing: Packing, results: Sequence[Loaded], rows: Sequenc
     return (
         table(found, "friction", "row")
         .assign(force=variable((), force, f"applied force {FORCE}"))
-        .assign_coords(axes(row=(np.array(rows, dtype=float), "rows below the loaded disk")))
-        .assign_coords(depth=variable("row", depth, f"depth below the loaded disk {LENGTH}"))
+        .assign_coords(
+            axes(row=(np.array(rows, dtype=float), "rows below the loaded disk"))
+            | {"depth": variable("row", depth, f"depth below the loaded disk {LENGTH}")}
+        )
         .merge(certificates_dataset(states, "friction"))
     )

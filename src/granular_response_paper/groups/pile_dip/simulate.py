@@ -142,8 +142,10 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
             ),
             width=variable((), packing.width, f"distance of the side walls {LENGTH}"),
         )
-        .assign_coords(axes(case=OF_CASES, axis=("xz", "axis labels"), floor_disk=(bottom, "index of the floor disk")))
-        .assign_coords(x_floor=variable("floor_disk", x, f"position from the axis of the pile {LENGTH}"))
+        .assign_coords(
+            axes(case=OF_CASES, axis=("xz", "axis labels"), floor_disk=(bottom, "index of the floor disk"))
+            | {"x_floor": variable("floor_disk", x, f"position from the axis of the pile {LENGTH}")}
+        )
         .merge(certificates_dataset(states, "case"))
     )
 

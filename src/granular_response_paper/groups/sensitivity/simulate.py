@@ -156,4 +156,4 @@ def _dataset(known: list[Variant], outcomes: list[Outcome]) -> xr.Dataset:
         response_sum=variable("variant", response.sum(axis=1), "sum of the floor response"),
     )
     names = axes(variant=([one.name for one in known], "name of the variant"))
-    return derived.assign(labels("variant", known, text="what is changed")).assign_coords(names).assign_coords(x=x)
+    return derived.assign(labels("variant", known, text="what is changed")).assign_coords(names | {"x": x})

@@ -145,12 +145,10 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
         ),
     )
     place = variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}")
-    return (
-        dataset.assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
-        .assign_coords(x=place)
-        .assign_coords(
-            axes(body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn"))
-        )
+    return dataset.assign_coords(
+        axes(stiffness_ratio=(ratios, RATIO))
+        | {"x": place}
+        | axes(body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn"))
     )
 
 

@@ -126,13 +126,12 @@ def _reach_dataset(
         ring_ratio(np.abs(antisymmetric - antisymmetric[0]), np.abs(pressure[0]), in_field, edges),
     )
     middle = 0.5 * (edges[:-1] + edges[1:])
-    return (
-        table({(): reach})
-        .assign_coords(axes(ring=(middle, f"mean distance of the ring from the load {LENGTH}")))
-        .assign_coords(
-            ring_inner=variable("ring", edges[:-1], f"inner radius of the ring {LENGTH}"),
-            ring_outer=variable("ring", edges[1:], f"outer radius of the ring {LENGTH}"),
-        )
+    return table({(): reach}).assign_coords(
+        axes(ring=(middle, f"mean distance of the ring from the load {LENGTH}"))
+        | {
+            "ring_inner": variable("ring", edges[:-1], f"inner radius of the ring {LENGTH}"),
+            "ring_outer": variable("ring", edges[1:], f"outer radius of the ring {LENGTH}"),
+        }
     )
 
 
