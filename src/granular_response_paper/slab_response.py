@@ -44,6 +44,11 @@ MARGINS = (0.01, 0.05)
 #: The linear range ends where the response at x = 0 differs by this fraction from that to the smallest force.
 LINEARITY = 0.01
 
+#: What counts as an event.
+FIRST_OPENING = "a contact of disks in the central third of the slab is open that touches at rest"
+TWO_PEAKS = "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0"
+REACHES_FLOOR = "the region of opened contacts below the load contains a contact of the bottom row"
+
 #: What a path leaves of the force of an event, as a part of it.
 EXACT = 1e-8
 
@@ -351,6 +356,16 @@ def locate(name: str, path: LoadPath, forces: Sequence[float], what: Happening, 
     return Event(name, path.scene.contact.friction, *path.first(forces, what, width), what.definition)
 
 
+def first_opening(measures: Measures) -> Happening:
+    """The first contact opens."""
+    return Happening(lambda state: measures.opened(state) > 0, FIRST_OPENING, of_contacts=True)
+
+
+def reaches_floor(measures: Measures) -> Happening:
+    """The open contacts reach the floor."""
+    return Happening(lambda state: measures.region(state).reaches_floor, REACHES_FLOOR, of_contacts=True)
+
+
 def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, Happening]:
     """What is looked for along a load path, by name.
 
@@ -358,24 +373,13 @@ def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[st
     """
     linear, force = measures.centre(smallest), abs(smallest.load_factor)
     return {
-        "first_opening": Happening(
-            lambda state: measures.opened(state) > 0,
-            "a contact of disks in the central third of the slab is open that touches at rest",
-            of_contacts=True,
-        ),
+        "first_opening": first_opening(measures),
         "linear_range": Happening(
             lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY,
             f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}",
         ),
-        "crossover": Happening(
-            measures.double_peaked,
-            "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
-        ),
-        "reaches_floor": Happening(
-            lambda state: measures.region(state).reaches_floor,
-            "the region of opened contacts below the load contains a contact of the bottom row",
-            of_contacts=True,
-        ),
+        "crossover": Happening(measures.double_peaked, TWO_PEAKS),
+        "reaches_floor": reaches_floor(measures),
         "third_peak": Happening(
             lambda state: measures.third_peak(state) > 0.0,
             "the double-peaked floor response has a further peak at x = 0",

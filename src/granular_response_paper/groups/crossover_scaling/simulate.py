@@ -32,7 +32,19 @@ from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.crossover_scaling.parameters import VARIED, Parameters, Series
 from granular_response_paper.records import axes, column, labels, record, table
-from granular_response_paper.slab_response import NARROW, Happening, LoadPath, Measures, by_motion, locate
+from granular_response_paper.slab_response import (
+    FIRST_OPENING,
+    NARROW,
+    REACHES_FLOOR,
+    TWO_PEAKS,
+    Happening,
+    LoadPath,
+    Measures,
+    by_motion,
+    first_opening,
+    locate,
+    reaches_floor,
+)
 from granular_response_paper.survey.packings import chosen
 from granular_response_paper.tasks import computed
 
@@ -43,13 +55,11 @@ PAPERS_LAYERS = 15
 SMALL = 0.1
 
 EVENTS = {
-    "first_opening": "a contact of disks in the central third of the slab is open that touches at rest",
+    "first_opening": FIRST_OPENING,
     "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
-    "two_peaks": "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
-    "reaches_floor": "the region of opened contacts below the load contains a contact of the bottom row",
+    "two_peaks": TWO_PEAKS,
+    "reaches_floor": REACHES_FLOOR,
 }
-#: Those that are decided by which disks touch.
-OF_CONTACTS = ("first_opening", "reaches_floor")
 
 
 @record
@@ -113,24 +123,21 @@ def compute(
     measures = Measures(path)
     confinement = horizontal_force(measures)
 
-    happened: dict[str, Callable[[State], bool]] = {
-        "first_opening": lambda state: measures.opened(state) > 0,
-        "crossover": lambda state: measures.dip(state) > visible,
-        "two_peaks": measures.double_peaked,
-        "reaches_floor": lambda state: measures.region(state).reaches_floor,
+    asked = {
+        "first_opening": first_opening(measures),
+        "crossover": Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
+        "two_peaks": Happening(measures.double_peaked, TWO_PEAKS),
+        "reaches_floor": reaches_floor(measures),
     }
     forces: list[float] = []
-    left = set(happened)
+    left = list(asked.values())
     while left and len(forces) < most_forces:
         forces.append(confinement * first_force * factor ** len(forces))
         state = path.at(forces[-1])
-        left = {name for name in left if not happened[name](state)}
+        left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
     width = NARROW if scene.contact.friction else tolerance
-    found = [
-        locate(name, path, forces, Happening(happened[name], text, name in OF_CONTACTS), width)
-        for name, text in EVENTS.items()
-    ]
+    found = [locate(name, path, forces, what, width) for name, what in asked.items()]
     regions = [measures.region(state) for state in states]
     return Outcome(
         confinement,

@@ -32,12 +32,14 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.hysteresis.parameters import Parameters
 from granular_response_paper.records import axes, column, columns, labels, record, stacked, table
 from granular_response_paper.slab_response import (
+    FIRST_OPENING,
     LINEARITY,
     Happening,
     LoadPath,
     Measures,
     by_motion,
     first_change,
+    first_opening,
 )
 from granular_response_paper.survey.packings import chosen
 from granular_response_paper.tasks import computed
@@ -45,7 +47,7 @@ from granular_response_paper.tasks import computed
 #: The three ways of a loop, in turn.
 BRANCHES = ("loading", "unloading", "loading again")
 EVENTS = {
-    "first_opening": "a contact of disks in the central third of the slab is open that touches at rest",
+    "first_opening": FIRST_OPENING,
     "linear_range": f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at the smallest force",
     "reversible_range": "unloading leaves a floor force changed by more than the part left of the largest change",
 }
@@ -262,10 +264,8 @@ class Packing:
         path = self.path
         passed = sorted(path.known)
         linear = self.centre(path.known[forces[0]])
-        opening, nonlinear = (
-            Happening(lambda state: self.measures.opened(state) > 0, EVENTS["first_opening"], of_contacts=True),
-            Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"]),
-        )
+        opening = first_opening(self.measures)
+        nonlinear = Happening(lambda state: abs(self.centre(state) / linear - 1.0) > LINEARITY, EVENTS["linear_range"])
         # a loop is known of where the load turns alone, and to each further force it is a way of its own
         low, high = first_change(forces, [self.left_by(path.known[force]) > left for force in forces])
         if np.isfinite(high) and high - low > tolerance * high:
