@@ -156,18 +156,14 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 
     copies = _copies(parameters.copies, first.packing.build())
     force, of_held = parameters.copies.force, parameters.held
+    # long ones first, so that no core waits for them in the end
+    longest = sorted(enumerate(protocols), key=lambda one: -(100.0 + one[1].ramp_time) / min(one[1].time_steps))
     tasks: dict[Any, Callable[[], Any]] = {
-        "held": partial(held, parameters.base, rest, of_held.forces, of_held.displacement)
+        k: partial(ramps, base, rest, protocol, parameters.tolerance, parameters.asymmetry) for k, protocol in longest
     }
+    tasks["held"] = partial(held, parameters.base, rest, of_held.forces, of_held.displacement)
     tasks |= {name: partial(copied, first, copy, force) for name, copy in copies.items()}
-    for k, protocol in enumerate(protocols):
-        tasks[k] = partial(ramps, base, rest, protocol, parameters.tolerance, parameters.asymmetry)
-
-    def work(name: Any) -> float:
-        protocol = protocols[name] if isinstance(name, int) else None
-        return (100.0 + protocol.ramp_time) / min(protocol.time_steps) if protocol else name == "held"
-
-    done = computed(tasks, "loss of symmetry", work=work)
+    done = computed(tasks, "loss of symmetry")
     found: list[BracketResult] = [result for k in range(len(protocols)) for result in done[k]]
     datasets = {
         "brackets": slab.events_dataset([one.event for one in found]).assign(table(found, "event").variables),
