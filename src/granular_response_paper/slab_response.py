@@ -35,6 +35,7 @@ from granular_response.store.result import (
     variable,
 )
 from granular_response.sweeps.rest import rest_state
+from granular_response_paper.records import column, record, table
 
 #: A contact is mobilised when its tangential force is within one of these fractions of the Coulomb limit.
 #: Whether it slides is lost in the last vibrations before rest, which take it off the limit by a little.
@@ -43,31 +44,16 @@ MARGINS = (0.01, 0.05)
 #: The linear range ends where the response at x = 0 differs by this fraction from that to the smallest force.
 LINEARITY = 0.01
 
+#: What counts as an event.
+FIRST_OPENING = "a contact of disks in the central third of the slab is open that touches at rest"
+TWO_PEAKS = "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0"
+REACHES_FLOOR = "the region of opened contacts below the load contains a contact of the bottom row"
+
 #: What a path leaves of the force of an event, as a part of it.
 EXACT = 1e-8
 
 #: Width of the bracket of what changes between two events, as a part of the force.
 NARROW = 1e-6
-
-#: What :meth:`Measures.scalars` gives, with long names.
-SCALARS = {
-    "response_at_centre": "floor response below the loaded disk",
-    "central_dip": "how far the response at x = 0 is below the lower maximum beside it, per largest response",
-    "peak_count": "number of peaks of the floor response",
-    "double_peaked": "1 where the floor response has a peak on each side of x = 0 that exceeds it",
-    "third_peak": "1 where a double-peaked response has a further peak at x = 0",
-    "third_peak_prominence": "prominence of that third peak, per largest response; 0 without it",
-    "asymmetry": "largest difference of the response and its mirror image, per largest response",
-    "asymmetry_sign": "1 if the part of the response at x > 0 is the larger one, -1 if that at x < 0 is",
-    "peak_height": "largest floor response",
-    "half_maximum_width": f"full width at half maximum of the floor response {LENGTH}",
-    "opened_contacts": "contacts of disks in the central third that touch at rest and not under load",
-    "sliding_contacts": "contacts of disks at the Coulomb limit",
-    "teardrop_depth": f"depth of the region of opened contacts below the loaded disk {LENGTH}",
-    "teardrop_width": f"largest width of the region of opened contacts {LENGTH}",
-    "reaches_floor": "1 where the region of opened contacts reaches the bottom row",
-    "network_asymmetry": "fraction of the contacts of disks without a mirror image",
-}
 
 #: The parts of a state that a picture of its contact network and its response need.
 PICTURE = (
@@ -202,6 +188,30 @@ class Happening:
     of_contacts: bool = False  #: whether which disks touch decides it
 
 
+@record
+class Scalars:
+    """Numbers that are measured on a loaded state."""
+
+    response_at_centre: float = column("floor response below the loaded disk")
+    central_dip: float = column(
+        "how far the response at x = 0 is below the lower maximum beside it, per largest response"
+    )
+    peak_count: float = column("number of peaks of the floor response")
+    double_peaked: float = column("1 where the floor response has a peak on each side of x = 0 that exceeds it")
+    third_peak: float = column("1 where a double-peaked response has a further peak at x = 0")
+    third_peak_prominence: float = column("prominence of that third peak, per largest response; 0 without it")
+    asymmetry: float = column("largest difference of the response and its mirror image, per largest response")
+    asymmetry_sign: float = column("1 if the part of the response at x > 0 is the larger one, -1 if that at x < 0 is")
+    peak_height: float = column("largest floor response")
+    half_maximum_width: float = column(f"full width at half maximum of the floor response {LENGTH}")
+    opened_contacts: float = column("contacts of disks in the central third that touch at rest and not under load")
+    sliding_contacts: float = column("contacts of disks at the Coulomb limit")
+    teardrop_depth: float = column(f"depth of the region of opened contacts below the loaded disk {LENGTH}")
+    teardrop_width: float = column(f"largest width of the region of opened contacts {LENGTH}")
+    reaches_floor: float = column("1 where the region of opened contacts reaches the bottom row")
+    network_asymmetry: float = column("fraction of the contacts of disks without a mirror image")
+
+
 class Measures:
     """What is measured on the loaded states of one slab."""
 
@@ -270,29 +280,29 @@ class Measures:
         """Number of contacts of disks within each of ``MARGINS`` of the Coulomb limit."""
         return [int(state.pairs.near_limit(self.friction, margin).sum()) for margin in MARGINS]
 
-    def scalars(self, state: State) -> dict[str, float]:
-        """One value for each of ``SCALARS``."""
+    def scalars(self, state: State) -> Scalars:
+        """Every number that is measured."""
         x, response = self.x, self.response(state)
         largest = float(response[self.interior].max())
         region = self.region(state)
-        return {
-            "response_at_centre": self.centre(state),
-            "central_dip": self.dip(state),
-            "peak_count": peaks.peak_count(x, response, interior=self.interior),
-            "double_peaked": self.double_peaked(state),
-            "third_peak": self.third_peak(state) > 0.0,
-            "third_peak_prominence": self.third_peak(state) / largest,
-            "asymmetry": self.asymmetry(state),
-            "asymmetry_sign": asymmetry_sign(x, response),
-            "peak_height": largest,
-            "half_maximum_width": half_maximum_width(x, response),
-            "opened_contacts": self.opened(state),
-            "sliding_contacts": network.sliding_count(state, walls=False) if self.friction > 0.0 else 0,
-            "teardrop_depth": region.depth,
-            "teardrop_width": region.width,
-            "reaches_floor": region.reaches_floor,
-            "network_asymmetry": network.network_asymmetry(state.pairs, self.mirror),
-        }
+        return Scalars(
+            response_at_centre=self.centre(state),
+            central_dip=self.dip(state),
+            peak_count=peaks.peak_count(x, response, interior=self.interior),
+            double_peaked=self.double_peaked(state),
+            third_peak=self.third_peak(state) > 0.0,
+            third_peak_prominence=self.third_peak(state) / largest,
+            asymmetry=self.asymmetry(state),
+            asymmetry_sign=asymmetry_sign(x, response),
+            peak_height=largest,
+            half_maximum_width=half_maximum_width(x, response),
+            opened_contacts=self.opened(state),
+            sliding_contacts=network.sliding_count(state, walls=False) if self.friction > 0.0 else 0,
+            teardrop_depth=region.depth,
+            teardrop_width=region.width,
+            reaches_floor=region.reaches_floor,
+            network_asymmetry=network.network_asymmetry(state.pairs, self.mirror),
+        )
 
 
 def asymmetry_sign(x: FloatArray, response: FloatArray) -> int:
@@ -318,7 +328,7 @@ def half_maximum_width(x: FloatArray, response: FloatArray) -> float:
     return passes(right, right + 1) - passes(left, left - 1)
 
 
-@dataclass(frozen=True)
+@record
 class Event:
     """Where along an axis something happens for the first time: above ``low`` and not above ``high``.
 
@@ -326,11 +336,11 @@ class Event:
     at the first value of the axis already.
     """
 
-    name: str
-    friction: float  #: nan for an event on the axis of friction
-    low: float
-    high: float
-    definition: str
+    name: str = column("what happens")
+    friction: float = column("coefficient of friction, nan if it is the axis")
+    low: float = column(f"value before the event: force {FORCE}, or coefficient of friction")
+    high: float = column("value at which it has happened; nan if not up to the lower one")
+    definition: str = column("what counts as the event")
 
 
 def first_change(values: Sequence[float] | FloatArray, happened: Sequence[bool]) -> tuple[float, float]:
@@ -346,6 +356,16 @@ def locate(name: str, path: LoadPath, forces: Sequence[float], what: Happening, 
     return Event(name, path.scene.contact.friction, *path.first(forces, what, width), what.definition)
 
 
+def first_opening(measures: Measures) -> Happening:
+    """The first contact opens."""
+    return Happening(lambda state: measures.opened(state) > 0, FIRST_OPENING, of_contacts=True)
+
+
+def reaches_floor(measures: Measures) -> Happening:
+    """The open contacts reach the floor."""
+    return Happening(lambda state: measures.region(state).reaches_floor, REACHES_FLOOR, of_contacts=True)
+
+
 def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[str, Happening]:
     """What is looked for along a load path, by name.
 
@@ -353,24 +373,13 @@ def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[st
     """
     linear, force = measures.centre(smallest), abs(smallest.load_factor)
     return {
-        "first_opening": Happening(
-            lambda state: measures.opened(state) > 0,
-            "a contact of disks in the central third of the slab is open that touches at rest",
-            of_contacts=True,
-        ),
+        "first_opening": first_opening(measures),
         "linear_range": Happening(
             lambda state: abs(measures.centre(state) / linear - 1.0) > LINEARITY,
             f"the response at x = 0 differs by more than {LINEARITY:.0%} from that at force {force:g}",
         ),
-        "crossover": Happening(
-            measures.double_peaked,
-            "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
-        ),
-        "reaches_floor": Happening(
-            lambda state: measures.region(state).reaches_floor,
-            "the region of opened contacts below the load contains a contact of the bottom row",
-            of_contacts=True,
-        ),
+        "crossover": Happening(measures.double_peaked, TWO_PEAKS),
+        "reaches_floor": reaches_floor(measures),
         "third_peak": Happening(
             lambda state: measures.third_peak(state) > 0.0,
             "the double-peaked floor response has a further peak at x = 0",
@@ -392,42 +401,25 @@ def by_motion(state: State) -> bool:
     return state.reached.method == "dynamics" or any(event.kind != "stepped over" for event in lost([state]))
 
 
-def lost_dataset(found: Sequence[tuple[float, PathEvent]]) -> xr.Dataset:
-    """Lost equilibria as a table along ``lost``, each with the coefficient of friction of its path."""
+@record
+class Lost:
+    """An equilibrium that a path has lost."""
 
-    def column(values: list, long_name: str, kind: type = float) -> xr.Variable:
-        return variable("lost", np.array(values, dtype=kind), long_name)
+    friction: float = column("coefficient of friction of the path")
+    kind: str = column("how the path goes on")
+    start: float = column(f"force at which the equilibrium ends {FORCE}")
+    until: float = column(f"force at which the path goes on {FORCE}")
+    displacement: float = column(f"largest of a disk on the way {LENGTH}")
 
-    return xr.Dataset(
-        {
-            "friction": column([friction for friction, _ in found], "coefficient of friction of the path"),
-            "kind": column([event.kind for _, event in found], "how the path goes on", str),
-            "start": column([event.load_factor for _, event in found], f"force at which the equilibrium ends {FORCE}"),
-            "until": column([event.until for _, event in found], f"force at which the path goes on {FORCE}"),
-            "displacement": column(
-                [event.displacement for _, event in found], f"largest of a disk on the way {LENGTH}"
-            ),
-        }
-    )
+    @classmethod
+    def of(cls, friction: float, event: PathEvent) -> Lost:
+        """As a path with this coefficient of friction records it."""
+        return cls(friction, event.kind, event.load_factor, event.until, event.displacement)
 
 
 def events_dataset(found: Sequence[Event]) -> xr.Dataset:
     """Events as a table along ``event``."""
-
-    def column(name: str, long_name: str) -> xr.Variable:
-        values = [getattr(event, name) for event in found]
-        text = name in ("name", "definition")
-        return variable("event", values if text else np.array(values, dtype=float), long_name)
-
-    return xr.Dataset(
-        {
-            "name": column("name", "what happens"),
-            "friction": column("friction", "coefficient of friction, nan if it is the axis"),
-            "low": column("low", f"value before the event: force {FORCE}, or coefficient of friction"),
-            "high": column("high", "value at which it has happened; nan if not up to the lower one"),
-            "definition": column("definition", "what counts as the event"),
-        }
-    )
+    return table(found, "event", kind=Event)
 
 
 def states_picture(states: Sequence[State], problem: Problem, dimension: str = "state") -> xr.Dataset:
@@ -446,9 +438,8 @@ def states_picture(states: Sequence[State], problem: Problem, dimension: str = "
 
 def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
     """Everything measured on loaded states of one material, along ``state``."""
-    rows = [measures.scalars(state) for state in states]
-    data = {name: variable("state", [float(row[name]) for row in rows], text) for name, text in SCALARS.items()}
-    data |= {str(name): values.variable for name, values in certificates_dataset(states).items()}
+    data = table([measures.scalars(state) for state in states], "state")
+    data = data.assign(certificates_dataset(states).variables)
     data["floor_response"] = variable(
         ("state", "floor_disk"),
         np.stack([measures.response(state) for state in states]),
@@ -459,7 +450,7 @@ def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
         np.array([measures.mobilised(state) for state in states], dtype=float),
         "contacts of disks whose tangential force is within a fraction of the Coulomb limit",
     )
-    return xr.Dataset(data).assign_coords(
+    return data.assign_coords(
         floor_disk=variable("floor_disk", measures.disks, "index of the floor disk"),
         x=variable("floor_disk", measures.x, f"rest position from the loaded disk {LENGTH}"),
         interior=variable("floor_disk", measures.interior.astype(np.int8), "1 for disks away from the side walls"),
@@ -483,5 +474,7 @@ def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Datase
 
 
 def measured_along(dimension: str, measured: Sequence[xr.Dataset]) -> xr.Dataset:
-    """The measurements on one state each, along ``dimension``."""
-    return measured_dataset((dimension,), [([k], one) for k, one in enumerate(measured)], (len(measured),))
+    """Measurements one after the other, along ``dimension``."""
+    ends = np.cumsum([one.sizes["state"] for one in measured])
+    parts = [(slice(end - one.sizes["state"], end), one) for end, one in zip(ends, measured, strict=True)]
+    return measured_dataset((dimension,), parts, (int(ends[-1]),))

@@ -56,10 +56,11 @@ def test_an_event_is_between_the_forces_that_show_it(datasets):
 
 
 def test_a_case_is_what_its_scene_says():
-    task = next(t for t in study.tasks(Parameters(**PARAMETERS)) if t.way == "slow")
-    path = LoadPath.of(task.scene)
-    assert (task.scene.contact.friction, task.scene.wall.friction, task.scene.preparation.ramp_time) == (0.2, 0.0, 10.0)
-    assert task.run().measured["response_at_centre"][0] == Measures(path).centre(path.at(task.forces[0]))
+    task = next(t for t in study.tasks(Parameters(**PARAMETERS)).values() if t.args[0] == "slow")
+    _, scene, forces, _ = task.args
+    path = LoadPath.of(scene)
+    assert (scene.contact.friction, scene.wall.friction, scene.preparation.ramp_time) == (0.2, 0.0, 10.0)
+    assert task().measured["response_at_centre"][0] == Measures(path).centre(path.at(forces[0]))
 
 
 def test_the_figure_and_the_numbers_show_what_is_stored(datasets):

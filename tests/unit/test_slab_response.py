@@ -10,13 +10,14 @@ from granular_response.state import OPEN, SLIDING, STICKING
 from granular_response.state import Event as PathEvent
 from granular_response_paper import slab_response
 from granular_response_paper.groups.symmetry_breaking import simulate as symmetry_breaking
+from granular_response_paper.records import table
 from granular_response_paper.slab_response import (
     EXACT,
     NARROW,
-    SCALARS,
     Event,
     Happening,
     LoadPath,
+    Lost,
     Measures,
     asymmetry_sign,
     by_motion,
@@ -26,7 +27,6 @@ from granular_response_paper.slab_response import (
     happenings,
     locate,
     lost,
-    lost_dataset,
     measured,
     measured_dataset,
     states_picture,
@@ -85,10 +85,9 @@ def test_measures_know_the_symmetric_slab(path):
     assert measures.x[len(measures.x) // 2] == pytest.approx(0.0, abs=1e-9)
     state = path.at(0.05)
     scalars = measures.scalars(state)
-    assert list(scalars) == list(SCALARS)
-    assert scalars["asymmetry"] < 1e-9
-    assert scalars["opened_contacts"] == scalars["sliding_contacts"] == scalars["network_asymmetry"] == 0
-    assert scalars["response_at_centre"] == pytest.approx(scalars["peak_height"])
+    assert scalars.asymmetry < 1e-9
+    assert scalars.opened_contacts == scalars.sliding_contacts == scalars.network_asymmetry == 0
+    assert scalars.response_at_centre == pytest.approx(scalars.peak_height)
     assert measures.response(state).sum() == pytest.approx(1.0, abs=1e-9)
 
 
@@ -201,22 +200,22 @@ def test_an_event_in_a_lost_equilibrium_has_the_bracket_of_the_loss(rough):
         event = locate("event", path, [3.0, 6.0], what)
         assert (event.low, event.high) == (4.0, 4.5)
     assert lost(states) == [jump] and [by_motion(state) for state in states] == [False, True]
-    table = lost_dataset([(0.2, jump)])
-    assert [table[name].item() for name in ("friction", "kind", "start", "until", "displacement")] == [
+    found = table([Lost.of(0.2, jump)], "lost")
+    assert [found[name].item() for name in ("friction", "kind", "start", "until", "displacement")] == [
         0.2, "jump", 4.0, 4.5, 0.1,
     ]  # fmt: skip
-    assert lost_dataset([]).sizes["lost"] == 0
+    assert table([], "lost", kind=Lost).sizes["lost"] == 0
 
 
 def test_events_become_a_table():
-    table = events_dataset([Event("a", 0.2, 1.0, float("nan"), "never"), Event("b", 0.5, 1, 2, "x")])
-    assert table["name"].values.tolist() == ["a", "b"]
-    assert table["definition"].values.tolist() == ["never", "x"]
-    assert np.isnan(table["high"].values[0])
-    assert table["low"].values.tolist() == [1.0, 1.0]
-    for name in table.variables:
-        assert table[name].attrs["long_name"]
-        assert table[name].attrs["units"] == "1"
+    found = events_dataset([Event("a", 0.2, 1.0, float("nan"), "never"), Event("b", 0.5, 1, 2, "x")])
+    assert found["name"].values.tolist() == ["a", "b"]
+    assert found["definition"].values.tolist() == ["never", "x"]
+    assert np.isnan(found["high"].values[0])
+    assert found["low"].values.tolist() == [1.0, 1.0]
+    for name in found.variables:
+        assert found[name].attrs["long_name"]
+        assert found[name].attrs["units"] == "1"
 
 
 def test_measurements_are_spread_over_a_grid(path):

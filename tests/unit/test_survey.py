@@ -1,6 +1,5 @@
 """The survey's parameters, that its runs go on where they were, and packings that it makes for figure groups."""
 
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ from granular_response.sweeps.resources import using
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import AT_REST
 from granular_response_paper.pipeline import group_member
+from granular_response_paper.records import column, record
 from granular_response_paper.survey import larger, packings
 from granular_response_paper.survey import simulate as survey
 
@@ -110,20 +110,31 @@ def test_its_pipeline_names_a_stage_and_the_sources_of_every_block():
     assert stage["foreach"] == list(larger.GROUPS)
 
 
-@dataclass(frozen=True)
+@record
+class Slab:
+    """What tells a packing from others."""
+
+    friction: float = column("coefficient of friction")
+    layers: int = column("number of rows")
+
+
+@record
 class Measured:
     """What a group might measure on a packing."""
 
-    height: float
-    depth: np.ndarray
-    profile: np.ndarray
+    height: float = column("height")
+    depth: np.ndarray = column("depth", "line")
+    profile: np.ndarray = column("profile", "line", "t")
 
 
-LAYOUT = packings.Layout(
-    Measured,
-    {"friction": "coefficient of friction", "layers": "number of rows"},
-    {"height": ((), "height"), "depth": (("line",), "depth"), "profile": (("line", "t"), "profile")},
-)
+@record
+class More(Measured):
+    single: float = column("another")
+
+
+@record
+class Later(Measured):
+    single: float = column("another", later=True)
 
 
 def measured(lines):
@@ -132,31 +143,30 @@ def measured(lines):
 
 def test_packings_are_read_as_they_were_stored(tmp_path):
     """With different numbers of lines, in single precision; what filled them up is gone."""
-    given = {(0.2, 20): measured(4), (0.2, 40): measured(6)}
+    given = {Slab(0.2, 20): measured(4), Slab(0.2, 40): measured(6)}
     path = tmp_path / "group.nc"
-    store.write(path, labelled({packings.DATASET: packings.dataset(LAYOUT, given, [1.0, 2.0])}))
-    found = packings.read(path, LAYOUT)
+    store.write(path, labelled({packings.DATASET: packings.dataset(given, [1.0, 2.0])}))
+    found = packings.read(path, Slab, Measured)
     assert list(found) == list(given)
     for key, one in given.items():
         assert found[key].height == one.height
         np.testing.assert_allclose(found[key].depth, one.depth, rtol=1e-7)
         np.testing.assert_allclose(found[key].profile, one.profile, rtol=1e-7)
-    (found,) = packings.chosen(str(path), LAYOUT, {"deep": (0.2, 40)}).items()
+    (found,) = packings.chosen(str(path), Measured, {"deep": Slab(0.2, 40)}).items()
     assert found[0] == "deep" and found[1].depth.size == 6
-    assert packings.chosen(None, LAYOUT, {}) == {}
+    assert packings.chosen(None, Measured, {}) == {}
     with pytest.raises(store.StoreError, match=r"has no packing of friction 0\.5, layers 20; make survey"):
-        packings.chosen(str(path), LAYOUT, {"one": (0.2, 20), "other": (0.5, 20)})
-    other = packings.Layout(Measured, LAYOUT.keys, {**LAYOUT.values, "single": ((), "another")})
+        packings.chosen(str(path), Measured, {"one": Slab(0.2, 20), "other": Slab(0.5, 20)})
     with pytest.raises(store.StoreError, match=r"is no file of packings of the survey, lacks single"):
-        packings.read(path, other)
+        packings.read(path, Slab, More)
 
 
 def test_a_number_that_files_of_earlier_versions_lack_is_not_recorded(tmp_path):
     path = tmp_path / "group.nc"
-    given = packings.dataset(LAYOUT, {(0.2, 20): measured(4)}, [1.0])
-    store.write(path, labelled({packings.DATASET: given.drop_vars("height")}))
-    (found,) = packings.read(path, replace(LAYOUT, later=("height",))).values()
-    assert np.isnan(found.height) and found.depth.size == 4
+    given = packings.dataset({Slab(0.2, 20): measured(4)}, [1.0])
+    store.write(path, labelled({packings.DATASET: given}))
+    (found,) = packings.read(path, Slab, Later).values()
+    assert np.isnan(found.single) and found.depth.size == 4
 
 
 #: The same case or series without and with a part left to the survey.

@@ -15,7 +15,7 @@ from granular_response_paper.groups.stability import simulate as stability
 from granular_response_paper.pipeline import simulation
 from granular_response_paper.trials import closed_forms, random_scenes, time_steps
 from granular_response_paper.trials.rounding import disturb
-from granular_response_paper.trials.time_steps import SETTLES, StepTrial, scene_of
+from granular_response_paper.trials.time_steps import SETTLES, scene_of, tried
 
 PARAMETERS = simulation.parameters("stability", Path(__file__).parents[2] / "params.yaml")[0]
 SEED = PARAMETERS["seed"]
@@ -46,10 +46,10 @@ def test_the_predicted_time_step_is_neither_too_long_nor_much_too_short(integrat
     if integrator == "leapfrog" and changes == {"contact.damping_ratio": 0.0}:
         changes = {"contact.damping_ratio": 0.02}  # it adds no damping of its own: without any, no kick dies out
     scene = scene_of(Scene.from_dict(SMALL), changes)
-    ((limit, outcomes),) = StepTrial(scene, (integrator,), (0.95, 2.0), 4000, SEED).run()
-    assert limit > 0
-    assert outcomes[0] == SETTLES
-    assert outcomes[1] in (time_steps.CYCLES, time_steps.BLOWS_UP)
+    (found,) = tried(scene, (integrator,), (0.95, 2.0), 4000, SEED)
+    assert found.limit > 0
+    assert found.outcome[0] == SETTLES
+    assert found.outcome[1] in (time_steps.CYCLES, time_steps.BLOWS_UP)
 
 
 # Energy
@@ -101,7 +101,7 @@ def test_undamped_energy_stays_and_friction_only_takes_it(integrator):
 
     def change(friction: float, part: float, system: str = "slab") -> np.ndarray:
         scene = base.updated({"contact.friction": friction})
-        return stability.DriftTask(scene, system, integrator, part, 5.0, kick, SEED).run()[1]
+        return stability.drift(scene, system, integrator, part, 5.0, kick, SEED).energy_change
 
     for system in ("slab", "bouncing disk"):
         coarse, fine = (np.abs(change(0.0, p, system)).max() for p in (2.0 * part, 0.5 * part))

@@ -1,6 +1,6 @@
 """The stored survey: a few of its realizations simulated again, and that it holds what its parameters and notes say."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -13,6 +13,7 @@ from granular_response.observe.floor import smoothed_response
 from granular_response.store import files as store
 from granular_response_paper.ensembles import AT_REST, NOT_REACHED
 from granular_response_paper.pipeline import simulation
+from granular_response_paper.records import columns
 from granular_response_paper.survey import larger, packings
 from granular_response_paper.survey import simulate as survey
 
@@ -78,6 +79,13 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
     assert yaml.safe_load(marks["parameters"])["collapse_depth"] == PARAMETERS.collapse_depth
 
 
+def of_survey(group):
+    """The tasks that a group leaves to the survey, and what is stored of them, by what tells packings apart."""
+    simulate = import_module(f"granular_response_paper.groups.{group}.simulate")
+    tasks = simulate.survey(OF_GROUPS[group])
+    return tasks, packings.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), simulate.Outcome)
+
+
 @pytest.mark.parametrize(
     ("group", "key"),
     [
@@ -91,33 +99,31 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
 )
 def test_a_packing_of_a_figure_group_is_found_again(group, key):
     """``key`` may be the beginning of one."""
-    simulate = import_module(f"granular_response_paper.groups.{group}.simulate")
-    tasks = simulate.survey(OF_GROUPS[group])
-    key = next(one for one in tasks if one[: len(key)] == key)
-    kept = packings.read(FOLDER / "data" / f"{group}.nc", simulate.STORED)[key]
-    again = simulate.compute(tasks[key])
-    sampled = "force" in simulate.STORED.values and len(kept.force) != len(again.force)
-    for name, (dims, _) in simulate.STORED.values.items():
+    tasks, stored = of_survey(group)
+    key = next(one for one in tasks if astuple(one)[: len(key)] == key)
+    kept, again = stored[key], tasks[key]()
+    sampled = hasattr(again, "force") and len(kept.force) != len(again.force)
+    for name, column in columns(type(again)).items():
         values = getattr(again, name)
-        if name in simulate.STORED.later and np.isnan(getattr(kept, name)):
+        if column.later and np.isnan(getattr(kept, name)):
             continue  # not recorded
-        if sampled and packings.RAGGED in dims:
+        if sampled and packings.RAGGED in column.dims:
             continue  # at other forces
-        stored, near = getattr(kept, name), SAME * np.nanmax(np.abs(values))
+        before, near = getattr(kept, name), SAME * np.nanmax(np.abs(values))
         if name == "brackets":  # some wider than others: they overlap
-            assert np.array_equal(np.isnan(stored), np.isnan(values))
-            low, high = np.maximum(stored, values)[:, 0], np.minimum(stored, values)[:, 1]
+            assert np.array_equal(np.isnan(before), np.isnan(values))
+            low, high = np.maximum(before, values)[:, 0], np.minimum(before, values)[:, 1]
             assert not (low > high + near).any()
         else:
-            np.testing.assert_allclose(stored, values, atol=near, err_msg=name)
+            np.testing.assert_allclose(before, values, atol=near, err_msg=name)
 
 
 @pytest.mark.parametrize("group", larger.GROUPS)
 def test_the_packings_of_a_figure_group_are_those_that_its_parameters_leave_to_the_survey(group):
-    simulate = import_module(f"granular_response_paper.groups.{group}.simulate")
     path = FOLDER / "data" / f"{group}.nc"
+    tasks, stored = of_survey(group)
     assert (ROOT / OF_GROUPS[group].survey_file) == path
-    assert set(packings.read(path, simulate.STORED)) == set(simulate.survey(OF_GROUPS[group]))
+    assert set(stored) == set(tasks)
     marks = store.read_attributes(path)
     assert marks["block"] == group
     given = simulation.parameters(group, ROOT / "params.yaml")[0]

@@ -1,16 +1,13 @@
 """Packings of figure groups that the pipeline has no time for: higher ones, and more realizations.
 
-A group says in its section of ``params.yaml`` which packings are the survey's. Its ``simulate.py`` has what a packing
-takes: ``survey``, their tasks by what tells them apart, ``compute``, and ``STORED``, how the outcomes are kept. So they
-are made as those of the pipeline are. Finished ones are kept as those of :mod:`.simulate`, under names made from all
-sources that an outcome depends on and from the task.
+A group says in its section of ``params.yaml`` which packings are the survey's. ``survey`` of its ``simulate.py`` has
+their tasks by what tells them apart, so they are made as those of the pipeline are. Finished ones are kept as those of
+:mod:`.simulate`, under names made from all sources that an outcome depends on and from the task.
 """
 
 from __future__ import annotations
 
 import functools
-import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +19,7 @@ from granular_response_paper import PACKAGE
 from granular_response_paper.datasets import labelled
 from granular_response_paper.pipeline import group_member, simulation
 from granular_response_paper.survey import packings
-from granular_response_paper.survey.simulate import origin
+from granular_response_paper.survey.simulate import clocked, origin
 
 #: Groups with packings of this kind.
 GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
@@ -32,21 +29,6 @@ def sources_of(group: str) -> tuple[str, ...]:
     """The sources that an outcome depends on."""
     mechanics = ("contact", "kernels", "machine", "observe", "scene", "solve", "state", "theory")
     return (*mechanics, f"{PACKAGE}/slab_response.py", f"{PACKAGE}/groups/{group}/simulate.py")
-
-
-@dataclass(frozen=True)
-class Timed:
-    """A packing and the processor time that it took, in seconds."""
-
-    outcome: Any
-    seconds: float
-
-
-def timed(group: str, task: Any) -> Timed:
-    """One packing."""
-    start = time.process_time()
-    outcome = group_member(group, "simulate", "compute")(task)
-    return Timed(outcome, time.process_time() - start)
 
 
 def run(
@@ -67,11 +49,12 @@ def run(
     given, parameters = simulation.parameters(group, parameter_file)
     output = folder / "data" / f"{group}.nc"
     store.check_writable(output, [parameter_file])
-    tasks: dict[packings.Key, Any] = group_member(group, "simulate", "survey")(parameters)
-    order = sorted(tasks, key=lambda key: tasks[key].scene.packing.disk_count)
+    tasks: dict[Any, functools.partial[Any]] = group_member(group, "simulate", "survey")(parameters)
+    # the first argument of each is its scene
+    order = sorted(tasks, key=lambda key: tasks[key].args[0].packing.disk_count)
     with using(packages=(PACKAGE,)):
         found = map_tasks(
-            functools.partial(timed, group),
+            clocked,
             [tasks[key] for key in order],
             workers=workers,
             scheduler=scheduler,
@@ -81,11 +64,7 @@ def run(
             what=f"packings of {group}",
         )
     by_key = dict(zip(order, found, strict=True))
-    dataset = packings.dataset(
-        group_member(group, "simulate", "STORED"),
-        {key: by_key[key].outcome for key in tasks},
-        [by_key[key].seconds for key in tasks],
-    )
+    dataset = packings.dataset({key: by_key[key].found for key in tasks}, [by_key[key].seconds for key in tasks])
     scene = parameters.base  # type: ignore[attr-defined]
     attributes = {"block": group, "parameters": text.write(given)} | origin(sources_of(group), scene)
     store.write(output, labelled({packings.DATASET: dataset}, scene), attributes)

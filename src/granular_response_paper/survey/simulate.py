@@ -11,10 +11,12 @@ from __future__ import annotations
 import json
 import platform
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib import metadata
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -37,6 +39,8 @@ from granular_response_paper.groups.polydisperse_averages.ensemble.realizations 
 )
 from granular_response_paper.groups.polydisperse_averages.parameters import Case
 from granular_response_paper.survey.parameters import Parameters
+
+Found = TypeVar("Found")
 
 #: The sources that a realization depends on.
 SOURCES = (
@@ -74,18 +78,23 @@ class SurveyError(GranularError):
 
 
 @dataclass(frozen=True)
-class Timed:
-    """A realization and the processor time that it took, in seconds."""
+class Timed(Generic[Found]):
+    """What a task found and the processor time that it took, in seconds."""
 
-    found: Realization
+    found: Found
     seconds: float
 
 
-def timed(task: Task) -> Timed:
-    """One realization; what fails is part of the result."""
+def clocked(task: Callable[[], Found]) -> Timed[Found]:
+    """What a task finds."""
     start = time.process_time()
-    found = realize(task)
+    found = task()
     return Timed(found, time.process_time() - start)
+
+
+def timed(task: Task) -> Timed[Realization]:
+    """One realization; what fails is part of the result."""
+    return clocked(partial(realize, task))
 
 
 def read_parameters(path: Path) -> Parameters:
@@ -150,7 +159,7 @@ def run(
     return output
 
 
-def block_datasets(cases: list[Case], found: list[Timed]) -> dict[str, xr.Dataset]:
+def block_datasets(cases: list[Case], found: list[Timed[Realization]]) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles`` and ``packings`` of a block, in the layout of ``polydisperse_averages`` and small."""
     realized = [one.found for one in found]
     walls = [case.friction if case.wall_friction is None else case.wall_friction for case in cases]

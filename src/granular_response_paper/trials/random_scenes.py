@@ -15,7 +15,6 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -27,6 +26,7 @@ from granular_response.solve import SOLVE_ERRORS, Solution, solve_scene
 from granular_response.solve.choice import finishes_statically
 from granular_response.state import FLOOR, State
 from granular_response.sweeps.tasks import map_tasks
+from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost
 from granular_response_paper.trials.audit import Audit, ContactRule, audit
 
@@ -61,7 +61,7 @@ _ERRORS = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class Trial:
     """What became of one scene; the numbers are those of its worst state, NaN after an error."""
 
@@ -70,13 +70,13 @@ class Trial:
     kind: str  #: packing
     method: str  #: asked for
     integrator: str
-    friction: float
-    disks: int
-    states: int  #: how many were checked
-    force_residual: float
-    torque_residual: float
-    coulomb_excess: float
-    twin_difference: float = float("nan")  #: largest difference of floor responses, over the load
+    friction: float = column("coefficient of friction between disks")
+    disks: int = column("number of disks, 0 after an error")
+    states: int = column("states that were checked")
+    force_residual: float = column("largest unbalanced force, summed anew from positions, in mean disk weights")
+    torque_residual: float = column("largest unbalanced torque")
+    coulomb_excess: float = column("largest friction force beyond Coulomb's limit")
+    twin_difference: float = column("largest difference of floor responses to the mirrored twin, over the load")
 
 
 def draw(

@@ -8,7 +8,7 @@ of small events decides, it changes by more, and then digits beyond that change 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,19 +17,22 @@ from granular_response.scene import Scene
 from granular_response.solve import Problem, loaded_states, minimise, rest_state
 from granular_response.solve.equilibrium import finish
 from granular_response.state import State
+from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost
 
 
-@dataclass(frozen=True)
+@record
 class Disturbed:
     """What a displacement of the rest state changes."""
 
-    rest_change: float  #: largest displacement that is left after the return to equilibrium (mean radii)
-    response_change: float  #: largest change of the floor response, per its largest value
-    excess_coordination: float  #: contacts of bearing disks over what isostaticity needs, per bearing disk
-    loose_disks: int
-    negative_modes: int | None
-    lost: int  #: equilibria that the path has lost
+    rest_change: float = column(
+        "largest displacement left after the disturbed rest state is back in equilibrium, in mean radii"
+    )
+    response_change: float = column("largest change of the floor response by the disturbance, per its largest value")
+    excess_coordination: float = column("contacts per bearing disk beyond the isostatic number")
+    loose_disks: int = column("disks with fewer than two contacts")
+    negative_modes: int | None = column("negative modes of the rest state")
+    lost: int = column("equilibria that the path has lost")
 
 
 def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:

@@ -7,15 +7,18 @@ motion grows until contacts open and slide, and either goes on for ever or blows
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from granular_response.scene import Scene
 from granular_response.solve import SOLVE_ERRORS, Dynamics, DynamicsError, Problem, loaded_states, rest_state
 from granular_response.solve.timestep import stability_limit
 from granular_response.state import State
+from granular_response_paper.records import column, record
 
 #: What becomes of a kick.
 SETTLES, CYCLES, BLOWS_UP, NO_REST = 0, 1, 2, 3
@@ -31,29 +34,30 @@ LOOK_EVERY = 100
 GROWN, FALLEN = 1e10, 0.3
 
 
-@dataclass(frozen=True)
-class StepTrial:
-    """One scene, the integrators, and the time steps to try with each, as parts of its predicted limit."""
+@record
+class Steps:
+    """One scene and integrator."""
 
-    scene: Scene
-    integrators: tuple[str, ...]
-    ratios: tuple[float, ...]
-    steps: int
-    seed: int
+    limit: float = column("predicted largest stable time step in sqrt(radius/g)")
+    outcome: NDArray[np.int8] = column(
+        "what becomes of a kick: " + ", ".join(f"{code} {text}" for code, text in enumerate(OUTCOMES)), "ratio"
+    )
 
-    def run(self) -> list[tuple[float, list[int]]]:
-        """For each integrator the predicted limit (sqrt(R/g)), and what becomes of the kick at each time step."""
-        problem = Problem.from_scene(self.scene)
-        limits = [stability_limit(problem, integrator) for integrator in self.integrators]
-        try:
-            problem, state, load = prepared(problem)
-        except SOLVE_ERRORS:
-            return [(limit, [NO_REST] * len(self.ratios)) for limit in limits]
-        kicked = kick(problem, state, self.seed)
-        return [
-            (limit, [outcome(problem, kicked, load, name, ratio * limit, self.steps) for ratio in self.ratios])
-            for name, limit in zip(self.integrators, limits, strict=True)
-        ]
+
+def tried(scene: Scene, integrators: Sequence[str], ratios: Sequence[float], steps: int, seed: int) -> list[Steps]:
+    """For each integrator, what becomes of a kick at time steps that are ``ratios`` of its predicted limit."""
+    problem = Problem.from_scene(scene)
+    limits = [stability_limit(problem, integrator) for integrator in integrators]
+    try:
+        problem, state, load = prepared(problem)
+    except SOLVE_ERRORS:
+        return [Steps(limit, np.full(len(ratios), NO_REST, np.int8)) for limit in limits]
+    kicked = kick(problem, state, seed)
+    found = []
+    for name, limit in zip(integrators, limits, strict=True):
+        outcomes = [outcome(problem, kicked, load, name, ratio * limit, steps) for ratio in ratios]
+        found.append(Steps(limit, np.array(outcomes, np.int8)))
+    return found
 
 
 def prepared(problem: Problem) -> tuple[Problem, State, float]:

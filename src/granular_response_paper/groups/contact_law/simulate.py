@@ -6,39 +6,36 @@ rest under the linear law, both give the same force. ``responses`` holds the flo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.contact_law.parameters import Parameters
+from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.slab_response import LoadPath, Measures
+from granular_response_paper.tasks import computed
 
 LAWS = ("linear", "hertz")
 
 
-@dataclass(frozen=True)
-class Task:
+@record
+class Outcome:
     """One law at one friction."""
 
-    scene: Scene  #: linear, with one load of unit force
-    law: str  #: of LAWS
-    forces: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Outcome:
-    x: FloatArray  #: (floor_disk,)
-    response: FloatArray  #: (force, floor_disk)
-    residual: FloatArray  #: (force,) largest unbalanced force
-    opened: FloatArray  #: (force,) contacts that the load opened in the central third
-    typical_force: float  #: by the linear law
-    stiffness: float  #: contact.normal_stiffness
+    floor_response: FloatArray = column("floor response per applied force", "force", "floor_disk")
+    opened_contacts: NDArray[np.intp] = column("contacts of disks that the load opened, central third", "force")
+    force_residual: FloatArray = column(f"largest unbalanced force on a disk {FORCE}", "force")
+    typical_force: float = column(f"mean normal force between disks at rest by the linear law {FORCE}")
+    normal_stiffness: float = column(
+        "contact.normal_stiffness: of the 3/2 law at a normal force of one mean disk weight"
+    )
+    x: FloatArray = column(f"rest position from the loaded disk, linear law {LENGTH}", "floor_disk")
 
 
 def matched_stiffness(stiffness: float, force: float) -> float:
@@ -50,25 +47,25 @@ def matched_stiffness(stiffness: float, force: float) -> float:
     return 1.5 * stiffness / force ** (1.0 / 3.0)
 
 
-def compute(task: Task) -> Outcome:
-    """Raises what the solvers raise."""
-    path = LoadPath.of(task.scene)
+def compute(scene: Scene, law: str, forces: tuple[float, ...]) -> Outcome:
+    """``scene`` is linear, with one load of unit force; raises what the solvers raise."""
+    path = LoadPath.of(scene)
     force = typical_force(path.rest)
-    stiffness = task.scene.contact.normal_stiffness
-    if task.law == "hertz":
+    stiffness = scene.contact.normal_stiffness
+    if law == "hertz":
         stiffness = matched_stiffness(stiffness, force)
         # contacts are stiffer under more force: the paper's time step is just too long for them
-        law = {"contact.law": "hertz", "contact.normal_stiffness": stiffness, "protocol.time_step": "auto"}
-        path = LoadPath.of(task.scene.updated(law))
+        changes = {"contact.law": "hertz", "contact.normal_stiffness": stiffness, "protocol.time_step": "auto"}
+        path = LoadPath.of(scene.updated(changes))
     measures = Measures(path)
-    states = path.through(task.forces)
+    states = path.through(forces)
     return Outcome(
-        measures.x,
         np.array([measures.response(state) for state in states]),
-        np.array([state.certificate.force_residual for state in states]),
         np.array([measures.opened(state) for state in states]),
+        np.array([state.certificate.force_residual for state in states]),
         force,
         stiffness,
+        measures.x,
     )
 
 
@@ -81,48 +78,29 @@ def typical_force(rest: State) -> float:
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``responses``."""
     scenes = [parameters.base.updated({"contact.friction": mu}) for mu in parameters.friction]
+    tasks = {
+        (f, k): partial(compute, scene, law, parameters.forces)
+        for f, scene in enumerate(scenes)
+        for k, law in enumerate(LAWS)
+    }
     # the longest first
-    tasks = [Task(scene, law, parameters.forces) for law in reversed(LAWS) for scene in reversed(scenes)]
-    solved = map_tasks(compute, tasks)[::-1]
-    linear = solved[: len(scenes)]
-    outcomes = list(zip(linear, solved[len(scenes) :], strict=True))
-    response = np.stack([[o.response for o in laws] for laws in outcomes])
-    largest = np.abs(response[:, 0]).max(axis=-1)
-    along = ("friction", "law", "force")
-    data = xr.Dataset(
-        {
-            "floor_response": variable((*along, "floor_disk"), response, "floor response per applied force"),
-            "difference": variable(
-                ("friction", "force"),
-                np.abs(response[:, 1] - response[:, 0]).max(axis=-1) / largest,
-                "largest difference of the responses by the two laws, per largest response by the linear one",
-            ),
-            "opened_contacts": variable(
-                along,
-                np.stack([[o.opened for o in laws] for laws in outcomes]),
-                "contacts of disks that the load opened, central third",
-            ),
-            "force_residual": variable(
-                along,
-                np.stack([[o.residual for o in laws] for laws in outcomes]),
-                f"largest unbalanced force on a disk {FORCE}",
-            ),
-            "typical_force": variable(
-                "friction",
-                [o.typical_force for o in linear],
-                f"mean normal force between disks at rest by the linear law {FORCE}",
-            ),
-            "normal_stiffness": variable(
-                ("friction", "law"),
-                [[o.stiffness for o in laws] for laws in outcomes],
-                "contact.normal_stiffness: of the 3/2 law at a normal force of one mean disk weight",
-            ),
-        },
-        coords={
-            "friction": variable("friction", parameters.friction, "coefficient of friction between disks"),
-            "law": variable("law", list(LAWS), "contact law"),
-            "force": variable("force", parameters.forces, f"applied force {FORCE}"),
-            "x": variable("floor_disk", linear[0].x, f"rest position from the loaded disk, linear law {LENGTH}"),
-        },
+    data = table(computed(tasks, "slabs", work=lambda place: place[::-1]), "friction", "law")
+    response = data["floor_response"].values
+    data["difference"] = variable(
+        ("friction", "force"),
+        np.abs(response[:, 1] - response[:, 0]).max(axis=-1) / np.abs(response[:, 0]).max(axis=-1),
+        "largest difference of the responses by the two laws, per largest response by the linear one",
     )
-    return labelled({"responses": data}, parameters.base)
+    linear = {name: data[name].variable.isel(law=0) for name in ("typical_force", "x")}
+    data = (
+        data.assign(typical_force=linear["typical_force"])
+        .drop_vars("x")
+        .assign_coords(
+            axes(
+                friction=(parameters.friction, "coefficient of friction between disks"),
+                law=(LAWS, "contact law"),
+                force=(parameters.forces, f"applied force {FORCE}"),
+            )
+        )
+    )
+    return labelled({"responses": data.assign_coords(x=linear["x"].isel(friction=0))}, parameters.base)

@@ -18,8 +18,8 @@ The deepest slabs are simulated by the survey (:mod:`granular_response_paper.sur
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import astuple, dataclass
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 import xarray as xr
@@ -29,11 +29,24 @@ from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.crossover_scaling.parameters import VARIED, Parameters, Series
-from granular_response_paper.slab_response import NARROW, Happening, LoadPath, Measures, by_motion, locate
-from granular_response_paper.survey.packings import Key, Layout, chosen
+from granular_response_paper.records import axes, column, labels, record, table
+from granular_response_paper.slab_response import (
+    FIRST_OPENING,
+    NARROW,
+    REACHES_FLOOR,
+    TWO_PEAKS,
+    Happening,
+    LoadPath,
+    Measures,
+    by_motion,
+    first_opening,
+    locate,
+    reaches_floor,
+)
+from granular_response_paper.survey.packings import chosen
+from granular_response_paper.tasks import computed
 
 #: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
 PAPERS_LAYERS = 15
@@ -42,36 +55,31 @@ PAPERS_LAYERS = 15
 SMALL = 0.1
 
 EVENTS = {
-    "first_opening": "a contact of disks in the central third of the slab is open that touches at rest",
+    "first_opening": FIRST_OPENING,
     "crossover": "the floor response at x = 0 is visibly below both maxima beside it",
-    "two_peaks": "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
-    "reaches_floor": "the region of opened contacts below the load contains a contact of the bottom row",
+    "two_peaks": TWO_PEAKS,
+    "reaches_floor": REACHES_FLOOR,
 }
-#: Those that are decided by which disks touch.
-OF_CONTACTS = ("first_opening", "reaches_floor")
 
 
-@dataclass(frozen=True)
+@record
 class Slab:
     """One slab; series share what they have in common."""
 
-    layers: int
-    disks_per_row: int
-    friction: float
-    normal_stiffness: float
-    confinement: float  #: asked for; of no meaning between walls
-    periodic: bool
-
-    @property
-    def key(self) -> Key:
-        """As :data:`STORED` names it."""
-        return astuple(self)
+    layers: int = column("number of rows of the slab")
+    disks_per_row: int = column("disks in the bottom row")
+    friction: float = column("coefficient of friction between disks")
+    normal_stiffness: float = column("normal stiffness of contacts in mean weights per mean radius")
+    asked_confinement: float = column(
+        f"force of horizontal contacts that is asked for {FORCE}"
+    )  #: of no meaning between walls
+    periodic: bool = column("1 for periodic sides, 0 for walls")
 
     def scene(self, base: Scene) -> Scene:
         """``base`` with this slab; between walls disks just touch, as in the paper."""
         packing: dict[str, int | float | str] = {"layers": self.layers, "disks_per_row": self.disks_per_row}
         if self.periodic:
-            packing |= {"sides": "periodic", "lattice_constant": 2.0 - self.confinement / self.normal_stiffness}
+            packing |= {"sides": "periodic", "lattice_constant": 2.0 - self.asked_confinement / self.normal_stiffness}
         return base.updated(
             {
                 "packing": packing,
@@ -81,90 +89,55 @@ class Slab:
         )
 
 
-@dataclass(frozen=True)
-class Task:
-    slab: Slab
-    scene: Scene
-    visible: float
-    first_force: float
-    factor: float
-    most_forces: int
-    tolerance: float
-
-
-@dataclass(frozen=True)
+@record
 class Outcome:
     """What a task leaves behind; arrays along its forces."""
 
-    confinement: float  #: mean force of horizontal contacts in the central third, at rest
-    linear_opening: float  #: force at which the first contact would open, by their answers to a small force
-    brackets: FloatArray  #: (event, 2) of EVENTS; nan above for what was not seen
-    by_motion: float  #: steps of the force to which the motion of the disks led
-    force: FloatArray
-    dip: FloatArray
-    depth: FloatArray
-    width: FloatArray
-    opened: FloatArray
+    confinement: float = column(f"mean force of horizontal contacts in the central third at rest {FORCE}")
+    linear_opening: float = column(
+        f"force {FORCE} at which the first contact would open if contacts went on as under a small one"
+    )
+    brackets: FloatArray = column(
+        f"forces {FORCE} between which: {'; '.join(EVENTS.values())}", "event", "bracket"
+    )  #: nan above for what was not seen
+    by_motion: float = column(
+        "steps of the force in which the motion of the disks had a part; nan: not recorded", later=True
+    )
+    force: FloatArray = column(f"applied force {FORCE}", "line")
+    dip: FloatArray = column(
+        "how far the response at x = 0 is below the lower maximum beside it, per largest response", "line"
+    )
+    depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {LENGTH}", "line")
+    width: FloatArray = column(f"largest width of the region of opened contacts {LENGTH}", "line")
+    opened: FloatArray = column("contacts of the region", "line")
 
 
-#: What is measured at each force, with long names.
-MEASURED = {
-    "force": f"applied force {FORCE}",
-    "dip": "how far the response at x = 0 is below the lower maximum beside it, per largest response",
-    "depth": f"depth of the region of opened contacts below the loaded disk {LENGTH}",
-    "width": f"largest width of the region of opened contacts {LENGTH}",
-    "opened": "contacts of the region",
-}
-CONFINEMENT = f"mean force of horizontal contacts in the central third at rest {FORCE}"
-LINEAR_OPENING = f"force {FORCE} at which the first contact would open if contacts went on as under a small one"
-BY_MOTION = "steps of the force in which the motion of the disks had a part; nan: not recorded"
+def compute(
+    scene: Scene, visible: float, first_force: float, factor: float, most_forces: int, tolerance: float
+) -> Outcome:
+    """The path of one slab; the parameters are those of the group.
 
-#: How the survey stores slabs.
-STORED = Layout(
-    Outcome,
-    {
-        "layers": "number of rows of the slab",
-        "disks_per_row": "disks in the bottom row",
-        "friction": "coefficient of friction between disks",
-        "normal_stiffness": "normal stiffness of contacts in mean weights per mean radius",
-        "asked_confinement": f"force of horizontal contacts that is asked for {FORCE}",
-        "periodic": "1 for periodic sides, 0 for walls",
-    },
-    {
-        "confinement": ((), CONFINEMENT),
-        "linear_opening": ((), LINEAR_OPENING),
-        "brackets": (("event", "bracket"), f"forces {FORCE} between which: {'; '.join(EVENTS.values())}"),
-        "by_motion": ((), BY_MOTION),
-        **{name: (("line",), text) for name, text in MEASURED.items()},
-    },
-    later=("by_motion",),
-)
-
-
-def compute(task: Task) -> Outcome:
-    """Raises what ``rest_state`` and load paths raise."""
-    path = LoadPath.of(task.scene)
+    Raises what ``rest_state`` and load paths raise.
+    """
+    path = LoadPath.of(scene)
     measures = Measures(path)
     confinement = horizontal_force(measures)
 
-    happened: dict[str, Callable[[State], bool]] = {
-        "first_opening": lambda state: measures.opened(state) > 0,
-        "crossover": lambda state: measures.dip(state) > task.visible,
-        "two_peaks": measures.double_peaked,
-        "reaches_floor": lambda state: measures.region(state).reaches_floor,
+    asked = {
+        "first_opening": first_opening(measures),
+        "crossover": Happening(lambda state: measures.dip(state) > visible, EVENTS["crossover"]),
+        "two_peaks": Happening(measures.double_peaked, TWO_PEAKS),
+        "reaches_floor": reaches_floor(measures),
     }
     forces: list[float] = []
-    left = set(happened)
-    while left and len(forces) < task.most_forces:
-        forces.append(confinement * task.first_force * task.factor ** len(forces))
+    left = list(asked.values())
+    while left and len(forces) < most_forces:
+        forces.append(confinement * first_force * factor ** len(forces))
         state = path.at(forces[-1])
-        left = {name for name in left if not happened[name](state)}
+        left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
-    width = NARROW if task.slab.friction else task.tolerance
-    found = [
-        locate(name, path, forces, Happening(happened[name], text, name in OF_CONTACTS), width)
-        for name, text in EVENTS.items()
-    ]
+    width = NARROW if scene.contact.friction else tolerance
+    found = [locate(name, path, forces, what, width) for name, what in asked.items()]
     regions = [measures.region(state) for state in states]
     return Outcome(
         confinement,
@@ -261,17 +234,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """
     found = slabs(parameters)
     stored = _surveyed(parameters)
-    # the longest first, so that no worker is left with one at the end
-    order = sorted({slab for _, slab in found if slab not in stored}, key=_work, reverse=True)
-    tasks = [_task(slab, parameters) for slab in order]
-    done = dict(zip(order, map_tasks(compute, tasks, what="slabs"), strict=True))
-    done |= chosen(parameters.survey_file, STORED, {slab: slab.key for slab in stored})
-    outcomes = [done[slab] for _, slab in found]
-    table = slab_table(found, outcomes, stored)
-    table.attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
-    return labelled(
-        {"slabs": table, "paths": path_table(outcomes), "powers": power_table(table, parameters)}, parameters.base
-    )
+    own = {slab: _task(slab, parameters) for _, slab in found if slab not in stored}
+    done = computed(own, "slabs", work=_work) | chosen(parameters.survey_file, Outcome, {slab: slab for slab in stored})
+    datasets = slab_and_path_tables(found, [done[slab] for _, slab in found], stored)
+    datasets["slabs"].attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
+    return labelled(datasets | {"powers": power_table(datasets["slabs"], parameters)}, parameters.base)
 
 
 def slabs(parameters: Parameters) -> list[tuple[str, Slab]]:
@@ -302,9 +269,9 @@ def _surveyed(parameters: Parameters) -> dict[Slab, None]:
     return dict.fromkeys(slab for name, slab in slabs(parameters) if slab.layers in deep[name])
 
 
-def survey(parameters: Parameters) -> dict[Key, Task]:
+def survey(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
     """The tasks of these slabs."""
-    return {slab.key: _task(slab, parameters) for slab in _surveyed(parameters)}
+    return {slab: _task(slab, parameters) for slab in _surveyed(parameters)}
 
 
 def _odd(number: float) -> int:
@@ -317,106 +284,79 @@ def _work(slab: Slab) -> float:
     return slab.layers**2 * slab.disks_per_row * (20.0 if slab.friction else 1.0)
 
 
-def _task(slab: Slab, parameters: Parameters) -> Task:
-    return Task(
-        slab,
-        slab.scene(parameters.base),
-        parameters.visible,
-        parameters.first_force,
-        parameters.factor,
-        parameters.most_forces,
-        parameters.tolerance,
+def _task(slab: Slab, asked: Parameters) -> partial[Outcome]:
+    return partial(
+        compute,
+        slab.scene(asked.base),
+        asked.visible,
+        asked.first_force,
+        asked.factor,
+        asked.most_forces,
+        asked.tolerance,
     )
 
 
-def slab_table(
-    found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome], stored: Collection[Slab] = ()
-) -> xr.Dataset:
-    """What each slab is, and its events."""
-
-    def column(values: list, text: str) -> xr.Variable:
-        return variable(("slab",), np.array(values), text)
-
-    data = {
+def slab_and_path_tables(
+    found: Sequence[tuple[str, Slab]], outcomes: Sequence[Outcome], stored: Collection[Slab]
+) -> dict[str, xr.Dataset]:
+    """``slabs``: what each is, and its events; ``paths``: what is measured at its forces, nan beyond its last one."""
+    data = table(outcomes, "slab")
+    brackets = {
         f"{name}_bracket": variable(
             ("slab", "bracket"),
-            np.array([o.brackets[k] for o in outcomes]),
+            data["brackets"].values[:, k],
             f"forces {FORCE} between which: {text}; nan if not up to the first",
         )
         for k, (name, text) in enumerate(EVENTS.items())
     }
-    data["linear_opening"] = column([o.linear_opening for o in outcomes], LINEAR_OPENING)
-    data["confinement"] = column([o.confinement for o in outcomes], CONFINEMENT)
-    data["by_motion"] = column([o.by_motion for o in outcomes], BY_MOTION)
     each = [slab for _, slab in found]
+    of = table(each, "slab")
+    kept = of[["layers", "disks_per_row", "friction", "normal_stiffness"]].variables
     coordinates = {
-        name: column([getattr(slab, name) for slab in each], STORED.keys[name])
-        for name in ("layers", "disks_per_row", "friction", "normal_stiffness")
-    } | {
-        "series": column([name for name, _ in found], "series"),
-        "periodic": column([int(slab.periodic) for slab in each], STORED.keys["periodic"]),
-        "surveyed": column([int(slab in stored) for slab in each], "1 for slabs of the survey"),
-        "bracket": variable(("bracket",), np.array(["low", "high"]), "ends of a bracket"),
+        "series": variable("slab", [name for name, _ in found], "series"),
+        "periodic": of["periodic"].variable.astype(int),
+        "surveyed": variable("slab", [int(slab in stored) for slab in each], "1 for slabs of the survey"),
+        **axes(bracket=(["low", "high"], "ends of a bracket")),
     }
-    return xr.Dataset(data).assign_coords(coordinates)
+    slabs = xr.Dataset(brackets).assign(data[["linear_opening", "confinement", "by_motion"]].variables)
+    paths = data[["force", "dip", "depth", "width", "opened"]].rename_dims(line="step")
+    return {"slabs": slabs.assign_coords(kept).assign_coords(coordinates), "paths": paths}
 
 
-def path_table(outcomes: Sequence[Outcome]) -> xr.Dataset:
-    """What is measured at the forces of each slab; nan beyond its last one."""
-    steps = max(len(o.force) for o in outcomes)
+_RANGE = "range over the fits with and without the smallest, and over the brackets"
 
-    def padded(values: FloatArray) -> FloatArray:
-        return np.concatenate([values, np.full(steps - len(values), np.nan)])
 
-    return xr.Dataset(
-        {
-            name: variable(("slab", "step"), np.stack([padded(getattr(o, name)) for o in outcomes]), text)
-            for name, text in MEASURED.items()
-        }
+@record
+class Fitted:
+    """The power law of an event in a series."""
+
+    exponent: FloatArray = column(f"power of what is varied with which the event's force grows; {_RANGE}", "end")
+    extrapolated: FloatArray = column(
+        f"force {FORCE} of the event by this power law; {_RANGE}, and the largest slab with the power of the continuum",
+        "end",
     )
 
 
-def power_table(table: xr.Dataset, parameters: Parameters) -> xr.Dataset:
+def power_table(slabs: xr.Dataset, parameters: Parameters) -> xr.Dataset:
     """Powers of what each series varies, and where its events are at ``extrapolated`` layers."""
     ends, events = ("value", "least", "largest"), ("first_opening", "crossover", "reaches_floor")
-    shape = (len(parameters.series), len(events), len(ends))
-    exponents, far = np.full(shape, np.nan), np.full(shape, np.nan)
+    found = {}
     for s, series in enumerate(parameters.series):
-        one = table.isel(slab=np.flatnonzero(table["series"].values == series.name))
+        one = slabs.isel(slab=np.flatnonzero(slabs["series"].values == series.name))
         at = _varied(one, series)
         for e, event in enumerate(events):
             law = Power(at, *one[f"{event}_bracket"].values.T)
-            exponents[s, e] = law.exponent()
+            far = np.full(len(ends), np.nan)
             if series.varied == "layers":
-                far[s, e] = law.at_size(
-                    parameters.extrapolated, continuum(series) if event != "first_opening" else None
-                )
-    dims = ("series", "event", "end")
-    range_ = "range over the fits with and without the smallest, and over the brackets"
-    data = xr.Dataset(
-        {
-            "exponent": variable(
-                dims, exponents, f"power of what is varied with which the event's force grows; {range_}"
-            ),
-            "extrapolated": variable(
-                dims,
-                far,
-                f"force {FORCE} of the event by this power law; {range_}, and the largest slab with the power of the "
-                "continuum",
-            ),
-        },
-        coords={
-            "series": variable("series", [one.name for one in parameters.series], "series"),
-            "friction": variable("series", [one.friction for one in parameters.series], "coefficient of friction"),
-            "varied": variable("series", [one.varied for one in parameters.series], "what differs along the series"),
-            "confined": variable(
-                "series",
-                ["walls" if one.sides == "walls" else one.confined for one in parameters.series],
-                "what sets the force of horizontal contacts at rest",
-            ),
-            "event": variable("event", list(events), "event"),
-            "end": variable("end", list(ends), "value and ends of the interval"),
-        },
+                far = law.at_size(parameters.extrapolated, continuum(series) if event != "first_opening" else None)
+            found[s, e] = Fitted(law.exponent(), far)
+    texts = {"name": "series", "friction": "coefficient of friction", "varied": "what differs along the series"}
+    coordinates = labels("series", parameters.series, **texts)
+    confined = ["walls" if one.sides == "walls" else one.confined for one in parameters.series]
+    data = table(found, "series", "event").assign_coords(
+        {"series": coordinates.pop("name"), **coordinates}
+        | {"confined": variable("series", confined, "what sets the force of horizontal contacts at rest")}
+        | axes(event=(events, "event"), end=(ends, "value and ends of the interval"))
     )
     data.attrs["layers"] = parameters.extrapolated
     return data

@@ -6,7 +6,7 @@ then under each force. Disordered slabs are single realizations.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -18,39 +18,23 @@ from granular_response.solve import SOLVE_ERRORS
 from granular_response.solve.path import Collapsed
 from granular_response.state import State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.explorer.parameters import Parameters
 from granular_response_paper.slab_response import LoadPath, states_picture, wall_margin
-
-
-@dataclass(frozen=True)
-class Task:
-    """One slab under growing forces."""
-
-    scene: Scene  #: with one load, of unit force
-    forces: tuple[float, ...]
-    collapse_depth: float
-    width: float  #: of the smoothing Gaussian; 0 for a lattice, whose response is not smoothed
+from granular_response_paper.tasks import computed
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """One dataset for each slab."""
-    found = map_tasks(states, _tasks(parameters), what="slabs")
-    return labelled({f"slab_{k}": dataset for k, dataset in enumerate(found)}, parameters.base)
+    return labelled(computed(_tasks(parameters), "slabs"), parameters.base)
 
 
-def _tasks(parameters: Parameters) -> list[Task]:
+def _tasks(parameters: Parameters) -> dict[str, partial[xr.Dataset]]:
     base, depth, forces = parameters.base, parameters.collapse_depth, parameters.forces
-    tasks = [
-        Task(
-            base.updated({"contact.friction": one.friction, "contact.stiffness_ratio": one.stiffness_ratio}),
-            forces,
-            depth,
-            0.0,
-        )
-        for one in parameters.lattices
-    ]
+    tasks = []
+    for lattice in parameters.lattices:
+        changes = {"contact.friction": lattice.friction, "contact.stiffness_ratio": lattice.stiffness_ratio}
+        tasks.append(partial(states, base.updated(changes), forces, depth, 0.0))
     for one in parameters.disordered:
         scene = base.updated(
             {
@@ -64,19 +48,20 @@ def _tasks(parameters: Parameters) -> list[Task]:
             }
         )
         below = tuple(force for force in forces if force <= one.largest_force)
-        tasks.append(Task(scene, below, depth, parameters.width))
-    return tasks
+        tasks.append(partial(states, scene, below, depth, parameters.width))
+    return {f"slab_{k}": task for k, task in enumerate(tasks)}
 
 
-def states(task: Task) -> xr.Dataset:
+def states(scene: Scene, forces: tuple[float, ...], collapse_depth: float, width: float) -> xr.Dataset:
     """The states of one slab up to the last force before it collapses or finds no rest.
 
-    Raises what the settling of the slab raises.
+    ``scene`` has one load, of unit force; ``width`` is that of the smoothing Gaussian, 0 for a lattice, whose response
+    is not smoothed. Raises what the settling of the slab raises.
     """
-    path = LoadPath.of(task.scene)
+    path = LoadPath.of(scene)
     found = [path.rest]
-    path.lowest = float(path.rest.position[int(path.problem.load_disk[0]), 1]) - task.collapse_depth
-    for force in task.forces:
+    path.lowest = float(path.rest.position[int(path.problem.load_disk[0]), 1]) - collapse_depth
+    for force in forces:
         try:
             state = path.at(force)
         except (Collapsed, *SOLVE_ERRORS):
@@ -84,11 +69,11 @@ def states(task: Task) -> xr.Dataset:
         if state.position[int(path.problem.load_disk[0]), 1] < path.lowest:  # a minimum of the energy
             break
         found.append(state)
-    return _dataset(task, path, found)
+    return _dataset(path, found, width)
 
 
-def _dataset(task: Task, path: LoadPath, found: list[State]) -> xr.Dataset:
-    scene, packing = task.scene, path.problem.packing
+def _dataset(path: LoadPath, found: list[State], width: float) -> xr.Dataset:
+    scene, packing = path.scene, path.problem.packing
     pictures = states_picture(found, path.problem).drop_vars("angle")
     disks = floor_disks(found, np.flatnonzero(packing.row == 0))
     middle = float(path.rest.position[int(path.problem.load_disk[0]), 0])
@@ -98,10 +83,10 @@ def _dataset(task: Task, path: LoadPath, found: list[State]) -> xr.Dataset:
     count = np.zeros(len(found))
     for k, state in enumerate(found[1:], 1):
         response[k] = floor_response(path.rest, state, disks, state.load_factor)
-        smooth[k] = smoothed_response(x, x, response[k], task.width) if task.width else response[k]
+        smooth[k] = smoothed_response(x, x, response[k], width) if width else response[k]
         count[k] = peak_count(x, smooth[k], interior=interior)
-    if task.width:
-        centre = smoothed_response([0.0], x, response, task.width)[:, 0]
+    if width:
+        centre = smoothed_response([0.0], x, response, width)[:, 0]
         unit = "smoothed with the width w, in 1/mean radius: stress per applied force"
     else:
         centre = np.array([np.interp(0.0, x, one) for one in response])
@@ -117,7 +102,7 @@ def _dataset(task: Task, path: LoadPath, found: list[State]) -> xr.Dataset:
         response_at_centre=variable("state", centre, f"floor response at x = 0 {unit}"),
         peak_count=variable("state", count, "number of peaks of the smoothed response; 0 at rest"),
         x=variable("floor_disk", x, f"rest position of a floor disk from the loaded disk {LENGTH}"),
-        smoothing_width=variable((), task.width, f"width w of the smoothing Gaussian {LENGTH}; 0: none"),
+        smoothing_width=variable((), width, f"width w of the smoothing Gaussian {LENGTH}; 0: none"),
         polydispersity=variable((), scene.packing.model_dump()["polydispersity"], "delta: spread of the radii"),
         friction=variable((), scene.contact.friction, "coefficient of friction between disks"),
         wall_friction=variable((), scene.wall.friction, "coefficient of friction of the walls"),

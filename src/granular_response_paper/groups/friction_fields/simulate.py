@@ -10,8 +10,9 @@ the transient chooses one. The rest state of a slab serves both forces.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -33,10 +34,11 @@ from granular_response.store.result import (
     common_candidates,
     variable,
 )
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.friction_fields.parameters import Parameters
+from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.slab_response import LoadPath
+from granular_response_paper.tasks import computed
 
 #: "Near the load" in the claims: within this distance (mean radii). It is left out of distances of fields, since
 #: there the discrete forces, not the medium, decide.
@@ -44,26 +46,49 @@ NEAR = 6.0
 #: Contacts whose centre is at most this far from the vertical below the load are on it (mean radii).
 ON_AXIS = 1.1
 
-_SCALARS = {
-    "misalignment": "mean angle between added force and contact line, weighted with |force|, in degrees",
-    "axis_angle": "mean angle of the added forces below the load to the vertical, weighted with |force|, in degrees",
-    "axis_share": "part of the vertical force carried by the contacts on the vertical below the load, mean over rows",
-    "distance_to_lattice": "root mean square difference of sigma_zz from the harmonic lattice, per its own, "
-    f"farther than {NEAR:g} radii from the load",
-    "antisymmetric_near": "largest antisymmetric part of the stress per largest pressure, "
-    f"within {NEAR:g} radii of the load",
-    "antisymmetric_near_mean": "root mean square antisymmetric part per root mean square pressure, "
-    f"within {NEAR:g} radii of the load",
-}
+FRICTION = "coefficient of friction between disks and with the walls"
 
 
-@dataclass(frozen=True)
-class Friction:
-    """One coefficient of friction: a scene with one load of unit force, and the forces put on it."""
+@record
+class Scalars:
+    """What the load adds to one slab, in numbers."""
 
-    scene: Scene
-    force: float
-    profile_force: float | None  #: applied by dynamics from rest; None: not asked for
+    misalignment: float = column("mean angle between added force and contact line, weighted with |force|, in degrees")
+    axis_angle: float = column(
+        "mean angle of the added forces below the load to the vertical, weighted with |force|, in degrees"
+    )
+    axis_share: float = column(
+        "part of the vertical force carried by the contacts on the vertical below the load, mean over rows"
+    )
+    distance_to_lattice: float = column(
+        "root mean square difference of sigma_zz from the harmonic lattice, per its own, "
+        f"farther than {NEAR:g} radii from the load"
+    )
+    antisymmetric_near: float = column(
+        f"largest antisymmetric part of the stress per largest pressure, within {NEAR:g} radii of the load"
+    )
+    antisymmetric_near_mean: float = column(
+        f"root mean square antisymmetric part per root mean square pressure, within {NEAR:g} radii of the load"
+    )
+
+
+@record
+class Profile:
+    """The added forces at one depth."""
+
+    contact_x: FloatArray = column(f"position of the contact from the loaded disk {LENGTH}", "point")
+    magnitude: FloatArray = column(f"magnitude of the added contact force {FORCE}", "point")
+    strongest_x: float = column(f"distance of the strongest contact from x = 0 {LENGTH}")
+    axis_magnitude: float = column("largest magnitude below the load per largest at that depth")
+
+    @classmethod
+    def of(cls, where: FloatArray, size: FloatArray) -> Profile:
+        """Of the contacts at ``where`` from the loaded disk; nan where the slab is not so deep."""
+        if not len(where):
+            return cls(where, size, float("nan"), float("nan"))
+        top = size >= size.max() * (1.0 - 1e-3)  # both of a mirror pair
+        on_axis = size[np.abs(where) <= ON_AXIS].max(initial=0.0)
+        return cls(where, size, np.abs(where[top]).mean(), on_axis / size.max())
 
 
 @dataclass(frozen=True)
@@ -76,49 +101,47 @@ class Loaded:
     loaded_disk: int
 
 
-def load(task: Friction) -> Loaded:
-    """Settle a slab and load it; raises what the solvers raise."""
-    path = LoadPath.of(task.scene)
-    loaded = path.at(task.force)
+def load(scene: Scene, force: float, profile_force: float | None) -> Loaded:
+    """Settle a slab and load it, by the ``profile_force`` from rest too; raises what the solvers raise."""
+    path = LoadPath.of(scene)
+    loaded = path.at(force)
     profile = None
-    if task.profile_force is not None:
-        literal = task.scene
-        if task.scene.contact.friction > 0.0:
+    if profile_force is not None:
+        literal = scene
+        if scene.contact.friction > 0.0:
             literal = literal.updated({"protocol.method": "dynamics"})
-        profile = LoadPath.of(literal, path.rest).at(task.profile_force)
+        profile = LoadPath.of(literal, path.rest).at(profile_force)
     return Loaded(path.rest, loaded, profile, int(path.problem.load_disk[0]))
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``forces``, ``stress`` and ``profiles``."""
-    base, frictions, force = parameters.base, parameters.frictions, parameters.force
-    of_profiles, profile_force = parameters.profiles.frictions, parameters.profiles.force
-    tasks = [
-        Friction(
+    base, force, of_profiles = parameters.base, parameters.force, parameters.profiles
+    tasks = {
+        mu: partial(
+            load,
             base.updated({"contact.friction": mu, "wall.friction": mu}),
             force,
-            profile_force if mu in of_profiles else None,
+            of_profiles.force if mu in of_profiles.frictions else None,
         )
-        for mu in frictions
-    ]
-    results: list[Loaded] = map_tasks(load, tasks, what="frictions")
+        for mu in parameters.frictions
+    }
+    results = computed(tasks, "frictions")
 
     packing = base.packing.build()
-    listed = common_candidates([s for one in results for s in (one.rest, one.loaded)], packing.radius)
+    listed = common_candidates([s for one in results.values() for s in (one.rest, one.loaded)], packing.radius)
     rest, loaded = listed[::2], listed[1::2]
-    disk = results[0].loaded_disk
-    coordinate = variable("friction", frictions, "coefficient of friction between disks and with the walls")
-    scalars = _scalars(rest, loaded, disk)
-    stress = _stress_dataset(parameters, base, rest, loaded, disk, force, scalars)
-    datasets = {
-        "forces": _forces_dataset(packing, rest, loaded, disk, force).assign_coords(friction=coordinate),
-        "stress": stress.assign_coords(friction=coordinate),
-    }
-    if of_profiles:
-        chosen = [results[frictions.index(mu)] for mu in of_profiles]
-        datasets["profiles"] = _profiles_dataset(
-            packing, chosen, parameters.profiles.rows, profile_force
-        ).assign_coords(friction=variable("friction", of_profiles, coordinate.attrs["long_name"]))
+    disk = results[parameters.frictions[0]].loaded_disk
+    forces = added_forces_dataset(rest, loaded, packing, "friction").assign(
+        loaded_disk=variable((), disk, "index of the loaded disk"),
+        force=variable((), force, f"applied force {FORCE}"),
+    )
+    datasets = {"forces": forces, "stress": _stress_dataset(parameters, base, rest, loaded, disk)}
+    datasets = {name: data.assign_coords(axes(friction=(results, FRICTION))) for name, data in datasets.items()}
+    if of_profiles.frictions:
+        chosen = [results[mu] for mu in of_profiles.frictions]
+        profiles = _profiles_dataset(packing, chosen, of_profiles.rows, of_profiles.force)
+        datasets["profiles"] = profiles.assign_coords(axes(friction=(of_profiles.frictions, FRICTION)))
     return labelled(datasets, base)
 
 
@@ -198,33 +221,10 @@ def axis_measures(rest: State, loaded: State, loaded_disk: int) -> tuple[float, 
     return float(weighted / total), float(np.mean(shares))
 
 
-def _scalars(rest: Sequence[State], loaded: Sequence[State], disk: int) -> dict[str, list[float]]:
-    rows = [
-        (np.degrees(force_misalignment(a, b)), *axis_measures(a, b, disk)) for a, b in zip(rest, loaded, strict=True)
-    ]
-    columns = np.array(rows).T.tolist()
-    return dict(zip(("misalignment", "axis_angle", "axis_share"), columns, strict=True))
-
-
-def _forces_dataset(
-    packing: Packing, rest: Sequence[State], loaded: Sequence[State], disk: int, force: float
-) -> xr.Dataset:
-    return added_forces_dataset(rest, loaded, packing, "friction").assign(
-        loaded_disk=variable((), disk, "index of the loaded disk"),
-        force=variable((), force, f"applied force {FORCE}"),
-    )
-
-
 def _stress_dataset(
-    parameters: Parameters,
-    base: Scene,
-    rest: Sequence[State],
-    loaded: Sequence[State],
-    disk: int,
-    force: float,
-    scalars: Mapping[str, Sequence[float]],
+    parameters: Parameters, base: Scene, rest: Sequence[State], loaded: Sequence[State], disk: int
 ) -> xr.Dataset:
-    packing = base.packing.build()
+    packing, force = base.packing.build(), parameters.force
     w, spacing = parameters.stress_width, parameters.stress_spacing
     middle = packing.position[disk]
     half = min(parameters.stress_half_width, 0.5 * packing.width)
@@ -232,12 +232,8 @@ def _stress_dataset(
     x = spacing * np.arange(-steps, steps + 1)
     z = np.arange(0.0, float(packing.position[:, 1].max()) + 1.0 + 0.5 * spacing, spacing)
     points = coarse.grid_points(x + middle[0], z)
-    fields = np.stack(
-        [
-            coarse.coarse_grained_stress(coarse.load_forces(a, b), points, w) / force
-            for a, b in zip(rest, loaded, strict=True)
-        ]
-    )
+    pairs = list(zip(rest, loaded, strict=True))
+    fields = np.stack([coarse.coarse_grained_stress(coarse.load_forces(a, b), points, w) / force for a, b in pairs])
     wall = base.resolved_wall.normal_stiffness
     reference = coarse.coarse_grained_stress(
         harmonic_lattice(packing, disk, base.contact.normal_stiffness, wall), points, w
@@ -250,61 +246,48 @@ def _stress_dataset(
     def mean_square(values: FloatArray) -> FloatArray:
         return np.sqrt((values**2).mean(axis=-1))
 
-    values = {
-        **scalars,
-        "distance_to_lattice": mean_square((vertical - elastic)[:, far]) / mean_square(elastic[far]),
-        "antisymmetric_near": np.abs(antisymmetric[:, near]).max(axis=1) / pressure[:, near].max(axis=1),
-        "antisymmetric_near_mean": mean_square(antisymmetric[:, near]) / mean_square(pressure[:, near]),
-    }
-    dims = ("friction", "z", "x")
+    measured = zip(
+        mean_square((vertical - elastic)[:, far]) / mean_square(elastic[far]),
+        np.abs(antisymmetric[:, near]).max(axis=1) / pressure[:, near].max(axis=1),
+        mean_square(antisymmetric[:, near]) / mean_square(pressure[:, near]),
+        strict=True,
+    )
+    scalars = [
+        Scalars(np.degrees(force_misalignment(a, b)), *axis_measures(a, b, disk), *of_fields)
+        for (a, b), of_fields in zip(pairs, measured, strict=True)
+    ]
     of = "of the added forces per applied force, in 1/mean radius, compression positive"
-    data = {name: variable("friction", values[name], text) for name, text in _SCALARS.items()}
-    data |= stress_components(dims, fields, of)
-    data["stress_zz_lattice"] = variable(("z", "x"), elastic, f"stress component zz of the harmonic lattice {of}")
-    data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}")
-    data["force"] = variable((), force, f"applied force {FORCE}")
-    data["load_height"] = variable((), middle[1], f"height of the loaded disk before gravity {LENGTH}")
-    return xr.Dataset(
-        data,
-        coords={
-            "x": variable("x", x, f"distance from the loaded disk {LENGTH}"),
-            "z": variable("z", z, f"height above the floor {LENGTH}"),
-        },
+    return (
+        table(scalars, "friction")
+        .assign(stress_components(("friction", "z", "x"), fields, of))
+        .assign(
+            stress_zz_lattice=variable(("z", "x"), elastic, f"stress component zz of the harmonic lattice {of}"),
+            stress_width=variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}"),
+            force=variable((), force, f"applied force {FORCE}"),
+            load_height=variable((), middle[1], f"height of the loaded disk before gravity {LENGTH}"),
+        )
+        .assign_coords(
+            axes(x=(x, f"distance from the loaded disk {LENGTH}"), z=(z, f"height above the floor {LENGTH}"))
+        )
     )
 
 
 def _profiles_dataset(packing: Packing, results: Sequence[Loaded], rows: Sequence[float], force: float) -> xr.Dataset:
-    found, states = [], []
-    for one in results:
+    found, states = {}, []
+    for k, one in enumerate(results):
         assert one.profile is not None
         states.append(one.profile)
         # dynamics may have listed candidates anew on the way
         rest, loaded = common_candidates([one.rest, one.profile], packing.radius)
-        found.append([force_profile(rest, loaded, one.loaded_disk, row_depth(float(row))) for row in rows])
-    length = max(len(x) for profiles in found for x, _ in profiles)
-    x = np.full((len(results), len(rows), length), np.nan)
-    magnitude = x.copy()
-    strongest = np.full(x.shape[:2], np.nan)
-    axis = strongest.copy()
-    for m, profiles in enumerate(found):
-        for r, (where, size) in enumerate(profiles):
-            if not len(where):  # the slab is not so deep
-                continue
-            x[m, r, : len(where)], magnitude[m, r, : len(size)] = where, size
-            top = size >= size.max() * (1.0 - 1e-3)  # both of a mirror pair
-            strongest[m, r] = np.abs(where[top]).mean()
-            axis[m, r] = size[np.abs(where) <= ON_AXIS].max(initial=0.0) / size.max()
-    dims = ("friction", "row")
-    return xr.Dataset(
-        {
-            "contact_x": variable((*dims, "point"), x, f"position of the contact from the loaded disk {LENGTH}"),
-            "magnitude": variable((*dims, "point"), magnitude, f"magnitude of the added contact force {FORCE}"),
-            "strongest_x": variable(dims, strongest, f"distance of the strongest contact from x = 0 {LENGTH}"),
-            "axis_magnitude": variable(dims, axis, "largest magnitude below the load per largest at that depth"),
-            "force": variable((), force, f"applied force {FORCE}"),
-        },
-        coords={
-            "row": variable("row", np.array(rows, dtype=float), "rows below the loaded disk"),
-            "depth": variable("row", [row_depth(float(row)) for row in rows], f"depth below the loaded disk {LENGTH}"),
-        },
-    ).merge(certificates_dataset(states, "friction"))
+        for r, row in enumerate(rows):
+            found[k, r] = Profile.of(*force_profile(rest, loaded, one.loaded_disk, row_depth(float(row))))
+    depth = [row_depth(float(row)) for row in rows]
+    return (
+        table(found, "friction", "row")
+        .assign(force=variable((), force, f"applied force {FORCE}"))
+        .assign_coords(
+            axes(row=(np.array(rows, dtype=float), "rows below the loaded disk"))
+            | {"depth": variable("row", depth, f"depth below the loaded disk {LENGTH}")}
+        )
+        .merge(certificates_dataset(states, "friction"))
+    )

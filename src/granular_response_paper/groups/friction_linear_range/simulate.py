@@ -9,8 +9,10 @@ force; its ramp time is not told.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,92 +20,70 @@ import xarray as xr
 from granular_response.observe import events
 from granular_response.scene import Scene
 from granular_response.solve import Problem
-from granular_response.state import Event, State
+from granular_response.state import State
 from granular_response.store.result import FORCE, variable
-from granular_response.sweeps.tasks import run_tasks
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.friction_linear_range.parameters import LargeForces, Parameters
+from granular_response_paper.groups.friction_linear_range.parameters import Parameters
+from granular_response_paper.records import axes, table
+from granular_response_paper.slab_response import LoadPath, Measures
+from granular_response_paper.tasks import computed
+
+FRICTION, APPLIED = "coefficient of friction between disks", f"applied force {FORCE}"
 
 
 @dataclass(frozen=True)
 class PathResult:
     """What a load path leaves behind."""
 
-    friction: float
     forces: tuple[float, ...]
     measured: xr.Dataset
-    events: tuple[slab.Event, ...]
-    lost: tuple[Event, ...]  #: equilibria
+    events: list[slab.Event]
+    lost: list[slab.Lost]
     method: str
-    rest: State
-    states: tuple[State, ...]  #: at ``forces``, or none
+    states: list[State]  #: at rest, and at ``forces``, or these are not kept
 
 
-@dataclass(frozen=True)
-class PathTask:
-    """A load path through ``forces``, with its events."""
+def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = None, keep: bool = False) -> PathResult:
+    """A load path through ``forces``.
 
-    scene: Scene
-    forces: tuple[float, ...]
-    asymmetry: float | None = None  #: from which symmetry is lost; none: no events
-    keep_states: bool = False  #: and locate every event
-
-    def run(self) -> PathResult:
-        path = slab.LoadPath.of(self.scene)
-        states = path.through(self.forces)
-        measures = slab.Measures(path)
-        return PathResult(
-            self.scene.contact.friction,
-            self.forces,
-            slab.measured(measures, states),
-            tuple(self._events(path, measures, self.asymmetry)) if self.asymmetry else (),
-            tuple(slab.lost(states)),
-            path.method,
-            path.rest,
-            tuple(states) if self.keep_states else (),
-        )
-
-    def _events(self, path: slab.LoadPath, measures: slab.Measures, asymmetry: float) -> list[slab.Event]:
-        asked = slab.happenings(measures, path.known[self.forces[0]], asymmetry)
-        return [
-            slab.locate(name, path, self.forces, what)
+    ``asymmetry`` is that from which symmetry is lost; without it no events are looked for. All of them are located, and
+    states kept, where ``keep`` asks for it.
+    """
+    path = LoadPath.of(scene)
+    states = path.through(forces)
+    measures = Measures(path)
+    asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
+    return PathResult(
+        forces,
+        slab.measured(measures, states),
+        [
+            slab.locate(name, path, forces, what)
             for name, what in asked.items()
-            if self.keep_states or name in ("first_opening", "linear_range")
-        ]
+            if keep or name in ("first_opening", "linear_range")
+        ],
+        [slab.Lost.of(measures.friction, event) for event in slab.lost(states)],
+        path.method,
+        [path.rest, *states] if keep else [path.rest],
+    )
 
 
-@dataclass(frozen=True)
-class DynamicsTask:
+def shake(scene: Scene, rest: State, force: float) -> tuple[State, xr.Dataset]:
     """One force applied to the packing at rest by dynamics."""
-
-    scene: Scene
-    rest: State
-    force: float
-
-    def run(self) -> tuple[State, xr.Dataset]:
-        path = slab.LoadPath.of(self.scene, self.rest)
-        state = path.at(self.force)
-        return state, slab.measured(slab.Measures(path), [state])
+    path = LoadPath.of(scene, rest)
+    state = path.at(force)
+    return state, slab.measured(Measures(path), [state])
 
 
-@dataclass(frozen=True)
-class FrictionTask:
+def narrow(scene: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
     """The coefficient of friction, above ``low`` and not above ``high``, from which there is one peak."""
 
-    scene: Scene
-    force: float
-    low: float
-    high: float
-    tolerance: float
+    def single_peaked(friction: float) -> bool:
+        path = LoadPath.of(scene.updated({"contact.friction": friction}))
+        return not Measures(path).double_peaked(path.at(force))
 
-    def run(self) -> slab.Event:
-        def single_peaked(friction: float) -> bool:
-            path = slab.LoadPath.of(self.scene.updated({"contact.friction": friction}))
-            return not slab.Measures(path).double_peaked(path.at(self.force))
-
-        found = events.bisect_event(single_peaked, self.low, self.high, self.tolerance, at_low=False, at_high=True)
-        return _friction_crossover(self.force, found.low, found.high)
+    found = events.bisect_event(single_peaked, low, high, tolerance, at_low=False, at_high=True)
+    return found.low, found.high
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -114,67 +94,17 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     ``response`` (friction, force), ``states_mu_<friction>`` (at rest first), ``friction_axis`` (friction),
     ``large_forces`` (force) with ``large_force_states``, ``events`` and ``lost``.
     """
-    base, frictions, axis = parameters.base, parameters.frictions, parameters.friction_axis
-    axis_frictions, axis_force = sorted(axis.frictions), axis.force
-    tasks = _path_tasks(parameters, base, axis_frictions)
-    results: list[PathResult] = run_tasks(tasks, what="load paths")
-    paths = {result.friction: result for result in results}
+    base, axis, given = parameters.base, parameters.friction_axis, parameters.dynamics
+    paths = computed(_paths(parameters), "load paths")
 
-    on_axis = {mu: _at_force(paths[mu], axis_force) for mu in axis_frictions}
-    double = [bool(measured["double_peaked"][0]) for measured in on_axis.values()]
+    axis_frictions = sorted(axis.frictions)
+    on_axis = [_at_force(paths[mu], axis.force) for mu in axis_frictions]
+    double = [bool(measured["double_peaked"][0]) for measured in on_axis]
     low, high = slab.first_change(axis_frictions, [not two for two in double])
-    refine = [FrictionTask(base, axis_force, low, high, axis.tolerance)]
-    if not (double[0] and np.isfinite(high)):
-        refine = []
-    dynamics = _dynamics_tasks(parameters.dynamics, base, paths)
-    done = run_tasks([*refine, *dynamics], what="large forces")
-    crossover = done[0] if refine else _friction_crossover(axis_force, low, high)
-    shaken: list[tuple[State, xr.Dataset]] = done[len(refine) :]
-
-    main = [paths[mu] for mu in frictions]
-    found = [*(event for result in main for event in result.events), crossover]
-    datasets = {
-        "response": _response_dataset(main),
-        "friction_axis": slab.measured_along("friction", list(on_axis.values())).assign_coords(
-            friction=_friction(axis_frictions)
-        ),
-        "lost": slab.lost_dataset([(result.friction, event) for result in main for event in result.lost]),
-    }
-    datasets["friction_axis"]["force"] = variable((), axis_force, f"applied force {FORCE}")
-    for result in main:
-        if result.states:
-            datasets[f"states_mu_{result.friction:g}"] = _picture(base, [result.rest, *result.states])
-    if dynamics:
-        mu = parameters.dynamics.friction
-        large = _large_forces_dataset(mu, dynamics, [measured for _, measured in shaken])
-        datasets["large_forces"] = large
-        datasets["large_force_states"] = _picture(base, [paths[mu].rest, *(state for state, _ in shaken)])
-        found.append(_loss_of_symmetry(mu, large, parameters.asymmetry))
-    datasets["events"] = slab.events_dataset(found)
-    return labelled(datasets, base)
-
-
-def _path_tasks(parameters: Parameters, base: Scene, axis_frictions: Sequence[float]) -> list[PathTask]:
-    frictions, axis_force = parameters.frictions, parameters.friction_axis.force
-    further = {extra.friction: extra.forces for extra in parameters.extra_forces}
-    largest = {end.friction: end.force for end in parameters.ends}
-
-    def task(mu: float) -> PathTask:
-        scene = base.updated({"contact.friction": mu})
-        if mu not in frictions:
-            return PathTask(scene, (axis_force,))
-        forces = {axis_force, *parameters.forces, *further.get(mu, ())}
-        reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
-        keep = mu in parameters.states_of
-        return PathTask(scene, reached, parameters.asymmetry, keep)
-
-    return [task(mu) for mu in [*frictions, *(mu for mu in axis_frictions if mu not in frictions)]]
-
-
-def _dynamics_tasks(given: LargeForces, base: Scene, paths: Mapping[float, PathResult]) -> list[DynamicsTask]:
-    if not given.forces:
-        return []
-    scene = base.updated(
+    further: dict[float | str, Callable[[], Any]] = {}
+    if double[0] and np.isfinite(high):
+        further["crossover"] = partial(narrow, base, axis.force, low, high, axis.tolerance)
+    shaken_scene = base.updated(
         {
             "contact.friction": given.friction,
             "protocol.method": "dynamics",
@@ -182,55 +112,75 @@ def _dynamics_tasks(given: LargeForces, base: Scene, paths: Mapping[float, PathR
             "protocol.time_step": given.time_step,
         }
     )
-    return [DynamicsTask(scene, paths[given.friction].rest, force) for force in sorted(given.forces)]
+    for force in sorted(given.forces):
+        further[force] = partial(shake, shaken_scene, paths[given.friction].states[0], force)
+    done = computed(further, "large forces")
+    low, high = done.pop("crossover", (low, high))
+
+    main = {mu: paths[mu] for mu in parameters.frictions}
+    text = f"along the axis of friction at force {axis.force:g}, the floor response no longer has two peaks"
+    found = [event for result in main.values() for event in result.events]
+    found.append(slab.Event("friction_crossover", float("nan"), low, high, text))
+    datasets = {
+        "response": _response_dataset(main),
+        "friction_axis": slab.measured_along("friction", on_axis).assign_coords(
+            axes(friction=(axis_frictions, FRICTION))
+        ),
+        "lost": table([one for result in main.values() for one in result.lost], "lost", kind=slab.Lost),
+    }
+    datasets["friction_axis"]["force"] = variable((), axis.force, APPLIED)
+    for mu, result in main.items():
+        if result.states[1:]:
+            datasets[f"states_mu_{mu:g}"] = _picture(base, result.states)
+    if done:
+        large = slab.measured_along("force", [measured for _, measured in done.values()])
+        large = large.assign_coords(axes(force=(done, APPLIED)))
+        large["friction"] = variable((), given.friction, FRICTION)
+        large["ramp_time"] = variable((), given.ramp_time, "duration of the load ramp in sqrt(radius/g)")
+        large["time_step"] = variable((), given.time_step, "time step in sqrt(radius/g)")
+        datasets["large_forces"] = large
+        rest = paths[given.friction].states[0]
+        datasets["large_force_states"] = _picture(base, [rest, *(state for state, _ in done.values())])
+        asymmetric = (large["asymmetry"].values > parameters.asymmetry).tolist()
+        ends = slab.first_change(large["force"].values, asymmetric)
+        text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {parameters.asymmetry:g}"
+        found.append(slab.Event("loss_of_symmetry", given.friction, *ends, text))
+    datasets["events"] = slab.events_dataset(found)
+    return labelled(datasets, base)
+
+
+def _paths(parameters: Parameters) -> dict[float, partial[PathResult]]:
+    """By friction: through all forces, and through that of the axis of friction alone for those of the axis alone."""
+    frictions, axis = parameters.frictions, parameters.friction_axis
+    further = {extra.friction: extra.forces for extra in parameters.extra_forces}
+    largest = {end.friction: end.force for end in parameters.ends}
+    paths = {}
+    for mu in [*frictions, *(mu for mu in sorted(axis.frictions) if mu not in frictions)]:
+        scene = parameters.base.updated({"contact.friction": mu})
+        if mu not in frictions:
+            paths[mu] = partial(follow, scene, (axis.force,))
+            continue
+        forces = {axis.force, *parameters.forces, *further.get(mu, ())}
+        reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
+        paths[mu] = partial(follow, scene, reached, parameters.asymmetry, mu in parameters.states_of)
+    return paths
 
 
 def _at_force(result: PathResult, force: float) -> xr.Dataset:
     return result.measured.isel(state=[result.forces.index(force)])
 
 
-def _friction_crossover(force: float, low: float, high: float) -> slab.Event:
-    text = f"along the axis of friction at force {force:g}, the floor response no longer has two peaks"
-    return slab.Event("friction_crossover", float("nan"), low, high, text)
-
-
-def _loss_of_symmetry(friction: float, large: xr.Dataset, above: float) -> slab.Event:
-    forces = large["force"].values
-    low, high = slab.first_change(forces, (large["asymmetry"].values > above).tolist())
-    text = f"dynamics from rest to each force: the asymmetry of the floor response exceeds {above:g}"
-    return slab.Event("loss_of_symmetry", friction, low, high, text)
-
-
-def _response_dataset(results: Sequence[PathResult]) -> xr.Dataset:
+def _response_dataset(results: dict[float, PathResult]) -> xr.Dataset:
     """Friction by force; nan where a friction has no state at a force."""
-    forces = sorted({force for result in results for force in result.forces})
+    forces = sorted({force for result in results.values() for force in result.forces})
     parts = [
-        ((row, [forces.index(force) for force in result.forces]), result.measured) for row, result in enumerate(results)
+        ((row, [forces.index(force) for force in result.forces]), result.measured)
+        for row, result in enumerate(results.values())
     ]
-    dims, shape = ("friction", "force"), (len(results), len(forces))
-    dataset = slab.measured_dataset(dims, parts, shape).assign_coords(
-        friction=_friction([result.friction for result in results]), force=_force(forces)
-    )
-    dataset.attrs["method"] = ", ".join(f"friction {r.friction:g}: {r.method}" for r in results)
-    return dataset
-
-
-def _large_forces_dataset(friction: float, tasks: Sequence[DynamicsTask], measured: Sequence[xr.Dataset]) -> xr.Dataset:
-    dataset = slab.measured_along("force", measured).assign_coords(force=_force([task.force for task in tasks]))
-    protocol = tasks[0].scene.protocol
-    dataset["friction"] = variable((), friction, "coefficient of friction between disks")
-    dataset["ramp_time"] = variable((), protocol.ramp_time, "duration of the load ramp in sqrt(radius/g)")
-    dataset["time_step"] = variable((), protocol.time_step, "time step in sqrt(radius/g)")
-    return dataset
+    dataset = slab.measured_dataset(("friction", "force"), parts, (len(results), len(forces)))
+    dataset.attrs["method"] = ", ".join(f"friction {mu:g}: {result.method}" for mu, result in results.items())
+    return dataset.assign_coords(axes(friction=(results, FRICTION), force=(forces, APPLIED)))
 
 
 def _picture(scene: Scene, states: Sequence[State]) -> xr.Dataset:
     return slab.states_picture(states, Problem.from_scene(scene).with_loads(states[0].position))
-
-
-def _friction(values: Sequence[float]) -> xr.Variable:
-    return variable("friction", values, "coefficient of friction between disks")
-
-
-def _force(values: Sequence[float]) -> xr.Variable:
-    return variable("force", values, f"applied force {FORCE}")

@@ -9,7 +9,7 @@ moments that is the same, the second one is not.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -19,54 +19,45 @@ from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, influence
 from granular_response.solve.small_loads import at_limit
 from granular_response.state import FloatArray, State
-from granular_response.store.result import LENGTH, variable
+from granular_response.store.result import LENGTH
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.influence.parameters import Parameters
+from granular_response_paper.records import axes, column, labels, record, table
+from granular_response_paper.tasks import computed
 
 #: Rows of loads of the fits.
 FITS = ("all", "without the lowest", "without the highest")
 
 
-@dataclass(frozen=True)
-class Task:
-    """One packing."""
-
-    scene: Scene
-    separations: tuple[int, ...]
-    margin: float
-    fitted: tuple[float, ...]
-
-
-@dataclass(frozen=True)
+@record
 class Outcome:
-    position: FloatArray  #: (n, 2) x from the middle of the box
-    radius: FloatArray  #: (n,)
-    total: FloatArray  #: (n,) sum of the absolute answers of the floor disks to a vertical force
-    height: FloatArray  #: (row,) mean height of the loads
-    spacing: float  #: mean distance of neighbours in a row
-    difference: FloatArray  #: (row, separation)
-    exponent: FloatArray  #: (separation, fit) see ``decay``
-    at_limit: int  #: contacts taken as sticking though at the Coulomb limit
+    difference: FloatArray = column(
+        "what a unit force and two halves of it differ by, summed over the floor disks", "row", "separation"
+    )
+    height: FloatArray = column(f"mean height of the loads {LENGTH}", "row")
+    spacing: float = column(f"distance of neighbours in a row {LENGTH}")
+    exponent: FloatArray = column("power of height with which the difference falls", "separation", "fit")
+    at_limit: float = column("contacts at the Coulomb limit, taken to stick")
+    position: FloatArray = column(f"centre from the middle {LENGTH}", "disk", "axis")
+    radius: FloatArray = column(f"disk radius {LENGTH}", "disk")
+    total: FloatArray = column("sum of the absolute answers of all floor disks to a unit vertical force", "disk")
 
 
-def compute(task: Task) -> Outcome:
-    """Raises what ``rest_state`` raises."""
-    problem = Problem.from_scene(task.scene)
+def compute(scene: Scene, separations: tuple[int, ...], margin: float, fitted: tuple[float, ...]) -> Outcome:
+    """One packing. Raises what ``rest_state`` raises."""
+    problem = Problem.from_scene(scene)
     rest = rest_state(problem)
     packing = problem.packing
     disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
     found = influence(problem, rest, disks, sliding="stick")[:, :, 1]
-    height, difference = differences(found, rest, packing, task.separations, task.margin)
+    height, difference = differences(found, rest, packing, separations, margin)
     spacing = packing.width / float(np.max(packing.row_count))
-    exponent = [
-        decay(height, difference[:, k], spacing * apart, task.fitted) for k, apart in enumerate(task.separations)
-    ]
+    exponent = [decay(height, difference[:, k], spacing * apart, fitted) for k, apart in enumerate(separations)]
     middle = np.array([0.5 * packing.width, 0.0])
     return Outcome(
-        rest.position - middle, packing.radius, np.abs(found).sum(axis=0), height, spacing, difference,
-        np.array(exponent), at_limit(problem, rest),
+        difference, height, spacing, np.array(exponent), at_limit(problem, rest),
+        rest.position - middle, packing.radius, np.abs(found).sum(axis=0),
     )  # fmt: skip
 
 
@@ -112,68 +103,34 @@ def decay(height: FloatArray, difference: FloatArray, apart: float, fitted: tupl
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``saint_venant`` and ``packings``."""
-    cases, most = parameters.cases, max(case.realizations for case in parameters.cases)
-    places = [(c, r) for c, case in enumerate(cases) for r in range(case.realizations)]
-    tasks = []
-    for c, r in places:
-        friction = cases[c].friction
-        changes = {"contact.friction": friction, "wall.friction": friction, "packing.realization": r}
-        scene = parameters.base.updated({**changes, "packing.polydispersity": cases[c].polydispersity})
-        tasks.append(Task(scene, parameters.separations, parameters.margin, parameters.fitted))
-    outcomes = map_tasks(compute, tasks, what="packings")
-    first = outcomes[0]
-    shape = (len(cases), most)
-
-    def of_realizations(name: str) -> FloatArray:
-        values = np.full(shape + np.shape(getattr(first, name)), np.nan)
-        for place, outcome in zip(places, outcomes, strict=True):
-            values[place] = getattr(outcome, name)
-        return values
-
-    along = ("case", "realization")
-    coordinates = {
-        "polydispersity": variable("case", [case.polydispersity for case in cases], "polydispersity"),
-        "friction": variable("case", [case.friction for case in cases], "friction between disks and of the walls"),
-    }
-    saint_venant = xr.Dataset(
-        {
-            "difference": variable(
-                (*along, "row", "separation"),
-                of_realizations("difference"),
-                "what a unit force and two halves of it differ by, summed over the floor disks",
-            ),
-            "height": variable((*along, "row"), of_realizations("height"), f"mean height of the loads {LENGTH}"),
-            "spacing": variable(along, of_realizations("spacing"), f"distance of neighbours in a row {LENGTH}"),
-            "exponent": variable(
-                (*along, "separation", "fit"),
-                of_realizations("exponent"),
-                "power of height with which the difference falls",
-            ),
-            "at_limit": variable(along, of_realizations("at_limit"), "contacts at the Coulomb limit, taken to stick"),
-        },
-        coords=coordinates
-        | {
-            "fit": variable("fit", list(FITS), "rows of loads that are used"),
-            "separation": variable(
-                "separation", parameters.separations, "of the halves from the disk, in places of the row"
-            ),
-        },
+    """Datasets ``saint_venant`` and ``packings``, the first one of each case."""
+    tasks = {}
+    for c, case in enumerate(parameters.cases):
+        for r in range(case.realizations):
+            scene = parameters.base.updated(
+                {
+                    "contact.friction": case.friction,
+                    "wall.friction": case.friction,
+                    "packing.realization": r,
+                    "packing.polydispersity": case.polydispersity,
+                }
+            )
+            tasks[c, r] = partial(compute, scene, parameters.separations, parameters.margin, parameters.fitted)
+    found = table(computed(tasks, "packings"), "case", "realization").assign_coords(
+        labels(
+            "case",
+            parameters.cases,
+            polydispersity="polydispersity",
+            friction="friction between disks and of the walls",
+        )
+    )
+    of_packings = ["position", "radius", "total"]
+    saint_venant = found.drop_vars(of_packings).assign_coords(
+        axes(
+            fit=(FITS, "rows of loads that are used"),
+            separation=(parameters.separations, "of the halves from the disk, in places of the row"),
+        )
     )
     saint_venant.attrs.update({"fitted": list(parameters.fitted), "margin": parameters.margin})
-    shown = [outcomes[places.index((c, 0))] for c in range(len(cases))]
-    packings = xr.Dataset(
-        {
-            "position": variable(
-                ("case", "disk", "axis"), np.stack([o.position for o in shown]), f"centre from the middle {LENGTH}"
-            ),
-            "radius": variable(("case", "disk"), np.stack([o.radius for o in shown]), f"disk radius {LENGTH}"),
-            "total": variable(
-                ("case", "disk"),
-                np.stack([o.total for o in shown]),
-                "sum of the absolute answers of all floor disks to a unit vertical force",
-            ),
-        },
-        coords=coordinates | {"axis": variable("axis", ["x", "z"], "component")},
-    )
+    packings = found[of_packings].isel(realization=0).assign_coords(axes(axis=("xz", "component")))
     return labelled({"saint_venant": saint_venant, "packings": packings}, parameters.base)

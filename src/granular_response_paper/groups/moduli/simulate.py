@@ -11,8 +11,8 @@ two by the closed form's moduli, by measured ones, and in lattices themselves.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -26,7 +26,6 @@ from granular_response.solve.strain import FOLLOWING
 from granular_response.state import FloatArray, State
 from granular_response.store.result import LENGTH, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import crossover, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Rotations, Springs
@@ -34,7 +33,9 @@ from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, Slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.moduli.parameters import Parameters
-from granular_response_paper.survey.packings import Key, Layout, chosen
+from granular_response_paper.records import axes, column, labels, record, stacked, table
+from granular_response_paper.survey.packings import chosen
+from granular_response_paper.tasks import computed
 
 #: Places at which responses are compared, in heights of the slab from the load.
 PLACES = np.linspace(-1.5, 1.5, 121)
@@ -69,63 +70,55 @@ def nearest_isotropic(moduli: FloatArray) -> FloatArray:
     return np.array([bulk + shear, bulk + shear, bulk - shear, 2.0 * shear])
 
 
-@dataclass(frozen=True)
-class Task:
-    """One disordered packing."""
-
-    scene: Scene
-    margin: float
-    width: float
-    wide: float
+FRICTION = "friction between disks and of the floor"
 
 
-@dataclass(frozen=True)
-class Outcome:
-    height: float  #: of the slab: distance of the rows times their number
-    coordination: float  #: contacts per disk of those that bear, floor included
-    at_limit: float  #: number of: contacts taken as sticking though at the Coulomb limit
-    matrices: FloatArray  #: (following, 3, 3) stress per strain over k_N
-    springs_alone: FloatArray  #: (3, 3) the free one without the turn of contacts under the forces they bear
-    response: FloatArray  #: (width, place) mean over the loads, times height
-    predicted: FloatArray  #: (solid, width, place) of the slab of each of SOLIDS, times height; nan without one
-    single: FloatArray  #: (width,) largest difference of one load to the prediction per its peak, mean over the loads
-    difference: FloatArray  #: (solid, width) the same of the mean over the loads
+@record
+class Disordered:
+    """What tells a packing from others."""
+
+    polydispersity: float = column("polydispersity")
+    friction: float = column(FRICTION)
+    layers: int = column("number of rows")
+    realization: int = column("realization of the disorder")
 
 
 _PLACES = ("smoothing", "place")
-#: How the survey stores them.
-STORED = Layout(
-    Outcome,
-    {
-        "polydispersity": "polydispersity",
-        "friction": "friction between disks and of the floor",
-        "layers": "number of rows",
-        "realization": "realization of the disorder",
-    },
-    {
-        "height": ((), f"height of the slab {LENGTH}"),
-        "coordination": ((), "contacts per disk that bears something"),
-        "at_limit": ((), "contacts at the Coulomb limit, taken to stick"),
-        "matrices": (("following", "stress", "strain"), "stress per strain over k_N"),
-        "springs_alone": (("stress", "strain"), "the last of these without the forces that contacts bear at rest"),
-        "response": (_PLACES, "mean floor pressure times height per force"),
-        "predicted": (("solid", *_PLACES), "the same of elastic slabs"),
-        "single": (("smoothing",), "largest difference of one load to the slab per its largest pressure, mean"),
-        "difference": (("solid", "smoothing"), "largest difference of the mean over loads per the same"),
-    },
-)
+_PER = "per largest pressure of the slab"
 
 
-def compute(task: Task) -> Outcome:
-    """Raises what ``rest_state`` raises."""
-    problem = Problem.from_scene(task.scene)
+@record
+class Outcome:
+    height: float = column(f"height of the slab {LENGTH}")  #: distance of the rows times their number
+    coordination: float = column("contacts per disk that bears something")  #: floor included
+    at_limit: float = column("contacts at the Coulomb limit, taken to stick")
+    matrices: FloatArray = column("stress per strain over k_N, as measured", "following", "stress", "strain")
+    springs_alone: FloatArray = column(
+        "the last of these without the forces that contacts bear at rest", "stress", "strain"
+    )
+    response: FloatArray = column("mean floor pressure times height per force", *_PLACES)
+    predicted: FloatArray = column(
+        "floor pressure times height per force of the elastic slab with these moduli", "solid", *_PLACES
+    )  #: nan without one
+    single: FloatArray = column(f"largest difference of one load to the slab {_PER}, mean", "smoothing")
+    difference: FloatArray = column(
+        f"largest difference of the mean over loads to the slab {_PER}", "solid", "smoothing"
+    )
+
+
+def compute(scene: Scene, margin: float, width: float, wide: float) -> Outcome:
+    """One disordered packing, with responses smoothed over ``width`` radii and ``wide`` heights.
+
+    Raises what ``rest_state`` raises.
+    """
+    problem = Problem.from_scene(scene)
     rest = rest_state(problem)
     packing, stiffness = problem.packing, problem.stiffness
-    answers = [strained(problem, rest, how, margin=task.margin) for how in FOLLOWING]
-    alone = strained(problem, rest, "free", margin=task.margin, prestress=False)
+    answers = [strained(problem, rest, how, margin=margin) for how in FOLLOWING]
+    alone = strained(problem, rest, "free", margin=margin, prestress=False)
     matrices = np.stack([answer.moduli for answer in answers]) / stiffness
     height = slab_height(rest, packing)
-    widths = np.array([task.width, task.wide * height])
+    widths = np.array([width, wide * height])
     floor: Floor = "rough" if problem.wall_friction else "smooth"
     each = responses(problem, rest, height, widths)
     mean = each.mean(axis=0)
@@ -187,25 +180,18 @@ def apart(found: FloatArray, predicted: FloatArray) -> FloatArray:
     return np.abs(found - predicted).max(axis=-1) / predicted.max(axis=-1)
 
 
-@dataclass(frozen=True)
-class LatticeTask:
-    scene: Scene
-    margin: float
-    responds: bool  #: whether its response, and not its moduli, is asked for
-
-
-def lattice_answer(task: LatticeTask) -> FloatArray:
-    """(following, 4) moduli over k_N, or the second difference of the response at the middle, per largest response."""
-    problem = Problem.from_scene(task.scene)
+def lattice_moduli(scene: Scene, margin: float) -> FloatArray:
+    """(following, 4) moduli over k_N of a lattice."""
+    problem = Problem.from_scene(scene)
     rest = rest_state(problem)
-    if task.responds:
-        return middle_curvature(problem, rest)
-    found = [symmetric(strained(problem, rest, how, margin=task.margin, prestress=False).moduli) for how in FOLLOWING]
+    found = [symmetric(strained(problem, rest, how, margin=margin, prestress=False).moduli) for how in FOLLOWING]
     return np.stack(found) / problem.stiffness
 
 
-def middle_curvature(problem: Problem, rest: State) -> FloatArray:
-    """() second difference of the response on the floor disks beside the one below the load, per largest response."""
+def middle_curvature(scene: Scene) -> FloatArray:
+    """() second difference of a lattice's response on the floor disks beside that below the load, per largest."""
+    problem = Problem.from_scene(scene)
+    rest = rest_state(problem)
     packing = problem.packing
     disks = floor_disks([rest], np.flatnonzero(packing.row == 0))
     top = packing.n - packing.row_count[-1] + packing.row_count[-1] // 2
@@ -269,184 +255,136 @@ def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, d
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``packings`` and ``lattice``."""
-    places, stored = slabs(parameters, surveyed=False), slabs(parameters, surveyed=True)
+    own = {place: _task(parameters, one) for place, one in slabs(parameters, surveyed=False).items()}
     # the largest first: two workers then end together
-    order = sorted(places, key=lambda place: -parameters.cases[place[0]].layers[place[1]])
-    ideal = _lattice_tasks(parameters)
-    tasks = [_task(parameters, *place) for place in order]
-    found = map_tasks(compute, tasks, what="packings")
-    answers = map_tasks(lattice_answer, ideal, what="lattices")
-    outcomes = dict(zip(order, found, strict=True))
-    outcomes |= chosen(parameters.survey_file, STORED, {place: _key(parameters, *place) for place in stored})
-    datasets = {"packings": _packings(parameters, outcomes), "lattice": _lattice(parameters, answers)}
+    outcomes = computed(own, "packings", work=lambda place: parameters.cases[place[0]].layers[place[1]])
+    ideal = computed(_lattice_tasks(parameters), "lattices")
+    outcomes |= chosen(parameters.survey_file, Outcome, slabs(parameters, surveyed=True))
+    datasets = {"packings": _packings(parameters, outcomes), "lattice": _lattice(parameters, ideal)}
     return labelled(datasets, parameters.base)
 
 
-def slabs(parameters: Parameters, *, surveyed: bool) -> list[tuple[int, int, int]]:
-    """Places of the packings of the survey, or of all others: of the case, of its size, and the realization."""
-    return [
-        (c, s, r)
+def slabs(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Disordered]:
+    """The packings of the survey, or all others, by their places: of the case, of its size, and the realization."""
+    return {
+        (c, s, r): Disordered(case.polydispersity, case.friction, case.layers[s], r)
         for c, case in enumerate(parameters.cases)
         for s, (own, further) in enumerate(zip(case.realizations, case.further, strict=True))
         for r in (range(own, own + further) if surveyed else range(own))
-    ]
+    }
 
 
-def _key(parameters: Parameters, c: int, s: int, r: int) -> Key:
-    """What tells a packing from others, as :data:`STORED` names it."""
-    case = parameters.cases[c]
-    return case.polydispersity, case.friction, case.layers[s], r
-
-
-def survey(parameters: Parameters) -> dict[Key, Task]:
+def survey(parameters: Parameters) -> dict[Disordered, partial[Outcome]]:
     """The packings that are left to the survey."""
-    return {_key(parameters, *place): _task(parameters, *place) for place in slabs(parameters, surveyed=True)}
+    return {one: _task(parameters, one) for one in slabs(parameters, surveyed=True).values()}
 
 
-def _task(parameters: Parameters, c: int, s: int, r: int) -> Task:
-    case = parameters.cases[c]
-    layers = case.layers[s]
+def _task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
     scene = parameters.base.updated(
         {
             "packing.sides": "periodic",
-            "packing.layers": layers,
-            "packing.disks_per_row": parameters.disks_per_layer * layers,
-            "packing.polydispersity": case.polydispersity,
+            "packing.layers": one.layers,
+            "packing.disks_per_row": parameters.disks_per_layer * one.layers,
+            "packing.polydispersity": one.polydispersity,
             "packing.lattice_constant": TOUCHING_LARGEST,
-            "packing.realization": r,
-            "contact.friction": case.friction,
-            "wall.friction": case.friction,
+            "packing.realization": one.realization,
+            "contact.friction": one.friction,
+            "wall.friction": one.friction,
         }
     )
-    return Task(scene, parameters.margin, parameters.width, parameters.wide)
+    return partial(compute, scene, parameters.margin, parameters.width, parameters.wide)
 
 
-def _lattice_tasks(parameters: Parameters) -> list[LatticeTask]:
-    """Straining with contacts closed and open, by ratio; then responses, by size and ratio."""
+def _lattice_tasks(parameters: Parameters) -> dict[tuple[str, int, int], partial[FloatArray]]:
+    """``moduli`` with contacts closed and open, by ratio; then ``bends`` of responses, by size and ratio."""
     group = parameters.lattice
 
-    def task(spacing: float, layers: int, row: int, ratio: float, responds: bool) -> LatticeTask:
-        changes: dict[str, Any] = {
-            "packing.sides": "periodic",
-            "packing.layers": layers,
-            "packing.disks_per_row": row,
-            "packing.lattice_constant": spacing,
-            "contact.friction": group.friction,
-            "contact.stiffness_ratio": ratio,
-            "wall.friction": 0.0,
-        }
-        return LatticeTask(parameters.base.updated(changes), parameters.margin, responds)
+    def scene(spacing: float, layers: int, row: int, ratio: float) -> Scene:
+        return parameters.base.updated(
+            {
+                "packing.sides": "periodic",
+                "packing.layers": layers,
+                "packing.disks_per_row": row,
+                "packing.lattice_constant": spacing,
+                "contact.friction": group.friction,
+                "contact.stiffness_ratio": ratio,
+                "wall.friction": 0.0,
+            }
+        )
 
-    strains = [
-        task(spacing, group.layers, NARROW, ratio, False)
-        for spacing in (group.closed, group.open)
-        for ratio in group.stiffness_ratios
-    ]
-    return strains + [
-        task(group.open, layers, parameters.disks_per_layer * layers, ratio, True)
-        for layers in group.responding
-        for ratio in group.responding_ratios
-    ]
+    tasks: dict[tuple[str, int, int], partial[FloatArray]] = {}
+    for (k, spacing), (r, ratio) in product(enumerate((group.closed, group.open)), enumerate(group.stiffness_ratios)):
+        strip = scene(spacing, group.layers, NARROW, ratio)
+        tasks["moduli", k, r] = partial(lattice_moduli, strip, parameters.margin)
+    for (k, layers), (r, ratio) in product(enumerate(group.responding), enumerate(group.responding_ratios)):
+        tasks["bends", k, r] = partial(
+            middle_curvature, scene(group.open, layers, parameters.disks_per_layer * layers, ratio)
+        )
+    return tasks
 
 
 def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outcome]) -> xr.Dataset:
     cases = parameters.cases
-    first = next(iter(outcomes.values()))
-    sizes = max(len(case.layers) for case in cases)
-    shape = (len(cases), sizes, 1 + max(r for _, _, r in outcomes))
-
-    def of_packings(name: str) -> FloatArray:
-        values = np.full(shape + np.shape(getattr(first, name)), np.nan)
-        for place, outcome in outcomes.items():
-            values[place] = getattr(outcome, name)
-        return values
-
-    layers, surveyed = np.full((len(cases), sizes), np.nan), np.zeros((len(cases), sizes))
-    for c, case in enumerate(cases):
-        layers[c, : len(case.layers)] = case.layers
-        surveyed[c, : len(case.layers)] = case.further
     along = ("case", "size", "realization")
-    single, difference = of_packings("single"), of_packings("difference")
-    of = {"one": single, "mean": difference[:, :, :, SOLIDS.index("free")]}
+    found = table(outcomes, *along).rename(matrices="stiffness")
+    layers = stacked({(c,): case.layers for c, case in enumerate(cases)}, float)
+    surveyed = np.nan_to_num(stacked({(c,): case.further for c, case in enumerate(cases)}, float))
+    of = {"one": found["single"].values, "mean": found["difference"].values[:, :, :, SOLIDS.index("free")]}
     tolerances = np.array(parameters.tolerances)
-    sizes_needed = np.stack(
+    sizes_needed = [
         [
-            [
-                [needed(layers[c], values[c, ..., w], tolerances, parameters.draws, parameters.seed) for w in range(2)]
-                for values in of.values()
-            ]
-            for c in range(len(cases))
+            [needed(layers[c], values[c, ..., w], tolerances, parameters.draws, parameters.seed) for w in range(2)]
+            for values in of.values()
         ]
-    )
-    matrices = of_packings("matrices")
-    per = "per largest pressure of the slab"
-    return xr.Dataset(
-        {
-            "layers": variable(("case", "size"), layers, "number of rows"),
-            "surveyed": variable(("case", "size"), surveyed, "realizations that are the survey's"),
-            "height": variable(along, of_packings("height"), f"height of the slab {LENGTH}"),
-            "coordination": variable(along, of_packings("coordination"), "contacts per disk that bears something"),
-            "at_limit": variable(along, of_packings("at_limit"), "contacts at the Coulomb limit, taken to stick"),
-            "stiffness": variable(
-                (*along, "following", "stress", "strain"), matrices, "stress per strain over k_N, as measured"
-            ),
-            "moduli": variable(
-                (*along, "following", "modulus"),
-                symmetric(matrices),
-                "moduli over k_N, what a solid that mirrors itself has of them",
-            ),
-            "prestress": variable(
-                (*along, "modulus"),
-                symmetric(matrices[..., -1, :, :] - of_packings("springs_alone")),
-                "what the forces that contacts bear at rest add to the moduli over k_N, rotations free",
-            ),
-            "response": variable(
-                (*along, "smoothing", "place"), of_packings("response"), "mean floor pressure times height per force"
-            ),
-            "predicted": variable(
-                (*along, "solid", "smoothing", "place"),
-                of_packings("predicted"),
-                "floor pressure times height per force of the elastic slab with these moduli",
-            ),
-            "single": variable(
-                (*along, "smoothing"), single, f"largest difference of one load to the slab {per}, mean"
-            ),
-            "difference": variable(
-                (*along, "solid", "smoothing"),
-                difference,
-                f"largest difference of the mean over loads to the slab {per}",
-            ),
-            "needed": variable(
-                ("case", "loads", "smoothing", "tolerance", "end"),
-                sizes_needed,
-                "number of rows from which on the difference is below the tolerance, by a power of it",
-            ),
-        },
-        coords={
-            "polydispersity": variable("case", [case.polydispersity for case in cases], "polydispersity"),
-            "friction": variable("case", [case.friction for case in cases], "friction between disks and of the floor"),
-            "following": variable("following", list(FOLLOWING), "how displacements and rotations follow the strain"),
-            "solid": variable("solid", list(SOLIDS), "moduli of the elastic slab"),
-            "modulus": variable("modulus", list("abcd"), "modulus of eq. (6)"),
-            "stress": variable("stress", ["xx", "zz", "xz"], "component of the stress"),
-            "strain": variable("strain", ["xx", "zz", "xz"], "component of the strain"),
-            "smoothing": variable(
-                "smoothing", [f"{parameters.width:g} radii", f"{parameters.wide:.3g} heights"], "w of the Gaussian"
-            ),
-            "loads": variable("loads", list(of), "one load, or the mean over the loads of a packing"),
-            "tolerance": variable("tolerance", tolerances, "difference to the elastic slab"),
-            "end": variable("end", ["value", "low", "high"], "value, and the 95 % interval of the bootstrap"),
-            "place": variable("place", PLACES, "distance from the load over the height of the slab"),
-        },
+        for c in range(len(cases))
+    ]
+    matrices, alone = found["stiffness"].values, found["springs_alone"].values
+    derived = {
+        "layers": variable(along[:2], layers, "number of rows"),
+        "surveyed": variable(along[:2], surveyed, "realizations that are the survey's"),
+        "moduli": variable(
+            (*along, "following", "modulus"),
+            symmetric(matrices),
+            "moduli over k_N, what a solid that mirrors itself has of them",
+        ),
+        "prestress": variable(
+            (*along, "modulus"),
+            symmetric(matrices[..., -1, :, :] - alone),
+            "what the forces that contacts bear at rest add to the moduli over k_N, rotations free",
+        ),
+        "needed": variable(
+            ("case", "loads", "smoothing", "tolerance", "end"),
+            sizes_needed,
+            "number of rows from which on the difference is below the tolerance, by a power of it",
+        ),
+    }
+    components = ["xx", "zz", "xz"]
+    return (
+        found.drop_vars("springs_alone")
+        .assign(derived)
+        .assign_coords(
+            labels("case", cases, polydispersity="polydispersity", friction=FRICTION)
+            | axes(
+                following=(FOLLOWING, "how displacements and rotations follow the strain"),
+                solid=(SOLIDS, "moduli of the elastic slab"),
+                modulus=("abcd", "modulus of eq. (6)"),
+                stress=(components, "component of the stress"),
+                strain=(components, "component of the strain"),
+                smoothing=([f"{parameters.width:g} radii", f"{parameters.wide:.3g} heights"], "w of the Gaussian"),
+                loads=(of, "one load, or the mean over the loads of a packing"),
+                tolerance=(tolerances, "difference to the elastic slab"),
+                end=(["value", "low", "high"], "value, and the 95 % interval of the bootstrap"),
+                place=(PLACES, "distance from the load over the height of the slab"),
+            )
+        )
     )
 
 
-def _lattice(parameters: Parameters, answers: list[FloatArray]) -> xr.Dataset:
+def _lattice(parameters: Parameters, answers: dict[tuple[str, int, int], FloatArray]) -> xr.Dataset:
     group = parameters.lattice
     ratios, near = np.array(group.stiffness_ratios), np.array(group.responding_ratios)
-    count = 2 * len(ratios)
-    measured = np.stack(answers[:count]).reshape(2, len(ratios), len(FOLLOWING), 4)
-    bends = np.stack(answers[count:]).reshape(len(group.responding), len(near))
+    measured = stacked({(k, r): one for (what, k, r), one in answers.items() if what == "moduli"})
+    bends = stacked({(k, r): one for (what, k, r), one in answers.items() if what == "bends"})
     expected = np.empty((2, len(ratios), len(ROTATIONS), 4))
     for k, horizontal in enumerate((1.0, 0.0)):
         for r, ratio in enumerate(ratios):
@@ -486,14 +424,14 @@ def _lattice(parameters: Parameters, answers: list[FloatArray]) -> xr.Dataset:
             ),
             "layers": variable(("size",), np.array(group.responding), "number of rows of the lattices that respond"),
         },
-        coords={
-            "contacts": variable("contacts", ["closed", "open"], "horizontal contacts"),
-            "stiffness_ratio": variable("stiffness_ratio", ratios, "k_T / k_N"),
-            "responding_ratio": variable("responding_ratio", near, "k_T / k_N"),
-            "following": variable("following", list(FOLLOWING), "how displacements and rotations follow the strain"),
-            "rotations": variable("rotations", list(ROTATIONS), "rotations of the disks"),
-            "modulus": variable("modulus", list("abcd"), "modulus of eq. (6)"),
-            "body": variable("body", list(BODIES), "elastic body"),
-            "estimate": variable("estimate", list(ESTIMATES), "polynomial in 1 / layers"),
-        },
+        coords=axes(
+            contacts=(["closed", "open"], "horizontal contacts"),
+            stiffness_ratio=(ratios, "k_T / k_N"),
+            responding_ratio=(near, "k_T / k_N"),
+            following=(FOLLOWING, "how displacements and rotations follow the strain"),
+            rotations=(ROTATIONS, "rotations of the disks"),
+            modulus=("abcd", "modulus of eq. (6)"),
+            body=(BODIES, "elastic body"),
+            estimate=(ESTIMATES, "polynomial in 1 / layers"),
+        ),
     )

@@ -13,7 +13,7 @@ same contacts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -27,62 +27,74 @@ from granular_response.solve import Problem, contact_answers, loaded_states
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
-from granular_response.theory.slab import Slab
+from granular_response.theory.slab import Slab as ElasticSlab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.peak_width.parameters import LEAST_REALIZATIONS, Case, Parameters
+from granular_response_paper.records import axes, column, columns, labels, record, table
 from granular_response_paper.survey.crossover import folded, weights
-from granular_response_paper.survey.packings import Key, Layout, chosen
+from granular_response_paper.survey.packings import chosen
+from granular_response_paper.tasks import computed
 
 #: Height of the line that stands for the floor (radii): below all centres, above what the floor contacts rest on.
 FLOOR_LINE = 1e-6
 #: Ends of intervals.
 LEVELS = (0.025, 0.975)
+SURVEYED = "1 where the packings are those of the survey"
 
 
-@dataclass(frozen=True)
-class Task:
-    """One packing, with one load of unit force."""
+@record
+class Slab:
+    """What tells a packing from others."""
 
-    scene: Scene
-    force: float | None  #: None: small ones
-    loads: int  #: as many small ones on disordered packings
-    margin: float  #: of these from the side walls, in heights
-    lines: int
-    width: float  #: w of the Gaussian
-    t: FloatArray  #: distances of the profiles, in depths
+    polydispersity: float = column("polydispersity")
+    friction: float = column("friction, of floor and walls too")
+    gravity: str = column("how gravity was applied")
+    force: float = column(f"at the reference height {FORCE}; 0 is the limit of small ones")
+    layers: int = column("number of rows")
+    realization: int = column("realization of the disorder")
 
 
-@dataclass(frozen=True)
+@record
 class Outcome:
-    height: float  #: of the surface over the floor
-    depth: FloatArray  #: (line,) below the surface; the last one is the floor
-    profile: FloatArray  #: (line, t) scaled, symmetric, mean over the loads
-    transmitted: FloatArray  #: (line,) part of the force that crosses the line
-    loads: float
+    height: float = column(f"height of the surface {LENGTH}")
+    depth: FloatArray = column(f"depth below the surface {LENGTH}", "line")  #: the last one is the floor
+    profile: FloatArray = column("vertical stress per force, times depth", "line", "t")  #: symmetric, mean over loads
+    transmitted: FloatArray = column("part of the force that crosses the line", "line")
+    loads: float = column("small loads on the packing")
 
 
-#: How the survey stores them.
-STORED = Layout(
-    Outcome,
-    {
-        "polydispersity": "polydispersity",
-        "friction": "friction, of floor and walls too",
-        "gravity": "how gravity was applied",
-        "force": f"at the reference height {FORCE}; 0 is the limit of small ones",
-        "layers": "number of rows",
-        "realization": "realization of the disorder",
-    },
-    {
-        "height": ((), f"height of the surface {LENGTH}"),
-        "depth": (("line",), f"depth below the surface {LENGTH}"),
-        "profile": (("line", "t"), "vertical stress per force, times depth"),
-        "transmitted": (("line",), "part of the force that crosses the line"),
-        "loads": ((), "small loads on the packing"),
-    },
-)
+@record
+class Widths:
+    """What is found of one case, along the lines of its highest slab or the floors of its slabs."""
+
+    depth: FloatArray = column(f"depth below the surface {LENGTH}", "along")
+    profile: FloatArray = column("vertical stress per force, times depth", "along", "t")
+    elastic_profile: FloatArray = column("the same in the elastic slab of the same height", "along", "t")
+    length: FloatArray = column(f"length by each definition {LENGTH}", "along", "definition")
+    elastic_length: FloatArray = column(f"the same in the elastic slab {LENGTH}", "along", "definition")
+    transmitted: FloatArray = column("part of the force that crosses the line", "along")
+    power: FloatArray = column("power of depth with which the length grows", "definition", "fit")
+    interval: FloatArray = column(
+        "95 % interval of the first of these; of a lattice the range over the fits", "definition", "level"
+    )
+    elastic_power: FloatArray = column("the same powers in the elastic slab", "definition", "fit")
+
+
+@record
+class Inside(Widths):
+    fitted: FloatArray = column("1 where the line is fitted", "along")
+    loads: float = column("small loads on a packing")
+    layers: int = column("number of layers")
+    surveyed: float = column(SURVEYED)
+
+
+@record
+class Floors(Widths):
+    layers: FloatArray = column("number of layers", "along")
+    packings: FloatArray = column("number of packings", "along")
+    surveyed: FloatArray = column(SURVEYED, "along")
 
 
 def grid(parameters: Parameters) -> FloatArray:
@@ -90,36 +102,41 @@ def grid(parameters: Parameters) -> FloatArray:
     return np.arange(round(parameters.reach / parameters.spacing) + 1, dtype=float) * parameters.spacing
 
 
-def compute(task: Task) -> Outcome:
-    """Raises what the solvers raise."""
-    problem = Problem.from_scene(task.scene)
-    rest, packing, t = rest_state(problem), problem.packing, task.t
+def compute(scene: Scene, force: float, loads: int, margin: float, lines: int, width: float, t: FloatArray) -> Outcome:
+    """One packing; ``scene`` has one load, of unit force.
+
+    ``force`` is 0 for small ones: on disordered packings as many as ``loads``, farther than ``margin`` (heights) from
+    the side walls. Profiles are on at most as many ``lines``, with a Gaussian of w = ``width``, at distances ``t`` in
+    depths. Raises what the solvers raise.
+    """
+    problem = Problem.from_scene(scene)
+    rest, packing = rest_state(problem), problem.packing
     problem = problem.with_loads(rest.position)
     z = rest.position[:, 1]
     rows = np.array([z[packing.row == row].mean() for row in range(int(packing.row.max()) + 1)])
     half_row = 0.5 * (rows[-1] - rows[0]) / (len(rows) - 1)
     surface = rows[-1] + half_row
     between = 0.5 * (rows[1:] + rows[:-1])[::-1]
-    chosen = np.unique(np.geomspace(1.0, len(between), min(task.lines, len(between))).round().astype(int)) - 1
-    line = np.append(between[chosen], FLOOR_LINE)
+    taken = np.unique(np.geomspace(1.0, len(between), min(lines, len(between))).round().astype(int)) - 1
+    line = np.append(between[taken], FLOOR_LINE)
     depth = surface - line
     depth[-1] = surface
-    if task.force is None:
-        disks = loaded_disks(packing, rest, task.margin * surface, task.loads if packing_varies(task.scene) else 1)
+    if not force:
+        disks = loaded_disks(packing, rest, margin * surface, loads if packing_varies(scene) else 1)
         answers = contact_answers(problem, rest, disks, sliding="stick")
         borne = [k for k in range(len(disks)) if np.isfinite(answers[0][k]).all()]
         fields = [(given_forces(rest, answers[0][k], answers[1][k]), rest.position[disks[k], 0], 1.0) for k in borne]
     else:
-        _, (loaded,) = loaded_states(problem, rest, [task.force])
+        _, (loaded,) = loaded_states(problem, rest, [force])
         start, end = common_candidates([rest, loaded], packing.radius)
         middle = rest.position[int(problem.load_disk[0]), 0]
-        fields = [(load_forces(start, end), middle, task.force)]
+        fields = [(load_forces(start, end), middle, force)]
     profile = np.zeros((len(line), len(t)))
     transmitted = np.zeros(len(line))
-    for forces, x, force in fields:
+    for forces, x, size in fields:
         for k in range(len(line)):
-            profile[k] += scaled(forces, x, line[k], depth[k], t, task.width) / force
-            transmitted[k] += line_forces(forces, line[k])[1].sum() / force
+            profile[k] += scaled(forces, x, line[k], depth[k], t, width) / size
+            transmitted[k] += line_forces(forces, line[k])[1].sum() / size
     return Outcome(surface, depth, profile / len(fields), transmitted / len(fields), len(fields))
 
 
@@ -150,65 +167,64 @@ def scaled(forces: ContactForces, x: float, height: float, depth: float, t: Floa
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``inside`` and ``floors``."""
-    own, stored = slabs(parameters, surveyed=False), slabs(parameters, surveyed=True)
-    tasks = [task(parameters, *one) for one in own]
-    found = map_tasks(compute, tasks, what="slabs")
-    outcomes = dict(zip(own, found, strict=True))
-    outcomes |= chosen(parameters.survey_file, STORED, {one: key(parameters, *one) for one in stored})
-    datasets = {"inside": _inside(parameters, outcomes), "floors": _floors(parameters, outcomes)}
+    own = {place: task(parameters, slab) for place, slab in slabs(parameters, surveyed=False).items()}
+    outcomes = computed(own, "slabs")
+    outcomes |= chosen(parameters.survey_file, Outcome, slabs(parameters, surveyed=True))
+    cases = [
+        [[outcomes[c, h, r] for r in range(case.count(h))] for h in range(len(case.heights))]
+        for c, case in enumerate(parameters.cases)
+    ]
+    each = list(zip(parameters.cases, cases, strict=True))
+    inside = table([_inside(parameters, case, found[-1]) for case, found in each], "case").rename_dims(along="line")
+    floors = table([_floors(parameters, case, found) for case, found in each], "case").rename_dims(along="slab")
+    datasets = {
+        "inside": inside.assign_coords(_coordinates(parameters, "of the lines")),
+        "floors": floors.assign_coords(_coordinates(parameters, "of the slabs")),
+    }
     for dataset in datasets.values():
         dataset.attrs.update({"fitted": list(parameters.fitted), "width": parameters.width})
     return labelled(datasets, parameters.base)
 
 
-def slabs(parameters: Parameters, *, surveyed: bool) -> list[tuple[int, int, int]]:
-    """Places of the slabs of the survey, or of all others: of the case, of its height, and the realization."""
-    return [
-        (c, h, r)
+def slabs(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Slab]:
+    """The slabs of the survey, or all others, by their places: of the case, of its height, and the realization."""
+    return {
+        (c, h, r): Slab(case.polydispersity, case.friction, case.gravity, case.force or 0.0, case.heights[h], r)
         for c, case in enumerate(parameters.cases)
         for h in range(len(case.heights))
         for r in range(case.count(h))
         if (h >= len(case.layers)) == surveyed
-    ]
+    }
 
 
-def key(parameters: Parameters, c: int, h: int, r: int) -> Key:
-    """What tells a slab from others, as :data:`STORED` names it."""
-    case = parameters.cases[c]
-    return case.polydispersity, case.friction, case.gravity, case.force or 0.0, case.heights[h], r
-
-
-def survey(parameters: Parameters) -> dict[Key, Task]:
+def survey(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
     """The slabs that are left to the survey."""
-    return {key(parameters, *one): task(parameters, *one) for one in slabs(parameters, surveyed=True)}
+    return {slab: task(parameters, slab) for slab in slabs(parameters, surveyed=True).values()}
 
 
-def task(parameters: Parameters, c: int, h: int, realization: int) -> Task:
+def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
     """One slab of a case."""
-    case = parameters.cases[c]
-    layers = case.heights[h]
-    scale = layers / parameters.reference_layers
-    scene = parameters.base.updated(
+    scale = slab.layers / asked.reference_layers
+    scene = asked.base.updated(
         {
-            "packing.layers": layers,
-            "packing.disks_per_row": parameters.disks_per_layer * layers + 1,
-            "packing.polydispersity": case.polydispersity,
-            "packing.realization": realization,
-            "contact.normal_stiffness": parameters.base.contact.normal_stiffness * scale,
-            "contact.friction": case.friction,
-            "wall.friction": case.friction,
-            "preparation.gravity": case.gravity,
+            "packing.layers": slab.layers,
+            "packing.disks_per_row": asked.disks_per_layer * slab.layers + 1,
+            "packing.polydispersity": slab.polydispersity,
+            "packing.realization": slab.realization,
+            "contact.normal_stiffness": asked.base.contact.normal_stiffness * scale,
+            "contact.friction": slab.friction,
+            "wall.friction": slab.friction,
+            "preparation.gravity": slab.gravity,
         }
     )
-    force = None if case.force is None else case.force * scale**2
-    asked = parameters
-    return Task(scene, force, asked.loads, asked.margin, asked.lines, asked.width, grid(asked))
+    force = slab.force * scale**2
+    return partial(compute, scene, force, asked.loads, asked.margin, asked.lines, asked.width, grid(asked))
 
 
 def elastic(case: Case, parameters: Parameters, height: float, depth: FloatArray) -> FloatArray:
     """(line, t) scaled profiles of the elastic slab, coarse-grained along x as those of the packing."""
     ratio = parameters.base.contact.stiffness_ratio if case.friction > 0.0 else 0.0
-    slab = Slab(
+    slab = ElasticSlab(
         height, lattice.moduli(Springs.uniform(1.0, ratio), "free"), "rough" if case.friction > 0.0 else "smooth"
     )
     t, deviation = grid(parameters), parameters.width / np.sqrt(2.0)
@@ -223,143 +239,82 @@ def drawn(profile: FloatArray, seed: int, asked: Parameters) -> FloatArray | Non
     return np.einsum("wr,r...->w...", weights(count, asked.draws, seed) / count, profile)
 
 
-def fit(
-    depth: FloatArray, profile: FloatArray, draws: FloatArray | None, t: FloatArray, asked: Parameters
+def widths(
+    asked: Parameters,
+    depth: FloatArray,
+    profile: FloatArray,
+    elastic_profile: FloatArray,
+    draws: FloatArray | None,
+    used: NDArray[np.bool_],
 ) -> dict[str, FloatArray]:
-    """Lengths and their powers of ``depth`` (d,), of mean profiles (d, t) and of those of ``draws`` (draw, d, t).
+    """Fields of :class:`Widths`, of mean profiles (d, t) at ``depth`` (d,).
 
-    ``length`` (d, definition) in radii, ``power`` (definition, fit), ``interval`` (definition, level): with 95 % of the
-    draws; without any the range over the fits.
+    Powers are over the depths that are ``used`` (d,). Their interval has 95 % of the ``draws`` (draw, used, t) of
+    profiles; without any it is the range over the fits.
     """
-    length = lengths(t, profile, asked.tolerance) * depth[:, None]
-    power = powers(depth, length.T)
+    t = grid(asked)
+    length, elastic_length = (lengths(t, one, asked.tolerance) * depth[:, None] for one in (profile, elastic_profile))
+    power, elastic_power = (powers(depth[used], one[used].T) for one in (length, elastic_length))
     if draws is None:
         interval = np.stack([power.min(axis=-1), power.max(axis=-1)], axis=-1)
     else:
-        all_ = lengths(t, draws, asked.tolerance) * depth[:, None]
+        all_ = lengths(t, draws, asked.tolerance) * depth[used][:, None]
         # nan where a draw has none
-        interval = np.quantile(powers(depth, np.swapaxes(all_, 1, 2))[..., 0], LEVELS, axis=0).T
-    return {"length": length, "power": power, "interval": interval}
+        interval = np.quantile(powers(depth[used], np.swapaxes(all_, 1, 2))[..., 0], LEVELS, axis=0).T
+    return {
+        "depth": depth, "profile": profile, "elastic_profile": elastic_profile,
+        "length": length, "elastic_length": elastic_length,
+        "power": power, "interval": interval, "elastic_power": elastic_power,
+    }  # fmt: skip
 
 
-def _inside(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outcome]) -> xr.Dataset:
-    """Of the highest slab of each case: profiles on all lines, powers over those that are fitted."""
-    t, found, most = grid(parameters), [], 0
-    for c, case in enumerate(parameters.cases):
-        highest = len(case.heights) - 1
-        these = [outcomes[c, highest, r] for r in range(case.count(highest))]
-        depth = np.mean([one.depth for one in these], axis=0)
-        height = float(np.mean([one.height for one in these]))
-        profile = np.stack([one.profile for one in these])
-        used = (depth >= parameters.fitted[0]) & (depth <= parameters.fitted[1] * height)
-        reference = elastic(case, parameters, height, depth)
-        draws = drawn(profile[:, used], parameters.seed, parameters)
-        ours = fit(depth[used], profile[:, used].mean(axis=0), draws, t, parameters)
-        found.append(
-            {
-                "depth": depth,
-                "fitted": used.astype(float),
-                "profile": profile.mean(axis=0),
-                "elastic_profile": reference,
-                "length": lengths(t, profile.mean(axis=0), parameters.tolerance) * depth[:, None],
-                "elastic_length": lengths(t, reference, parameters.tolerance) * depth[:, None],
-                "transmitted": np.mean([one.transmitted for one in these], axis=0),
-                "power": ours["power"],
-                "interval": ours["interval"],
-                "elastic_power": fit(depth[used], reference[used], None, t, parameters)["power"],
-                "loads": np.array(float(np.mean([one.loads for one in these]))),
-            }
-        )
-        most = max(most, len(depth))
-    dataset = _dataset(parameters, found, "line", most, "of the lines")
-    dataset["layers"] = variable("case", [case.heights[-1] for case in parameters.cases], "number of layers")
-    dataset["surveyed"] = variable("case", [float(bool(case.surveyed)) for case in parameters.cases], SURVEYED)
-    return dataset
-
-
-def _floors(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outcome]) -> xr.Dataset:
-    """On the floors of the slabs of each case."""
-    t, found, most = grid(parameters), [], 0
-    for c, case in enumerate(parameters.cases):
-        these = [[outcomes[c, h, r] for r in range(case.count(h))] for h in range(len(case.heights))]
-        height = np.array([np.mean([one.height for one in row]) for row in these])
-        floors = [np.stack([one.profile[-1] for one in row]) for row in these]
-        profile = np.stack([floor.mean(axis=0) for floor in floors])
-        # packings of different heights have nothing to do with each other
-        each = [drawn(floor, parameters.seed + h, parameters) for h, floor in enumerate(floors)]
-        some = [one for one in each if one is not None]
-        draws = np.stack(some, axis=1) if len(some) == len(each) else None
-        reference = np.concatenate([elastic(case, parameters, h, np.array([h])) for h in height])
-        ours = fit(height, profile, draws, t, parameters)
-        found.append(
-            {
-                "depth": height,
-                "profile": profile,
-                "elastic_profile": reference,
-                "length": ours["length"],
-                "elastic_length": lengths(t, reference, parameters.tolerance) * height[:, None],
-                "transmitted": np.array([np.mean([one.transmitted[-1] for one in row]) for row in these]),
-                "power": ours["power"],
-                "interval": ours["interval"],
-                "elastic_power": fit(height, reference, None, t, parameters)["power"],
-                "layers": np.array(case.heights, float),
-                "packings": np.array([float(len(row)) for row in these]),
-                "surveyed": np.array([float(layers in case.surveyed) for layers in case.heights]),
-            }
-        )
-        most = max(most, len(height))
-    return _dataset(parameters, found, "slab", most, "of the slabs")
-
-
-SURVEYED = "1 where the packings are those of the survey"
-
-#: Dimensions after that of the case and, where there is one, that of the lines or slabs; long names.
-_TEXTS = {
-    "depth": ("d", f"depth below the surface {LENGTH}"),
-    "fitted": ("d", "1 where the line is fitted"),
-    "profile": ("dt", "vertical stress per force, times depth"),
-    "elastic_profile": ("dt", "the same in the elastic slab of the same height"),
-    "length": ("dk", f"length by each definition {LENGTH}"),
-    "elastic_length": ("dk", f"the same in the elastic slab {LENGTH}"),
-    "transmitted": ("d", "part of the force that crosses the line"),
-    "layers": ("d", "number of layers"),
-    "packings": ("d", "number of packings"),
-    "surveyed": ("d", SURVEYED),
-    "power": ("kf", "power of depth with which the length grows"),
-    "interval": ("kl", "95 % interval of the first of these; of a lattice the range over the fits"),
-    "elastic_power": ("kf", "the same powers in the elastic slab"),
-    "loads": ("", "small loads on a packing"),
-}
-
-
-def _dataset(
-    parameters: Parameters, found: list[dict[str, FloatArray]], along: str, most: int, what: str
-) -> xr.Dataset:
-    """One entry for each case; NaN behind its last line or slab."""
-    names = {"d": along, "t": "t", "k": "definition", "f": "fit", "l": "level"}
-    data = {}
-    for name in found[0]:
-        letters, text = _TEXTS[name]
-        values = [one[name] for one in found]
-        if letters.startswith("d"):
-            values = [np.pad(v, [(0, most - len(v))] + [(0, 0)] * (v.ndim - 1), constant_values=np.nan) for v in values]
-        data[name] = variable(("case", *(names[letter] for letter in letters)), np.stack(values), text)
-    cases = parameters.cases
-    return xr.Dataset(
-        data,
-        coords={
-            "polydispersity": variable("case", [case.polydispersity for case in cases], "polydispersity"),
-            "friction": variable("case", [case.friction for case in cases], "friction, of floor and walls too"),
-            "gravity": variable("case", [case.gravity for case in cases], "how gravity was applied"),
-            "realizations": variable("case", [case.realizations for case in cases], "number of realizations"),
-            "force": variable(
-                "case",
-                np.array([case.force or 0.0 for case in cases]),
-                f"at the reference height {FORCE}; 0 is the limit of small ones",
-            ),
-            "t": variable("t", grid(parameters), "distance from the load per depth"),
-            "definition": variable("definition", list(DEFINITIONS), "lengths"),
-            "fit": variable("fit", list(FITS), f"depths {what} that are used"),
-            "level": variable("level", np.array(LEVELS), "ends of the interval"),
-        },
+def _inside(parameters: Parameters, case: Case, found: list[Outcome]) -> Inside:
+    """Of the highest slab of a case: profiles on all lines, powers over those that are fitted."""
+    depth = np.mean([one.depth for one in found], axis=0)
+    height = float(np.mean([one.height for one in found]))
+    profile = np.stack([one.profile for one in found])
+    used = (depth >= parameters.fitted[0]) & (depth <= parameters.fitted[1] * height)
+    draws = drawn(profile[:, used], parameters.seed, parameters)
+    return Inside(
+        **widths(parameters, depth, profile.mean(axis=0), elastic(case, parameters, height, depth), draws, used),
+        transmitted=np.mean([one.transmitted for one in found], axis=0),
+        fitted=used.astype(float),
+        loads=float(np.mean([one.loads for one in found])),
+        layers=case.heights[-1],
+        surveyed=float(bool(case.surveyed)),
     )
+
+
+def _floors(parameters: Parameters, case: Case, found: list[list[Outcome]]) -> Floors:
+    """On the floors of the slabs of a case."""
+    height = np.array([np.mean([one.height for one in row]) for row in found])
+    floors = [np.stack([one.profile[-1] for one in row]) for row in found]
+    # packings of different heights have nothing to do with each other
+    each = [drawn(floor, parameters.seed + h, parameters) for h, floor in enumerate(floors)]
+    some = [one for one in each if one is not None]
+    draws = np.stack(some, axis=1) if len(some) == len(each) else None
+    profile = np.stack([floor.mean(axis=0) for floor in floors])
+    reference = np.concatenate([elastic(case, parameters, h, np.array([h])) for h in height])
+    return Floors(
+        **widths(parameters, height, profile, reference, draws, np.full(len(height), True)),
+        transmitted=np.array([np.mean([one.transmitted[-1] for one in row]) for row in found]),
+        layers=np.array(case.heights, float),
+        packings=np.array([float(len(row)) for row in found]),
+        surveyed=np.array([float(layers in case.surveyed) for layers in case.heights]),
+    )
+
+
+def _coordinates(parameters: Parameters, what: str) -> dict[str, xr.Variable]:
+    cases, of = parameters.cases, {name: one.long_name for name, one in columns(Slab).items()}
+    texts = {name: of[name] for name in ("polydispersity", "friction", "gravity")}
+    force = np.array([case.force or 0.0 for case in cases])
+    return {
+        **labels("case", cases, **texts, realizations="number of realizations"),
+        "force": variable("case", force, of["force"]),
+        **axes(
+            t=(grid(parameters), "distance from the load per depth"),
+            definition=(DEFINITIONS, "lengths"),
+            fit=(FITS, f"depths {what} that are used"),
+            level=(LEVELS, "ends of the interval"),
+        ),
+    }

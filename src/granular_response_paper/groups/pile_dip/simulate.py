@@ -11,9 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from granular_response.observe import stress as coarse
 from granular_response.observe.floor import floor_disks, floor_force
@@ -25,11 +27,13 @@ from granular_response.solve import Problem, minimise
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, STATUSES, certificates_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.pile_dip.parameters import Parameters
+from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.tasks import computed
 
 CASES = ("frictionless", "mirrored", "frictional")
+OF_CASES = (CASES, "pile; the two frictionless ones are mirror images")
 
 
 def settle(scene: Scene) -> tuple[State, ...]:
@@ -65,103 +69,84 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``piles`` (states and numbers of the three cases) and ``stress``."""
     frictional = parameters.base
     without = frictional.updated({"contact.friction": 0.0, "wall.friction": 0.0})
-    found = map_tasks(settle, [without, frictional], what="piles")
+    found = computed({"without": partial(settle, without), "with": partial(settle, frictional)}, "piles")
     packing = frictional.packing.build()
-    states = common_candidates([state for states in found for state in states], packing.radius)
+    states = common_candidates([state for states in found.values() for state in states], packing.radius)
     stress = _stress_dataset(packing, states, parameters.stress_width, parameters.stress_spacing, parameters.dip_height)
     datasets = {"piles": _piles_dataset(packing, states), "stress": stress}
     return labelled(datasets, frictional)
 
 
-def _case() -> xr.Variable:
-    return variable("case", list(CASES), "pile; the two frictionless ones are mirror images")
+@record
+class Pile:
+    """One pile at rest; a region of open contacts is on its axis."""
+
+    position: FloatArray = column(f"disk centre x, z {LENGTH}", "disk", "axis")
+    contact_force: FloatArray = column(f"contact force on the first disk {FORCE}", "contact", "axis")
+    contact_status: NDArray[np.int8] = column("contact status", "contact", attributes=STATUSES)
+    wall_force: FloatArray = column(f"force of the wall on its disk {FORCE}", "wall_contact", "axis")
+    floor_force: FloatArray = column(f"vertical floor force {FORCE}", "floor_disk")
+    floor_dip: float = column(
+        "how far the floor force under the apex is below the lower maximum beside it, per largest"
+    )
+    floor_asymmetry: float = column(f"largest difference of a floor force from its mirror image {FORCE}")
+    open_contacts: float = column("contacts of the lattice that are open")
+    central_open_contacts: float = column("open contacts in the connected region on the axis of the pile")
+    central_horizontal: float = column("how many of them are horizontal on the lattice")
+    central_height: float = column(f"height of the highest contact of that region above the floor {LENGTH}")
+    central_width: float = column(f"largest extent of one row of it {LENGTH}")
+
+    @classmethod
+    def of(cls, packing: Packing, state: State, bottom: NDArray[np.intp], x: FloatArray) -> Pile:
+        """With the floor disks ``bottom`` at ``x`` from the axis."""
+        floor = floor_force(state, bottom)
+        opened = ~state.pairs.touching
+        apex = state.position[int(np.argmax(state.position[:, 1]))]
+        centre = contact_centre(state)
+        start = np.abs(centre[:, 0] - 0.5 * packing.width) < 2.0
+        region = open_region(state, opened, apex, start=start)
+        inside, row = region.contacts, packing.row
+        horizontal = row[state.pairs.first] == row[state.pairs.second]
+        return cls(
+            position=state.position,
+            contact_force=state.pair_force(),
+            contact_status=state.pairs.status,
+            wall_force=state.wall_force(),
+            floor_force=floor,
+            floor_dip=central_dip(x, floor),
+            floor_asymmetry=np.abs(floor - floor[::-1]).max(),
+            open_contacts=int(np.count_nonzero(opened)),
+            central_open_contacts=region.count,
+            central_horizontal=int(np.count_nonzero(inside & horizontal)),
+            central_height=centre[inside, 1].max() if region.count else 0.0,
+            central_width=region.width,
+        )
 
 
 def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
     pairs, walls = states[0].pairs, states[0].walls
     bottom = floor_disks(states, np.flatnonzero(packing.row == 0))
     x = packing.position[bottom, 0] - 0.5 * packing.width
-    floor = np.stack([floor_force(state, bottom) for state in states])
-    scalars = np.array([_scalars(packing, state) for state in states], dtype=float).T
-    texts = {
-        "open_contacts": "contacts of the lattice that are open",
-        "central_open_contacts": "open contacts in the connected region on the axis of the pile",
-        "central_horizontal": "how many of them are horizontal on the lattice",
-        "central_height": f"height of the highest contact of that region above the floor {LENGTH}",
-        "central_width": f"largest extent of one row of it {LENGTH}",
-    }
-    asymmetry = np.abs(floor - floor[:, ::-1]).max(axis=1)
-    status = np.stack([state.pairs.status for state in states])
-    dims = ("case", "contact")
-    return xr.Dataset(
-        {
-            "position": variable(
-                ("case", "disk", "axis"),
-                np.stack([state.position for state in states]),
-                f"disk centre x, z {LENGTH}",
-            ),
-            "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
-            "contact_disk": variable("contact", pairs.first, "disk that the contact force acts on"),
-            "contact_partner": variable("contact", pairs.second, "other disk"),
-            "contact_force": variable(
-                (*dims, "axis"),
-                np.stack([state.pair_force() for state in states]),
-                f"contact force on the first disk {FORCE}",
-            ),
-            "contact_status": variable(dims, status, "contact status", **STATUSES),
-            "wall_disk": variable("wall_contact", walls.first, "disk that the wall's force acts on"),
-            "wall_index": variable("wall_contact", walls.second, "wall: 0 floor, 1 left, 2 right"),
-            "wall_force": variable(
-                ("case", "wall_contact", "axis"),
-                np.stack([state.wall_force() for state in states]),
-                f"force of the wall on its disk {FORCE}",
-            ),
-            "floor_force": variable(("case", "floor_disk"), floor, f"vertical floor force {FORCE}"),
-            "floor_dip": variable(
-                "case",
-                [central_dip(x, force) for force in floor],
-                "how far the floor force under the apex is below the lower maximum beside it, per largest",
-            ),
-            "floor_asymmetry": variable(
-                "case", asymmetry, f"largest difference of a floor force from its mirror image {FORCE}"
-            ),
-            "image_difference": variable(
-                (),
-                float(np.abs(floor[0] - floor[1, ::-1]).max()),
-                f"largest difference of the two minima's floor forces after mirroring {FORCE}",
-            ),
-            "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
-            **{
-                name: variable("case", values, text)
-                for (name, text), values in zip(texts.items(), scalars, strict=True)
-            },
-        },
-        coords={
-            "case": _case(),
-            "axis": variable("axis", ["x", "z"], "axis labels"),
-            "floor_disk": variable("floor_disk", bottom, "index of the floor disk"),
-            "x_floor": variable("floor_disk", x, f"position from the axis of the pile {LENGTH}"),
-        },
-    ).merge(certificates_dataset(states, "case"))
-
-
-def _scalars(packing: Packing, state: State) -> tuple[float, ...]:
-    """The numbers of open contacts of ``_piles_dataset``, in its order."""
-    opened = ~state.pairs.touching
-    apex = state.position[int(np.argmax(state.position[:, 1]))]
-    centre = contact_centre(state)
-    start = np.abs(centre[:, 0] - 0.5 * packing.width) < 2.0
-    region = open_region(state, opened, apex, start=start)
-    inside = region.contacts
-    row = packing.row
-    horizontal = row[state.pairs.first] == row[state.pairs.second]
-    height = float(centre[inside, 1].max()) if region.count else 0.0
+    piles = [Pile.of(packing, state, bottom, x) for state in states]
+    image = np.abs(piles[0].floor_force - piles[1].floor_force[::-1]).max()
     return (
-        int(np.count_nonzero(opened)),
-        region.count,
-        int(np.count_nonzero(inside & horizontal)),
-        height,
-        region.width,
+        table(piles, "case")
+        .assign(
+            radius=variable("disk", packing.radius, f"disk radius {LENGTH}"),
+            contact_disk=variable("contact", pairs.first, "disk that the contact force acts on"),
+            contact_partner=variable("contact", pairs.second, "other disk"),
+            wall_disk=variable("wall_contact", walls.first, "disk that the wall's force acts on"),
+            wall_index=variable("wall_contact", walls.second, "wall: 0 floor, 1 left, 2 right"),
+            image_difference=variable(
+                (), image, f"largest difference of the two minima's floor forces after mirroring {FORCE}"
+            ),
+            width=variable((), packing.width, f"distance of the side walls {LENGTH}"),
+        )
+        .assign_coords(
+            axes(case=OF_CASES, axis=("xz", "axis labels"), floor_disk=(bottom, "index of the floor disk"))
+            | {"x_floor": variable("floor_disk", x, f"position from the axis of the pile {LENGTH}")}
+        )
+        .merge(certificates_dataset(states, "case"))
     )
 
 
@@ -193,9 +178,9 @@ def _stress_dataset(packing: Packing, states: Sequence[State], w: float, spacing
     }
     return xr.Dataset(
         data,
-        coords={
-            "case": _case(),
-            "x": variable("x", x, f"distance from the axis of the pile {LENGTH}"),
-            "z": variable("z", z, f"height above the floor {LENGTH}"),
-        },
+        coords=axes(
+            case=OF_CASES,
+            x=(x, f"distance from the axis of the pile {LENGTH}"),
+            z=(z, f"height above the floor {LENGTH}"),
+        ),
     )

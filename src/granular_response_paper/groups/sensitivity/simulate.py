@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,11 +19,12 @@ from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
 from granular_response.solve.timestep import resolve_time_step
-from granular_response.state import State
+from granular_response.state import FloatArray, State
 from granular_response.store.result import variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.groups.sensitivity.parameters import Parameters
+from granular_response_paper.records import axes, column, labels, record, table
+from granular_response_paper.tasks import computed
 
 REFERENCE = "reference"
 
@@ -69,40 +71,38 @@ def variants() -> list[Variant]:
     ]  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Task:
-    scene: Scene
-    variant: Variant
-    steps: int = 0  #: length of the run by a friction law that statics does not have; 0 for an ordinary variant
-
-
-@dataclass(frozen=True)
+@record
 class Outcome:
-    response: np.ndarray  #: (bottom row,)
-    x: np.ndarray  #: (bottom row,)
-    kinetic_energy: float
-    force_residual: float
+    floor_response: FloatArray = column("floor response per applied force", "floor_disk")
+    kinetic_energy: float = column(
+        "kinetic energy per disk where the dynamics stopped, in mean weight times mean radius"
+    )
+    force_residual: float = column("largest unbalanced force on a disk in mean disk weights")
+    x: FloatArray = column("lattice position from the loaded disk in mean radii", "floor_disk")
 
 
-def compute(task: Task) -> Outcome:
-    """The floor response of one variant."""
-    rest_scene = task.scene.updated({"protocol.method": "dynamics", **task.variant.rest})
-    load_scene = task.scene.updated({"protocol.method": "dynamics", **task.variant.load})
+def compute(scene: Scene, variant: Variant, steps: int) -> Outcome:
+    """The floor response of one variant.
+
+    ``steps`` is the length of the run by a friction law that statics does not have; 0 for an ordinary variant.
+    """
+    rest_scene = scene.updated({"protocol.method": "dynamics", **variant.rest})
+    load_scene = scene.updated({"protocol.method": "dynamics", **variant.load})
     rest = rest_state(Problem.from_scene(rest_scene))
     problem = Problem.from_scene(load_scene).with_loads(rest.position)
-    if task.steps:
-        return _outcome(problem, rest, _by_another_law(problem, rest, task))
+    if steps:
+        return _outcome(problem, rest, _by_another_law(problem, rest, LAWS_OF_MOTION[variant.name], steps))
     _, (loaded,) = loaded_states(problem, rest, [1.0])
     return _outcome(problem, rest, loaded)
 
 
-def _by_another_law(problem: Problem, rest: State, task: Task) -> State:
+def _by_another_law(problem: Problem, rest: State, law: Mapping[str, Any], steps: int) -> State:
     """The loaded state after a fixed time by a friction law that need not have a rest."""
-    other = Problem.from_scene(problem.scene.updated(LAWS_OF_MOTION[task.variant.name]))
+    other = Problem.from_scene(problem.scene.updated(law))
     other = replace(other, load_disk=problem.load_disk, load=problem.load)
     dynamics = Dynamics(other, rest, problem.scene.protocol.integrator, resolve_time_step(other))
     ramp = (0.0, 1.0, problem.scene.protocol.ramp_time)
-    return relax(dynamics, Stop(1e-30, maximum_steps=task.steps), load=ramp)
+    return relax(dynamics, Stop(1e-30, maximum_steps=steps), load=ramp)
 
 
 def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
@@ -113,7 +113,7 @@ def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
     if energy is None:
         energy = certificate.kinetic_energy if certificate else np.nan
     return Outcome(
-        response=floor_response(rest, loaded, bottom, total),
+        floor_response=floor_response(rest, loaded, bottom, total),
         x=problem.packing.position[bottom, 0] - problem.packing.position[problem.load_disk[0], 0],
         kinetic_energy=float(energy),
         force_residual=certificate.force_residual if certificate else np.nan,
@@ -122,54 +122,38 @@ def _outcome(problem: Problem, rest: State, loaded: State) -> Outcome:
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """One dataset for each coefficient of friction; see the module."""
-    known = variants()
-    laws = [
+    known = [
+        *variants(),
         Variant("literal_friction", "the paper's equation for the spring taken literally", {}, {}),
         Variant("unloading_friction", "the spring frozen at the limit, free to unload", {}, {}),
     ]
     load = {"disk": "top-centre", "force": [0.0, -parameters.force]}
-    tasks = []
+    tasks = {}
     for friction in parameters.friction:
         scene = parameters.scene.updated({"contact.friction": friction, "loads": [load]})
-        tasks += [Task(scene, variant) for variant in known]
-        tasks += [Task(scene, law, parameters.literal_steps) for law in laws]
-    outcomes = map_tasks(compute, tasks)
+        for variant in known:
+            steps = parameters.literal_steps if variant.name in LAWS_OF_MOTION else 0
+            tasks[friction, variant.name] = partial(compute, scene, variant, steps)
+    outcomes = computed(tasks, "variants")
     attributes = {"force": parameters.force, "layers": int(parameters.scene.packing.build().row_count.size)}
-    datasets = {}
-    per = len(known) + len(laws)
-    for k, friction in enumerate(parameters.friction):
-        dataset = _dataset([*known, *laws], outcomes[k * per : (k + 1) * per])
-        datasets[f"mu_{friction:g}"] = dataset.assign_attrs(attributes)
-    return datasets
+    return {
+        f"mu_{friction:g}": _dataset(known, [outcomes[friction, one.name] for one in known]).assign_attrs(attributes)
+        for friction in parameters.friction
+    }
 
 
 def _dataset(known: list[Variant], outcomes: list[Outcome]) -> xr.Dataset:
-    response = np.stack([o.response for o in outcomes])
+    found = table(outcomes, "variant")
+    response, x = found["floor_response"].values, found["x"].variable.isel(variant=0)
     difference = response - response[0]
-    return xr.Dataset(
-        {
-            "floor_response": variable(("variant", "floor_disk"), response, "floor response per applied force"),
-            "largest_difference": variable(
-                "variant", np.abs(difference).max(axis=1), "largest difference of the floor response"
-            ),
-            "rms_difference": variable(
-                "variant", np.sqrt((difference**2).mean(axis=1)), "rms difference of the floor response"
-            ),
-            "response_sum": variable("variant", response.sum(axis=1), "sum of the floor response"),
-            "kinetic_energy": variable(
-                "variant",
-                [o.kinetic_energy for o in outcomes],
-                "kinetic energy per disk where the dynamics stopped, in mean weight times mean radius",
-            ),
-            "force_residual": variable(
-                "variant",
-                [o.force_residual for o in outcomes],
-                "largest unbalanced force on a disk in mean disk weights",
-            ),
-            "text": variable("variant", [v.text for v in known], "what is changed"),
-        },
-        coords={
-            "variant": variable("variant", [v.name for v in known], "name of the variant"),
-            "x": variable("floor_disk", outcomes[0].x, "lattice position from the loaded disk in mean radii"),
-        },
+    derived = found.drop_vars("x").assign(
+        largest_difference=variable(
+            "variant", np.abs(difference).max(axis=1), "largest difference of the floor response"
+        ),
+        rms_difference=variable(
+            "variant", np.sqrt((difference**2).mean(axis=1)), "rms difference of the floor response"
+        ),
+        response_sum=variable("variant", response.sum(axis=1), "sum of the floor response"),
     )
+    names = axes(variant=([one.name for one in known], "name of the variant"))
+    return derived.assign(labels("variant", known, text="what is changed")).assign_coords(names | {"x": x})

@@ -11,9 +11,7 @@ and contacts that slide (gravity that grows slowly leaves some at the Coulomb li
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,66 +19,93 @@ import xarray as xr
 from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import SLIDING, FloatArray, State
-from granular_response.store.result import LENGTH, certificates_dataset, variable
-from granular_response.sweeps.tasks import map_tasks
+from granular_response.store.result import LENGTH, certificates_dataset
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.slab_comparison.parameters import Case, Parameters
+from granular_response_paper.records import column, record, table
 from granular_response_paper.slab_response import LoadPath, Measures
+from granular_response_paper.tasks import computed
 
 FLOORS: tuple[Floor, ...] = ("smooth", "rough")
 
 #: Floor disks within this many slab heights of the load are compared; the walls are farther off.
 COMPARED = 1.5
+_COMPARED = f"largest difference within {COMPARED:g} slab heights of the load, per largest elastic response"
 
 
-@dataclass(frozen=True)
-class Outcome:
-    width: float  #: distance of the side walls
-    x: FloatArray  #: (floor_disk,)
-    response: FloatArray  #: (floor_disk,)
-    curvature: float  #: largest difference to the response to half the force, per largest response
-    open_at_rest: int
-    opened: int
-    sliding: int
-    state: State
+@record
+class Slab:
+    floor_response: FloatArray = column("floor response per force", "floor_disk")
+    elastic: FloatArray = column("share of the elastic slab with the same moduli, floor and walls", "floor_disk")
+    x: FloatArray = column(f"position from the loaded disk {LENGTH}", "floor_disk")
+    distance: float = column(f"packing and elastic slab: {_COMPARED}")
+    distance_other_floor: float = column(f"packing and elastic slab with the other floor: {_COMPARED}")
+    nonlinearity: float = column("largest change from half the force, per largest response")
+    response_sum: float = column("sum of the floor response")
+    open_at_rest: int = column("neighbours that do not touch at rest")
+    opened: int = column("contacts that the force opens")
+    sliding: int = column("contacts of disks that slide under the force")
+    layers: int = column("number of layers")
+    disks_per_layer: int = column("disks of a row per layer")
+    friction: float = column("coefficient of friction")
+    floor: str = column("smooth, or rough: friction on floor and walls too")
+    gravity: str = column("how gravity was applied")
 
 
-def compute(scene: Scene, force: float) -> Outcome:
-    """The response to the force and to half of it, of a scene with one load of unit force.
+def compute(base: Scene, case: Case, layers: int, force: float) -> tuple[Slab, State]:
+    """The response to the force and to half of it beside that of elastic slabs, and the state under the force.
 
-    Raises what the solvers raise.
+    ``base`` has one load of unit force. Raises what the solvers raise.
     """
-    path = LoadPath.of(scene)
+    path = LoadPath.of(_scene(case, layers, base))
     half, full = path.through([0.5 * force, force])
     measures = Measures(path)
-    response, at_half = measures.response(full), measures.response(half)
+    response, at_half, x = measures.response(full), measures.response(half), measures.x
     pairs, position = path.rest.pairs, path.problem.packing.position
     # all candidates but the pairs of neighbours on the lattice are farther apart
-    distance = np.linalg.norm(position[pairs.first] - position[pairs.second], axis=1)
-    neighbours = distance < 1.01 * measures.lattice_constant
-    return Outcome(
-        width=measures.width,
-        x=measures.x,
-        response=response,
-        curvature=float(np.abs(response - at_half).max() / response.max()),
+    between = np.linalg.norm(position[pairs.first] - position[pairs.second], axis=1)
+    neighbours = between < 1.01 * measures.lattice_constant
+    ratio = base.contact.stiffness_ratio
+    solid = lattice.moduli(Springs.uniform(1.0, ratio if case.friction > 0.0 else 0.0), "free")
+    elastic = {
+        floor: response_of_layers(x, layers=layers, moduli=solid, floor=floor, width=measures.width) for floor in FLOORS
+    }
+    near = np.abs(x) <= COMPARED * np.sqrt(3.0) * layers
+    apart = {floor: float(np.abs(response - values)[near].max() / values.max()) for floor, values in elastic.items()}
+    slab = Slab(
+        floor_response=response,
+        elastic=elastic[case.floor],
+        x=x,
+        distance=apart[case.floor],
+        distance_other_floor=apart["rough" if case.floor == "smooth" else "smooth"],
+        nonlinearity=float(np.abs(response - at_half).max() / response.max()),
+        response_sum=float(response.sum()),
         open_at_rest=int(np.count_nonzero(neighbours & ~pairs.touching)),
         opened=int(np.count_nonzero(network.contact_changes(pairs, full.pairs).opened)),
         sliding=int(np.count_nonzero(full.pairs.status == SLIDING)),
-        state=full,
+        layers=layers,
+        disks_per_layer=case.disks_per_layer,
+        friction=case.friction,
+        floor=case.floor,
+        gravity=case.gravity,
     )
+    return slab, full
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Dataset ``slabs``."""
     base, force = parameters.base, parameters.force
-    ratio = base.contact.stiffness_ratio
-    slabs = [(case, layers) for case in parameters.cases for layers in case.layers]
-    scenes = [_scene(case, layers, base) for case, layers in slabs]
-    outcomes = map_tasks(partial(compute, force=force), scenes)
-    return labelled({"slabs": _dataset(slabs, outcomes, ratio, force)})
+    tasks = {
+        (c, k): partial(compute, base, case, layers, force)
+        for c, case in enumerate(parameters.cases)
+        for k, layers in enumerate(case.layers)
+    }
+    slabs, states = zip(*computed(tasks, "slabs").values(), strict=True)
+    dataset = table(slabs, "slab").assign(certificates_dataset(states, "slab").variables)
+    return labelled({"slabs": dataset.assign_attrs(force=force, stiffness_ratio=base.contact.stiffness_ratio)})
 
 
 def _scene(case: Case, layers: int, base: Scene) -> Scene:
@@ -94,58 +119,4 @@ def _scene(case: Case, layers: int, base: Scene) -> Scene:
             "wall.friction": case.friction if case.floor == "rough" else 0.0,
             "preparation.gravity": case.gravity,
         }
-    )
-
-
-def _dataset(slabs: list[tuple[Case, int]], outcomes: list[Outcome], ratio: float, force: float) -> xr.Dataset:
-    longest = max(len(outcome.x) for outcome in outcomes)
-
-    def padded(values: list[FloatArray]) -> FloatArray:
-        """(slab, floor_disk), nan behind the last disk of a row."""
-        return np.stack([np.pad(v, (0, longest - len(v)), constant_values=np.nan) for v in values])
-
-    own, distance, other = [], [], []
-    for (case, layers), outcome in zip(slabs, outcomes, strict=True):
-        solid = lattice.moduli(Springs.uniform(1.0, ratio if case.friction > 0.0 else 0.0), "free")
-        elastic = {
-            floor: response_of_layers(outcome.x, layers=layers, moduli=solid, floor=floor, width=outcome.width)
-            for floor in FLOORS
-        }
-        near = np.abs(outcome.x) <= COMPARED * np.sqrt(3.0) * layers
-        apart = {
-            floor: float(np.abs(outcome.response - values)[near].max() / values.max())
-            for floor, values in elastic.items()
-        }
-        own.append(elastic[case.floor])
-        distance.append(apart[case.floor])
-        other.append(apart["rough" if case.floor == "smooth" else "smooth"])
-
-    def column(values: list[Any], long_name: str) -> xr.Variable:
-        return variable("slab", values, long_name)
-
-    along = ("slab", "floor_disk")
-    compared = f"largest difference within {COMPARED:g} slab heights of the load, per largest elastic response"
-    certificates = certificates_dataset([outcome.state for outcome in outcomes], "slab")
-    return xr.Dataset(
-        {
-            "floor_response": variable(along, padded([o.response for o in outcomes]), "floor response per force"),
-            "elastic": variable(along, padded(own), "share of the elastic slab with the same moduli, floor and walls"),
-            "x": variable(along, padded([o.x for o in outcomes]), f"position from the loaded disk {LENGTH}"),
-            "distance": column(distance, f"packing and elastic slab: {compared}"),
-            "distance_other_floor": column(other, f"packing and elastic slab with the other floor: {compared}"),
-            "nonlinearity": column(
-                [o.curvature for o in outcomes], "largest change from half the force, per largest response"
-            ),
-            "response_sum": column([float(o.response.sum()) for o in outcomes], "sum of the floor response"),
-            "open_at_rest": column([o.open_at_rest for o in outcomes], "neighbours that do not touch at rest"),
-            "opened": column([o.opened for o in outcomes], "contacts that the force opens"),
-            "sliding": column([o.sliding for o in outcomes], "contacts of disks that slide under the force"),
-            "layers": column([layers for _, layers in slabs], "number of layers"),
-            "disks_per_layer": column([case.disks_per_layer for case, _ in slabs], "disks of a row per layer"),
-            "friction": column([case.friction for case, _ in slabs], "coefficient of friction"),
-            "floor": column([case.floor for case, _ in slabs], "smooth, or rough: friction on floor and walls too"),
-            "gravity": column([case.gravity for case, _ in slabs], "how gravity was applied"),
-            **certificates.data_vars,
-        },
-        attrs={"force": force, "stiffness_ratio": ratio},
     )

@@ -7,9 +7,9 @@ digits. ``random_scenes``: what became of random scenes, each result checked fro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from functools import partial
+from itertools import product
 from typing import Any, get_args
 
 import numpy as np
@@ -19,8 +19,8 @@ from granular_response.scene import Scene
 from granular_response.scene.protocol import Integrator
 from granular_response.solve import Problem
 from granular_response.solve.timestep import stability_limit
+from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, variable
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stability.parameters import (
     Collisions,
@@ -31,6 +31,8 @@ from granular_response_paper.groups.stability.parameters import (
     Rounding,
     TimeSteps,
 )
+from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.tasks import computed
 from granular_response_paper.trials import closed_forms, random_scenes, time_steps
 from granular_response_paper.trials.rounding import Disturbed, disturb
 
@@ -47,271 +49,208 @@ AXES: dict[str, tuple[str, str]] = {
 }
 
 
+#: What the disk of a collision hits, and by which friction law.
+BODIES, LAWS = ("floor", "disk"), ("cut", "literal")
+
+Place = tuple[Any, ...]
+
+
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``time_step_AXIS`` for each of ``time_steps.axes``, ``drift``, ``collisions``, ``rolling``, ``rounding``
     and ``random_scenes``.
     """
-    seed = parameters.seed
-    plans = [
-        _time_steps(parameters.time_steps, seed),
-        _drift(parameters.drift, seed),
-        _collisions(parameters.collisions),
-        _rolling(parameters.rolling),
-        _rounding(parameters.rounding, seed),
-        _random_scenes(parameters.random_scenes, seed),
-    ]
-    tasks: list[list[Task]] = [next(plan) for plan in plans]
-    results = iter(map_tasks(_run, [task for several in tasks for task in several], what="stability trials"))
-    datasets: dict[str, xr.Dataset] = {}
-    for plan, several in zip(plans, tasks, strict=True):
-        datasets |= plan.send([next(results) for _ in several])
-    return labelled(datasets)
+    asked, seed = parameters, parameters.seed
+    parts: dict[str, Mapping[Any, Callable[[], Any]]] = {
+        "time_steps": _time_steps(asked.time_steps, seed),
+        "drift": _drift(asked.drift, seed),
+        "collisions": _collisions(asked.collisions),
+        "rolling": _rolling(asked.rolling),
+        "rounding": _rounding(asked.rounding, seed),
+        "random_scenes": _random_scenes(asked.random_scenes, seed),
+    }
+    tasks = {(part, place): task for part, several in parts.items() for place, task in several.items()}
+    done = computed(tasks, "stability trials")
+    of = {part: {place: done[part, place] for place in several} for part, several in parts.items()}
+    return labelled(
+        {
+            **_time_step_datasets(asked.time_steps, of["time_steps"]),
+            "drift": _drift_dataset(asked.drift, of["drift"]),
+            "collisions": _collisions_dataset(asked.collisions, of["collisions"]),
+            "rolling": _rolling_dataset(asked.rolling, of["rolling"]),
+            "rounding": _rounding_dataset(asked.rounding, of["rounding"]),
+            "random_scenes": _random_scenes_dataset(
+                [one for several in of["random_scenes"].values() for one in several]
+            ),
+        }
+    )
 
 
-Task = Callable[[], Any]
-
-
-def _run(task: Task) -> Any:
-    return task()
-
-
-#: Yields its tasks, is sent what they hand back, and yields its datasets.
-Plan = Generator[Any, list[Any], None]
-
-
-def _time_steps(parameters: TimeSteps, seed: int) -> Plan:
-    base, ratios, steps = parameters.scene, parameters.ratios, parameters.steps
-    integrators, axes = parameters.integrators, parameters.axes
-    tasks: list[Task] = []
-    for name, values in axes.items():
-        for value in values:
+def _time_steps(asked: TimeSteps, seed: int) -> dict[Place, partial[list[time_steps.Steps]]]:
+    """By the name of an axis and the place on it."""
+    tasks = {}
+    for name, values in asked.axes.items():
+        for k, value in enumerate(values):
             if name == "load":
                 changes: dict[str, Any] = {"loads": [{"disk": "top-centre", "force": [0.0, -value]}] if value else []}
             else:
                 changes = {AXES[name][0]: value}
-            scene = time_steps.scene_of(base, changes)
-            tasks.append(time_steps.StepTrial(scene, integrators, ratios, steps, seed).run)
+            scene = time_steps.scene_of(asked.scene, changes)
+            tasks[name, k] = partial(time_steps.tried, scene, asked.integrators, asked.ratios, asked.steps, seed)
+    return tasks
 
-    found: list[list[tuple[float, list[int]]]] = yield tasks
+
+def _time_step_datasets(asked: TimeSteps, found: dict[Place, list[time_steps.Steps]]) -> dict[str, xr.Dataset]:
     datasets = {}
-    rest = iter(found)
-    for name, values in axes.items():
-        shape = (len(integrators), len(values))
-        of_values = [next(rest) for _ in values]
-        several = [of_value[row] for row in range(len(integrators)) for of_value in of_values]
-        datasets[f"time_step_{name}"] = xr.Dataset(
-            {
-                "limit": variable(
-                    ("integrator", name),
-                    np.array([limit for limit, _ in several]).reshape(shape),
-                    "predicted largest stable time step in sqrt(radius/g)",
-                ),
-                "outcome": variable(
-                    ("integrator", name, "ratio"),
-                    np.array([outcomes for _, outcomes in several], np.int8).reshape(*shape, len(ratios)),
-                    "what becomes of a kick: "
-                    + ", ".join(f"{code} {text}" for code, text in enumerate(time_steps.OUTCOMES)),
-                ),
-            },
-            coords={
-                "integrator": variable("integrator", integrators, "integrator"),
-                name: variable(name, values, AXES[name][1]),
-                "ratio": variable("ratio", ratios, "time step over the predicted limit"),
-            },
-        )
-    yield datasets
+    for name, values in asked.axes.items():
+        several = {(i, k): one for k in range(len(values)) for i, one in enumerate(found[name, k])}
+        coordinates = {
+            "integrator": (asked.integrators, "integrator"),
+            name: (values, AXES[name][1]),
+            "ratio": (asked.ratios, "time step over the predicted limit"),
+        }
+        datasets[f"time_step_{name}"] = table(several, "integrator", name).assign_coords(axes(**coordinates))
+    return datasets
 
 
-@dataclass(frozen=True)
-class DriftTask:
+@record
+class Drifted:
+    time: FloatArray = column("time in sqrt(radius/g)", "reading")
+    energy_change: FloatArray = column(
+        "change of the total energy of an undamped system, per energy that it moves with", "reading"
+    )
+
+
+def drift(scene: Scene, system: str, integrator: str, part: float, time: float, kick: float, seed: int) -> Drifted:
     """An undamped system in motion: a disk that bounces on the floor, or a slab at rest that is kicked.
 
     The kick is strong enough for contacts to open and slide. Springs are ahead of positions by half a time step, so
     in a feeble motion about large forces the total energy cannot be read off.
     """
-
-    scene: Scene
-    system: str
-    integrator: str
-    part: float
-    time: float
-    kick: float
-    seed: int
-
-    def run(self) -> tuple[np.ndarray, np.ndarray]:
-        undamped = self.scene.updated({"contact.damping_ratio": 0.0, "wall.damping_ratio": 0.0})
-        if self.system == "bouncing disk":
-            still = np.zeros(1)
-            problem, state = closed_forms.free_disks(undamped, np.array([(0.0, 1.5)]), np.zeros((1, 2)), still)
-        else:
-            problem, state, _ = time_steps.prepared(Problem.from_scene(undamped))
-            state = time_steps.kick(problem, state, self.seed, self.kick)
-        step = self.part * stability_limit(problem, "verlet")
-        times, change = closed_forms.energy_change(problem, state, self.integrator, step, self.time)
-        return times, change / (0.5 if self.system == "bouncing disk" else closed_forms.kinetic_energy(state, problem))
+    undamped = scene.updated({"contact.damping_ratio": 0.0, "wall.damping_ratio": 0.0})
+    if system == "bouncing disk":
+        still = np.zeros(1)
+        problem, state = closed_forms.free_disks(undamped, np.array([(0.0, 1.5)]), np.zeros((1, 2)), still)
+    else:
+        problem, state, _ = time_steps.prepared(Problem.from_scene(undamped))
+        state = time_steps.kick(problem, state, seed, kick)
+    step = part * stability_limit(problem, "verlet")
+    times, change = closed_forms.energy_change(problem, state, integrator, step, time)
+    return Drifted(times, change / (0.5 if system == "bouncing disk" else closed_forms.kinetic_energy(state, problem)))
 
 
-def _drift(parameters: Drift, seed: int) -> Plan:
-    systems = {
-        "bouncing disk": (0.0, parameters.time),
-        "slab": (0.0, parameters.time),
-        "slab with friction": (parameters.friction, parameters.friction_time),
+def _systems(asked: Drift) -> dict[str, tuple[float, float]]:
+    """Friction and duration by the name of what moves."""
+    return {
+        "bouncing disk": (0.0, asked.time),
+        "slab": (0.0, asked.time),
+        "slab with friction": (asked.friction, asked.friction_time),
     }
-    base, integrators = parameters.scene, parameters.integrators
-    part, kick = parameters.part_of_limit, parameters.kick
-    tasks: list[Task] = [
-        DriftTask(base.updated({"contact.friction": mu}), system, name, part, time, kick, seed).run
-        for system, (mu, time) in systems.items()
-        for name in integrators
-    ]
-
-    found: list[tuple[np.ndarray, np.ndarray]] = yield tasks
-    shape = (len(systems), len(integrators), -1)
-    dims = ("system", "integrator", "reading")
-    dataset = xr.Dataset(
-        {
-            "time": variable(dims, np.array([t for t, _ in found]).reshape(shape), "time in sqrt(radius/g)"),
-            "energy_change": variable(
-                dims,
-                np.array([e for _, e in found]).reshape(shape),
-                "change of the total energy of an undamped system, per energy that it moves with",
-            ),
-        },
-        coords={
-            "system": variable("system", list(systems), "what moves"),
-            "integrator": variable("integrator", integrators, "integrator"),
-        },
-    )
-    yield {"drift": dataset}
 
 
-def _collisions(parameters: Collisions) -> Plan:
-    bodies, laws = ["floor", "disk"], ["cut", "literal"]
-    damping, frictions, step = parameters.damping_ratios, parameters.frictions, parameters.time_step
-    angles, spins = parameters.angles, parameters.spins
-    tasks: list[Task] = []
-    for body in bodies:
-        for law in laws:
-            for ratio in damping:
-                for mu in frictions:
-                    changes = {"contact.friction": mu, "wall.friction": mu, "contact.damping_ratio": ratio}
-                    scene = Scene().updated({**changes, "protocol.friction_law": law, "loads": []})
-                    tasks.append(CollisionTask(scene, angles, spins, step, body == "disk").run)
-
-    found: list[list[list[float]]] = yield tasks
-    shape = (len(bodies), len(laws), len(damping), len(frictions), len(angles), len(spins))
-    dims = ("body", "friction_law", "damping_ratio", "friction", "angle", "spin")
-    dataset = xr.Dataset(
-        {
-            "energy_ratio": variable(
-                dims, np.array(found).reshape(shape), "kinetic energy after a collision over that before"
-            )
-        },
-        coords={
-            "body": variable("body", bodies, "what the disk hits"),
-            "friction_law": variable("friction_law", laws, "protocol.friction_law"),
-            "damping_ratio": variable("damping_ratio", damping, AXES["damping_ratio"][1]),
-            "friction": variable("friction", frictions, "coefficient of friction"),
-            "angle": variable("angle", angles, "angle of incidence from grazing in degrees"),
-            "spin": variable("spin", spins, "spin of the hitting disk, rim speed over speed"),
-        },
-    )
-    yield {"collisions": dataset}
+def _drift(asked: Drift, seed: int) -> dict[Place, partial[Drifted]]:
+    tasks = {}
+    for s, (system, (mu, time)) in enumerate(_systems(asked).items()):
+        scene = asked.scene.updated({"contact.friction": mu})
+        for i, name in enumerate(asked.integrators):
+            tasks[s, i] = partial(drift, scene, system, name, asked.part_of_limit, time, asked.kick, seed)
+    return tasks
 
 
-@dataclass(frozen=True)
-class CollisionTask:
+def _drift_dataset(asked: Drift, found: dict[Place, Drifted]) -> xr.Dataset:
+    coordinates = axes(system=(_systems(asked), "what moves"), integrator=(asked.integrators, "integrator"))
+    return table(found, "system", "integrator").assign_coords(coordinates)
+
+
+@record
+class Collided:
+    energy_ratio: FloatArray = column("kinetic energy after a collision over that before", "angle", "spin")
+
+
+def collide(scene: Scene, angles: tuple[float, ...], spins: tuple[float, ...], step: float, body: str) -> Collided:
     """Collisions at all angles and spins under one contact law."""
-
-    scene: Scene
-    angles: tuple[float, ...]
-    spins: tuple[float, ...]
-    step: float
-    pair: bool
-
-    def run(self) -> list[list[float]]:
-        return [
-            [closed_forms.collision(self.scene, angle, spin, self.step, pair=self.pair) for spin in self.spins]
-            for angle in self.angles
-        ]
+    pair = body == "disk"
+    ratios = [[closed_forms.collision(scene, angle, spin, step, pair=pair) for spin in spins] for angle in angles]
+    return Collided(np.array(ratios))
 
 
-def _rolling(parameters: Rolling) -> Plan:
-    friction, step, starts = parameters.friction, parameters.time_step, parameters.starts
+def _collisions(asked: Collisions) -> dict[Place, partial[Collided]]:
+    tasks = {}
+    places = product(*map(range, (len(BODIES), len(LAWS), len(asked.damping_ratios), len(asked.frictions))))
+    for b, k, d, f in places:
+        mu, ratio = asked.frictions[f], asked.damping_ratios[d]
+        changes = {"contact.friction": mu, "wall.friction": mu, "contact.damping_ratio": ratio}
+        scene = Scene().updated({**changes, "protocol.friction_law": LAWS[k], "loads": []})
+        tasks[b, k, d, f] = partial(collide, scene, asked.angles, asked.spins, asked.time_step, BODIES[b])
+    return tasks
+
+
+def _collisions_dataset(asked: Collisions, found: dict[Place, Collided]) -> xr.Dataset:
+    coordinates = axes(
+        body=(BODIES, "what the disk hits"),
+        friction_law=(LAWS, "protocol.friction_law"),
+        damping_ratio=(asked.damping_ratios, AXES["damping_ratio"][1]),
+        friction=(asked.frictions, "coefficient of friction"),
+        angle=(asked.angles, "angle of incidence from grazing in degrees"),
+        spin=(asked.spins, "spin of the hitting disk, rim speed over speed"),
+    )
+    return table(found, "body", "friction_law", "damping_ratio", "friction").assign_coords(coordinates)
+
+
+@record
+class Rolled:
+    time: FloatArray = column("time in sqrt(radius/g)", "reading")
+    velocity: FloatArray = column("velocity of the disk, x", "reading")
+    rim_speed: FloatArray = column("rim speed, positive for rolling along x", "reading")
+    exact_velocity: FloatArray = column("velocity in closed form", "reading")
+    exact_rim_speed: FloatArray = column("rim speed in closed form", "reading")
+
+
+def roll(friction: float, speed: float, spin: float, step: float) -> Rolled:
+    """A disk thrown along the floor, until it has rolled for a while."""
     scene = Scene().updated({"wall.friction": friction, "loads": []})
-    times = [1.5 * abs(speed + spin) / (3.0 * friction) for speed, spin in starts]
-    tasks: list[Task] = [
-        partial(closed_forms.sliding_to_rolling, scene, speed, spin, step, time)
-        for (speed, spin), time in zip(starts, times, strict=True)
-    ]
+    time = 1.5 * abs(speed + spin) / (3.0 * friction)
+    times, velocity, rim_speed = closed_forms.sliding_to_rolling(scene, speed, spin, step, time)
+    return Rolled(times, velocity, rim_speed, *closed_forms.rolling_speed(times, friction, speed, spin))
 
-    found: list[tuple[np.ndarray, ...]] = yield tasks
-    exact = [closed_forms.rolling_speed(t, friction, *start) for (t, _, _), start in zip(found, starts, strict=True)]
-    dims = ("start", "reading")
-    dataset = xr.Dataset(
-        {
-            "time": variable(dims, np.stack([t for t, _, _ in found]), "time in sqrt(radius/g)"),
-            "velocity": variable(dims, np.stack([v for _, v, _ in found]), "velocity of the disk, x"),
-            "rim_speed": variable(dims, np.stack([r for _, _, r in found]), "rim speed, positive for rolling along x"),
-            "exact_velocity": variable(dims, np.stack([v for v, _ in exact]), "velocity in closed form"),
-            "exact_rim_speed": variable(dims, np.stack([r for _, r in exact]), "rim speed in closed form"),
-        },
-        coords={
-            "speed": variable("start", [v for v, _ in starts], "velocity at first"),
-            "spin": variable("start", [w for _, w in starts], "spin at first, counter-clockwise"),
-        },
+
+def _rolling(asked: Rolling) -> dict[Place, partial[Rolled]]:
+    return {(k,): partial(roll, asked.friction, *start, asked.time_step) for k, start in enumerate(asked.starts)}
+
+
+def _rolling_dataset(asked: Rolling, found: dict[Place, Rolled]) -> xr.Dataset:
+    dataset = table(found, "start").assign_coords(
+        speed=variable("start", [v for v, _ in asked.starts], "velocity at first"),
+        spin=variable("start", [w for _, w in asked.starts], "spin at first, counter-clockwise"),
     )
-    dataset["friction"] = variable((), friction, "coefficient of friction of the floor")
-    yield {"rolling": dataset}
+    return dataset.assign(friction=variable((), asked.friction, "coefficient of friction of the floor"))
 
 
-def _rounding(parameters: Rounding, seed: int) -> Plan:
-    cases, size, kicks = parameters.cases, parameters.displacement, parameters.kicks
-    tasks: list[Task] = [partial(disturb, scene, size, range(seed, seed + kicks)) for scene in parameters.scenes]
-    texts = {
-        "rest_change": "largest displacement left after the disturbed rest state is back in equilibrium, in mean radii",
-        "response_change": "largest change of the floor response by the disturbance, per its largest value",
-        "excess_coordination": "contacts per bearing disk beyond the isostatic number",
-        "loose_disks": "disks with fewer than two contacts",
-        "negative_modes": "negative modes of the rest state",
-        "lost": "equilibria that the path has lost",
+def _rounding(asked: Rounding, seed: int) -> dict[Place, partial[list[Disturbed]]]:
+    seeds = range(seed, seed + asked.kicks)
+    return {(k,): partial(disturb, scene, asked.displacement, seeds) for k, scene in enumerate(asked.scenes)}
+
+
+def _rounding_dataset(asked: Rounding, found: dict[Place, list[Disturbed]]) -> xr.Dataset:
+    each = {(*case, k): one for case, several in found.items() for k, one in enumerate(several)}
+    size = variable((), asked.displacement, "largest displacement of the rest state, in mean radii")
+    dataset = table(each, "case", "kick").assign_coords(axes(case=(asked.cases, "packing and load")))
+    return dataset.assign(displacement=size)
+
+
+def _random_scenes(asked: RandomScenes, seed: int) -> dict[Place, partial[list[random_scenes.Trial]]]:
+    return {
+        (begin,): partial(_random_chunk, asked.maximum_steps, seed, begin, min(begin + asked.chunk, asked.number))
+        for begin in range(0, asked.number, asked.chunk)
     }
 
-    several: list[list[Disturbed]] = yield tasks
-    found = [one for ones in several for one in ones]
-    dataset = xr.Dataset(
-        {
-            name: variable(
-                ("case", "kick"), np.array([getattr(f, name) for f in found]).reshape(len(cases), kicks), text
-            )
-            for name, text in texts.items()
-        },
-        coords={"case": variable("case", list(cases), "packing and load")},
-    )
-    dataset["displacement"] = variable((), size, "largest displacement of the rest state, in mean radii")
-    yield {"rounding": dataset}
+
+def _random_chunk(steps: int, seed: int, begin: int, end: int) -> list[random_scenes.Trial]:
+    return [random_scenes.run(steps, seed, index) for index in range(begin, end)]
 
 
-def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
-    number, chunk, steps = parameters.number, parameters.chunk, parameters.maximum_steps
-    starts = range(0, number, chunk)
-    tasks: list[Task] = [partial(_random_chunk, steps, seed, begin, min(begin + chunk, number)) for begin in starts]
-
-    found: list[list[random_scenes.Trial]] = yield tasks
-    trials = [trial for several in found for trial in several]
-    texts = {
-        "friction": "coefficient of friction between disks",
-        "disks": "number of disks, 0 after an error",
-        "states": "states that were checked",
-        "force_residual": "largest unbalanced force, summed anew from positions, in mean disk weights",
-        "torque_residual": "largest unbalanced torque",
-        "coulomb_excess": "largest friction force beyond Coulomb's limit",
-        "twin_difference": "largest difference of floor responses to the mirrored twin, over the load",
-    }
-    dataset = xr.Dataset(
-        {key: variable("scene", [getattr(t, key) for t in trials], text) for key, text in texts.items()}
-    )
-    words = {
+def _random_scenes_dataset(trials: list[random_scenes.Trial]) -> xr.Dataset:
+    dataset = table(trials, "scene")
+    words: dict[str, tuple[tuple[str, ...], str]] = {
         "outcome": (random_scenes.OUTCOMES, "what became of the scene"),
         "kind": (("slab", "pile", "file"), "packing"),
         "method": (random_scenes.METHODS, "method asked for"),
@@ -324,8 +263,4 @@ def _random_scenes(parameters: RandomScenes, seed: int) -> Plan:
     # what a wrong result was, for whoever has to look at it
     wrong = [f"{k}: {t.message}" for k, t in enumerate(trials) if t.outcome == "wrong"]
     dataset.attrs["wrong"] = "; ".join(wrong)
-    yield {"random_scenes": dataset}
-
-
-def _random_chunk(steps: int, seed: int, begin: int, end: int) -> list[random_scenes.Trial]:
-    return [random_scenes.run(steps, seed, index) for index in range(begin, end)]
+    return dataset

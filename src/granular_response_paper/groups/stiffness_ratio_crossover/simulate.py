@@ -14,7 +14,8 @@ of the energy whatever ``method`` says.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
+from itertools import product
 from typing import Any, get_args
 
 import numpy as np
@@ -25,14 +26,16 @@ from granular_response.observe.peaks import central_dip
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, variable
-from granular_response.sweeps.tasks import map_tasks
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
+from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
+from granular_response_paper.records import axes, column, record, stacked, table
+from granular_response_paper.tasks import computed
 
 BODIES: tuple[Body, ...] = get_args(Body)
 ROTATIONS: tuple[lattice.Rotations, ...] = get_args(lattice.Rotations)
@@ -48,85 +51,65 @@ EVENTS = {
 }
 
 
-@dataclass(frozen=True)
-class Ratio:
-    """One stiffness ratio of a scene with one load of unit force."""
-
-    base: Scene
-    stiffness_ratio: float
-    force: float
-
-    def scene(self) -> Scene:
-        changes: dict[str, Any] = {"contact.stiffness_ratio": self.stiffness_ratio}
-        if self.stiffness_ratio == 0.0:
-            changes["protocol.method"] = "auto"
-        return self.base.updated(changes)
+RATIO = "tangential stiffness over normal stiffness"
 
 
-def measure(task: Ratio) -> tuple[xr.Dataset, str]:
+def measure(base: Scene, ratio: float, force: float) -> tuple[xr.Dataset, str]:
     """The measured response of a packing at one stiffness ratio, and the method that found it."""
-    path = slab.LoadPath.of(task.scene())
-    state = path.at(task.force)
+    changes: dict[str, Any] = {"contact.stiffness_ratio": ratio}
+    if ratio == 0.0:
+        changes["protocol.method"] = "auto"
+    path = slab.LoadPath.of(base.updated(changes))
+    state = path.at(force)
     return slab.measured(slab.Measures(path), [state]), path.method
 
 
-@dataclass(frozen=True)
-class Search:
-    """An event between two stiffness ratios, to be narrowed."""
-
-    name: str
-    base: Scene
-    force: float
-    low: float
-    high: float
-    tolerance: float
-
-
-def narrow(search: Search) -> slab.Event:
-    """Bisect an event of ``EVENTS``; every evaluation settles and loads a packing."""
-    happened = _HAPPENED[search.name]
-
-    def predicate(ratio: float) -> bool:
-        return happened(measure(Ratio(search.base, ratio, search.force))[0])
-
-    bracket = bisect_event(predicate, search.low, search.high, search.tolerance, at_low=False, at_high=True)
-    return _event(search.name, search.base, bracket.low, bracket.high)
+def narrow(name: str, base: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
+    """Bisect an event of ``EVENTS`` between two ratios; every evaluation settles and loads a packing."""
+    happened = _HAPPENED[name]
+    found = bisect_event(
+        lambda ratio: happened(measure(base, ratio, force)[0]), low, high, tolerance, at_low=False, at_high=True
+    )
+    return found.low, found.high
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``response``, ``elastic`` and ``events``."""
     base, force, tolerance = parameters.base, parameters.force, parameters.tolerance
     ratios = np.array(parameters.ratios)
+    results = computed({ratio: partial(measure, base, ratio, force) for ratio in ratios.tolist()}, "stiffness ratios")
+    measured = [result for result, _ in results.values()]
 
-    tasks = [Ratio(base, ratio, force) for ratio in ratios.tolist()]
-    results = map_tasks(measure, tasks, what="stiffness ratios")
-    measured = [result for result, _ in results]
+    brackets = _brackets(ratios, measured)
+    searches = {
+        name: partial(narrow, name, base, force, low, high, tolerance)
+        for name, (low, high) in brackets.items()
+        if np.isfinite(high) and low > 0.0 and high - low > tolerance
+    }
+    brackets |= computed(searches, "crossovers")
+    events = slab.events_dataset(
+        [slab.Event(name, base.contact.friction, *brackets[name], text) for name, text in EVENTS.items()]
+    ).drop_vars("friction")
+    events["low"].attrs["long_name"] = "stiffness ratio before the event"
 
-    found: list[slab.Event] = []
-    searches: list[Search] = []
-    for name, low, high in _brackets(ratios, measured):
-        if np.isfinite(high) and low > 0.0 and high - low > tolerance:
-            searches.append(Search(name, base, force, low, high, tolerance))
-        else:
-            found.append(_event(name, base, low, high))
-    found += map_tasks(narrow, searches, what="crossovers")
-    found.sort(key=lambda event: list(EVENTS).index(event.name))
-
-    response = slab.measured_along("stiffness_ratio", measured).assign_coords(stiffness_ratio=_ratio(ratios))
+    response = slab.measured_along("stiffness_ratio", measured).assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
     response["force"] = variable((), force, f"applied force {FORCE}")
     response["methods"] = variable(
-        "stiffness_ratio", [method for _, method in results], "method that found the loaded state"
+        "stiffness_ratio", [method for _, method in results.values()], "method that found the loaded state"
     )
     packing = base.packing.build()
-    datasets = {
-        "response": response,
-        "elastic": elastic_bodies(
-            np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
-        ),
-        "events": slab.events_dataset(found).drop_vars("friction"),
-    }
-    datasets["events"]["low"].attrs["long_name"] = "stiffness ratio before the event"
-    return labelled(datasets, base)
+    elastic = elastic_bodies(
+        np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
+    )
+    return labelled({"response": response, "elastic": elastic, "events": events}, base)
+
+
+@record
+class Elastic:
+    """An elastic body."""
+
+    profile: FloatArray = column("force on a floor disk per applied force", "floor_disk")
+    central_dip: float = column("how far the profile at x = 0 is below the lower maximum beside it, per largest value")
 
 
 def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float) -> xr.Dataset:
@@ -137,53 +120,49 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a ratio of zero, where the lattice
     resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
     """
-    height = np.sqrt(3.0) * layers
-    node, weight = np.polynomial.legendre.leggauss(8)
-    profile = np.full((len(ROTATIONS), len(BODIES), len(ratios), len(x)), np.nan)
-    error = np.full((len(ROTATIONS), len(ratios)), np.nan)
-    for r, rotations in enumerate(ROTATIONS):
-        for k, ratio in enumerate(ratios.tolist()):
-            if ratio == 0.0:
-                continue
-            springs = Springs(0.0, 1.0, 0.0, ratio)
-            moduli = lattice.moduli(springs, rotations)
-            exact = moduli.matrix()
-            error[r, k] = np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max()
-            for b, body in enumerate(BODIES):
-                if body == "half plane":
-                    profile[r, b, k] = half_plane.pressure(x[:, None] + node, height, moduli) @ weight
-                else:
-                    floor: Floor = "smooth" if body == "smooth floor" else "rough"
-                    profile[r, b, k] = response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
-    dip = np.full(profile.shape[:3], np.nan)
-    for index in np.ndindex(dip.shape):
-        if np.isfinite(profile[index]).all():
-            dip[index] = central_dip(x, profile[index])
-    dims = ("rotations", "body", "stiffness_ratio")
-    return xr.Dataset(
-        {
-            "profile": variable((*dims, "floor_disk"), profile, "force on a floor disk per applied force"),
-            "central_dip": variable(
-                dims, dip, "how far the profile at x = 0 is below the lower maximum beside it, per largest value"
-            ),
-            "root": variable(
-                "rotations",
-                [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
-                "k_2t/k_2n at which r of Sec. V.C is 0",
-            ),
-            "moduli_error": variable(
-                ("rotations", "stiffness_ratio"),
-                error,
-                "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest",
-            ),
-        },
-        coords={
-            "stiffness_ratio": _ratio(ratios),
-            "x": variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
-            "body": variable("body", list(BODIES), "elastic body that carries the force"),
-            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
-        },
+    found = {}
+    for (r, rotations), (b, body), (k, ratio) in product(
+        enumerate(ROTATIONS), enumerate(BODIES), enumerate(ratios.tolist())
+    ):
+        if ratio > 0.0:
+            profile = _profile(lattice.moduli(Springs(0.0, 1.0, 0.0, ratio), rotations), body, x, layers, width)
+            found[r, b, k] = Elastic(profile, central_dip(x, profile))
+    error = {
+        (r, k): _moduli_error(Springs(0.0, 1.0, 0.0, ratio), rotations)
+        for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist()))
+        if ratio > 0.0
+    }
+    dataset = table(found, "rotations", "body", "stiffness_ratio").assign(
+        root=variable(
+            "rotations",
+            [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
+            "k_2t/k_2n at which r of Sec. V.C is 0",
+        ),
+        moduli_error=variable(
+            ("rotations", "stiffness_ratio"),
+            stacked(error),
+            "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest",
+        ),
     )
+    place = variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}")
+    return dataset.assign_coords(
+        axes(stiffness_ratio=(ratios, RATIO))
+        | {"x": place}
+        | axes(body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn"))
+    )
+
+
+def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: float) -> FloatArray:
+    if body == "half plane":
+        node, weight = np.polynomial.legendre.leggauss(8)
+        return half_plane.pressure(x[:, None] + node, np.sqrt(3.0) * layers, moduli) @ weight
+    floor: Floor = "smooth" if body == "smooth floor" else "rough"
+    return response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
+
+
+def _moduli_error(springs: Springs, rotations: lattice.Rotations) -> float:
+    exact = lattice.moduli(springs, rotations).matrix()
+    return float(np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max())
 
 
 def _two_peaks_ended(measured: xr.Dataset) -> bool:
@@ -200,21 +179,13 @@ _HAPPENED: dict[str, Callable[[xr.Dataset], bool]] = {
 }
 
 
-def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> list[tuple[str, float, float]]:
+def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> dict[str, tuple[float, float]]:
     """Where on the axis each event lies."""
     ended = [_two_peaks_ended(one) for one in measured]
     central = [_largest_at_centre(one) for one in measured]
     # the last stretch of ratios with the maximum at the centre; there may be others below it
     begun = [all(central[k:]) for k in range(len(central))]
-    return [
-        ("two_peaks_end", *slab.first_change(ratios, ended)),
-        ("central_maximum_begins", *slab.first_change(ratios, begun)),
-    ]
-
-
-def _event(name: str, base: Scene, low: float, high: float) -> slab.Event:
-    return slab.Event(name, base.contact.friction, low, high, EVENTS[name])
-
-
-def _ratio(ratios: FloatArray) -> xr.Variable:
-    return variable("stiffness_ratio", ratios, "tangential stiffness over normal stiffness")
+    return {
+        "two_peaks_end": slab.first_change(ratios, ended),
+        "central_maximum_begins": slab.first_change(ratios, begun),
+    }

@@ -18,6 +18,7 @@ from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab
 from granular_response_paper.groups.theory.parameters import Parameters
+from granular_response_paper.records import axes
 
 #: Lattices whose moduli are measured: equal bonds, normal springs alone, no horizontal ones, all different.
 SPRINGS = (
@@ -74,10 +75,9 @@ def _predictions(values: Parameters) -> xr.Dataset:
                 (), values.diffusion_length, "squared width of a ray over depth, in mean disk radii"
             ),
         },
-        coords={
-            "x": variable("x", x, "distance from the force in slab heights"),
-            "depth": variable("depth", np.array(values.depths), "slab height in mean disk radii"),
-        },
+        coords=axes(
+            x=(x, "distance from the force in slab heights"), depth=(values.depths, "slab height in mean disk radii")
+        ),
     )
 
 
@@ -98,11 +98,11 @@ def _peak_criterion() -> xr.Dataset:
                 "k_2t/k_2n at which the pressure below the force turns into a minimum",
             ),
         },
-        coords={
-            "beta": variable("beta", _BETA, "k_2t/k_2n"),
-            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
-            "body": variable("body", list(BODIES), "elastic body that carries the force"),
-        },
+        coords=axes(
+            beta=(_BETA, "k_2t/k_2n"),
+            rotations=(ROTATIONS, "whether the disks turn"),
+            body=(BODIES, "elastic body that carries the force"),
+        ),
     )
 
 
@@ -123,10 +123,10 @@ def _moduli() -> xr.Dataset:
                 "stiffness of the lattice's springs",
             ),
         },
-        coords={
-            "rotations": variable("rotations", list(ROTATIONS), "whether the disks turn"),
-            "spring": variable("spring", ["k1n", "k2n", "k1t", "k2t"], "spring of Fig. 11"),
-            "stress": variable("stress", component, "stress component"),
-            "strain": variable("strain", component, "strain component (tensor)"),
-        },
+        coords=axes(
+            rotations=(ROTATIONS, "whether the disks turn"),
+            spring=(["k1n", "k2n", "k1t", "k2t"], "spring of Fig. 11"),
+            stress=(component, "stress component"),
+            strain=(component, "strain component (tensor)"),
+        ),
     )

@@ -25,9 +25,10 @@ from granular_response.solve import Problem, loaded_states
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_of
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.torque.parameters import Parameters
+from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.tasks import computed
 
 
 def load(scene: Scene, rest: State) -> tuple[State, int]:
@@ -40,24 +41,22 @@ def load(scene: Scene, rest: State) -> tuple[State, int]:
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``torques``, ``stress`` and ``reach``."""
     base, force, angle = parameters.base, parameters.force, np.radians(parameters.angle)
-    torques, edges = np.array(parameters.torques), np.array(parameters.distances)
-    direction = np.array([np.cos(angle), -np.sin(angle)])
-    scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in torques.tolist()]
+    edges, direction = np.array(parameters.distances), np.array([np.cos(angle), -np.sin(angle)])
+    scenes = [base.updated({"loads": [_load(force * direction, torque)]}) for torque in parameters.torques]
 
-    (rest,) = map_tasks(rest_of, [scenes[0]], workers=1, what="rest")
-    results = map_tasks(partial(load, rest=rest), scenes, what="torques")
+    rest = computed({"rest": partial(rest_of, scenes[0])}, "rest")["rest"]
+    results = computed({k: partial(load, scene, rest) for k, scene in enumerate(scenes)}, "torques")
     packing = base.packing.build()
-    rest, *loaded = common_candidates([rest, *(state for state, _ in results)], packing.radius)
+    rest, *loaded = common_candidates([rest, *(state for state, _ in results.values())], packing.radius)
     disk = results[0][1]
-    coordinate = variable("torque", torques, "applied torque, clockwise, in mean disk weights times mean radius")
     stress = _stress_dataset(packing, rest, loaded, parameters.stress_width, parameters.stress_spacing)
     datasets = {
         "torques": _states_dataset(packing, rest, loaded, disk, force * direction),
         "stress": stress,
         "reach": _reach_dataset(rest, loaded, disk, stress, edges),
     }
-    datasets = {name: dataset.assign_coords(torque=coordinate) for name, dataset in datasets.items()}
-    return labelled(datasets, scenes[0])
+    coordinate = axes(torque=(parameters.torques, "applied torque, clockwise, in mean disk weights times mean radius"))
+    return labelled({name: dataset.assign_coords(coordinate) for name, dataset in datasets.items()}, scenes[0])
 
 
 def _load(force: FloatArray, torque: float) -> dict[str, Any]:
@@ -82,19 +81,31 @@ def _stress_dataset(packing: Packing, rest: State, loaded: Sequence[State], w: f
     unit = "in weights per mean radius, compression positive"
     data = stress_components(("torque", "z", "x"), fields, unit, " of the added forces")
     data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}")
-    return xr.Dataset(
-        data,
-        coords={
-            "x": variable("x", x, f"distance from the left wall {LENGTH}"),
-            "z": variable("z", z, f"height above the floor {LENGTH}"),
-        },
+    coordinates = axes(x=(x, f"distance from the left wall {LENGTH}"), z=(z, f"height above the floor {LENGTH}"))
+    return xr.Dataset(data, coordinates)
+
+
+_WITHOUT = "of the force without torque, in a ring around the load"
+
+
+@record
+class Reach:
+    """What the torque changes in rings around the load, each relative to what the force alone adds there."""
+
+    force_change: FloatArray = column(
+        f"sum of |change of a contact force| per sum of |added contact force| {_WITHOUT}", "torque", "ring"
+    )
+    stress_change: FloatArray = column(
+        f"sum of |change of the stress tensor| per sum of |added stress tensor| {_WITHOUT}", "torque", "ring"
+    )
+    antisymmetric_change: FloatArray = column(
+        f"sum of |change of the antisymmetric stress| per sum of |added pressure| {_WITHOUT}", "torque", "ring"
     )
 
 
 def _reach_dataset(
     rest: State, loaded: Sequence[State], disk: int, stress: xr.Dataset, edges: FloatArray
 ) -> xr.Dataset:
-    """What the torque changes in rings around the load, each relative to what the force alone adds there."""
     origin = rest.position[disk]
     names = ("stress_xx", "stress_xz", "stress_zx", "stress_zz")
     fields = np.stack([stress[name].values for name in names], axis=-1)
@@ -105,39 +116,22 @@ def _reach_dataset(
 
     in_field = np.hypot(x - origin[0], z - origin[1])
     in_network = np.linalg.norm(contact_centre(rest) - origin, axis=1)
-    where = {
-        "force_change": (np.linalg.norm(force - force[0], axis=-1), np.linalg.norm(force[0], axis=-1), in_network),
-        "stress_change": (
-            np.linalg.norm(fields - fields[0], axis=-1),
-            np.linalg.norm(fields[0], axis=-1),
-            in_field,
-        ),
-        "antisymmetric_change": (
-            np.abs(antisymmetric - antisymmetric[0]),
-            np.abs(pressure[0]),
-            in_field,
-        ),
-    }
-    texts = {
-        "force_change": "sum of |change of a contact force| per sum of |added contact force|",
-        "stress_change": "sum of |change of the stress tensor| per sum of |added stress tensor|",
-        "antisymmetric_change": "sum of |change of the antisymmetric stress| per sum of |added pressure|",
-    }
-    values = {name: ring_ratio(*arrays, edges) for name, arrays in where.items()}
-    return xr.Dataset(
-        {
-            name: variable(
-                ("torque", "ring"), values[name], f"{text} of the force without torque, in a ring around the load"
-            )
-            for name, text in texts.items()
-        },
-        coords={
-            "ring": variable(
-                "ring", 0.5 * (edges[:-1] + edges[1:]), f"mean distance of the ring from the load {LENGTH}"
-            ),
+
+    def norm(vectors: FloatArray) -> FloatArray:
+        return np.asarray(np.linalg.norm(vectors, axis=-1))
+
+    reach = Reach(
+        ring_ratio(norm(force - force[0]), norm(force[0]), in_network, edges),
+        ring_ratio(norm(fields - fields[0]), norm(fields[0]), in_field, edges),
+        ring_ratio(np.abs(antisymmetric - antisymmetric[0]), np.abs(pressure[0]), in_field, edges),
+    )
+    middle = 0.5 * (edges[:-1] + edges[1:])
+    return table({(): reach}).assign_coords(
+        axes(ring=(middle, f"mean distance of the ring from the load {LENGTH}"))
+        | {
             "ring_inner": variable("ring", edges[:-1], f"inner radius of the ring {LENGTH}"),
             "ring_outer": variable("ring", edges[1:], f"outer radius of the ring {LENGTH}"),
-        },
+        }
     )
 
 

@@ -1,0 +1,114 @@
+"""Records: frozen dataclasses whose fields say what they hold, and the labelled datasets made of them.
+
+What a task finds is such a record. A field declared by :func:`column` has a long name, which ends with the unit, and
+its dimensions; other fields are not stored. :func:`table` places records along the dimensions of a study (case,
+realization, ...), so that each declared field becomes a variable.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from types import MappingProxyType
+from typing import Any, TypeVar, dataclass_transform, get_type_hints
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from granular_response.store.result import variable
+
+#: Indices along the leading dimensions of a table.
+Place = TypeVar("Place", bound=tuple[int, ...])
+
+Kind = TypeVar("Kind")
+
+_DECLARED = "column"
+
+
+@dataclass(frozen=True)
+class Column:
+    """How a field is stored."""
+
+    long_name: str
+    dims: tuple[str, ...]
+    later: bool  #: whether files of earlier versions lack it; there it is read as nan
+    attributes: Mapping[str, Any]  #: further ones of the variable
+
+
+def column(
+    long_name: str, *dims: str, later: bool = False, attributes: Mapping[str, Any] = MappingProxyType({})
+) -> Any:
+    """Declare a field of a record: a number or a text, or an array along ``dims``."""
+    return field(metadata={_DECLARED: Column(long_name, dims, later, attributes)})
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(column,))
+def record(kind: type[Kind]) -> type[Kind]:
+    """Class decorator: a frozen dataclass."""
+    return dataclass(frozen=True)(kind)
+
+
+def columns(kind: type) -> dict[str, Column]:
+    """The stored fields of a record by name, in their order."""
+    return {one.name: one.metadata[_DECLARED] for one in fields(kind) if _DECLARED in one.metadata}
+
+
+def table(records: Mapping[Place, Any] | Sequence[Any], *dims: str, kind: type | None = None) -> xr.Dataset:
+    """A variable for each stored field, along ``dims`` and those of the field; nan where there is no record.
+
+    Parameters
+    ----------
+    records
+        Of one kind, by their places along ``dims``; a sequence goes along one dimension. Arrays of different lengths
+        are padded with nan.
+    dims
+        The leading dimensions; none for the one record at the place ``()``.
+    kind
+        Class of the records, needed where there may be none.
+    """
+    placed: Mapping[Any, Any]
+    placed = records if isinstance(records, Mapping) else {(k,): one for k, one in enumerate(records)}
+    kind = kind or type(next(iter(placed.values())))
+    hints = get_type_hints(kind)
+    data = {}
+    for name, one in columns(kind).items():
+        number = hints[name] if hints[name] in (float, int, str) else None
+        values = stacked({place: getattr(record, name) for place, record in placed.items()}, number)
+        data[name] = variable((*dims, *one.dims), values, one.long_name, **one.attributes)
+    return xr.Dataset(data)
+
+
+def stacked(values: Mapping[Place, ArrayLike], dtype: Any = None) -> NDArray[Any]:
+    """Arrays by their places along leading dimensions as one.
+
+    Numbers are nan, and texts empty, where there are none and behind shorter ones.
+    """
+    arrays = {place: np.asarray(value, dtype) for place, value in values.items()}
+    if not arrays:
+        return np.empty(0, dtype)
+    shape = tuple(1 + max(along) for along in zip(*arrays, strict=True))
+    sizes = tuple(max(along) for along in zip(*(array.shape for array in arrays.values()), strict=True))
+    whole = len(arrays) == math.prod(shape) and all(array.shape == sizes for array in arrays.values())
+    kind = np.result_type(*arrays.values())
+    result = np.zeros(shape + sizes, kind) if whole or kind.kind == "U" else np.full(shape + sizes, np.nan)
+    for place, array in arrays.items():
+        result[place + tuple(slice(size) for size in array.shape)] = array
+    return result
+
+
+def labels(dimension: str, of: Iterable[Any], /, **long_names: str) -> dict[str, xr.Variable]:
+    """Attributes of each of ``of`` as variables along ``dimension``, by the names of their long names."""
+    listed = list(of)
+    return {
+        name: variable(dimension, [getattr(one, name) for one in listed], text) for name, text in long_names.items()
+    }
+
+
+def axes(**given: tuple[Iterable[Any], str]) -> dict[str, xr.Variable]:
+    """Coordinates along their own dimensions: by name, values and long name."""
+    return {
+        name: variable(name, values if isinstance(values, np.ndarray) else list(values), text)
+        for name, (values, text) in given.items()
+    }
