@@ -17,8 +17,10 @@ import numpy as np
 from ..scene import Scene
 from ..scene.errors import show
 from ..solve import SOLVE_ERRORS, solve_scene
-from ..solve.solution import checked_problem, load_programme
+from ..solve.solution import Solution, checked_problem, load_programme
 from ..sweeps.errors import SweepError
+from ..sweeps.memory import Memory
+from ..sweeps.resources import current, using
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import TerminalProgress
@@ -61,7 +63,8 @@ def sweep(
     load_factors : multipliers of the scene's loads at which states are kept; those of the scene if left out.
     workers : local processes; all cores if left out, this process if 1.
     scheduler : address of a Dask scheduler; ``DASK_SCHEDULER_ADDRESS`` is asked if left out.
-    checkpoint : folder that keeps what is measured, so that an interrupted sweep continues.
+    checkpoint : folder that keeps each solution, so that an interrupted sweep continues, and another ``measure`` takes
+        what was solved. Workers of a Dask cluster keep their own there, so it is one that all reach.
     progress : a line on the terminal, or in a notebook; False for none, or a function that is called as
         ``progress(done, total, what)``.
 
@@ -95,14 +98,13 @@ def sweep(
     scenes = [base.updated(point).updated(programme) for point in points]
     for each in scenes:
         checked_problem(each)
-    task = functools.partial(_measured, measure=measure)
+    folder = checkpoint or current().checkpoint
+    task = functools.partial(_measured, measure=measure, memory=Memory(folder) if folder else None)
     with contextlib.ExitStack() as stack:
+        stack.enter_context(using(checkpoint=None))
         if progress is True:
             progress = stack.enter_context(TerminalProgress())
-        found = map_tasks(
-            task, scenes, workers=workers, scheduler=scheduler, checkpoint=checkpoint, progress=progress or None,
-            what="scenes",
-        )  # fmt: skip
+        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=progress or None, what="scenes")
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
         warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
@@ -144,13 +146,22 @@ def _comparable(value: Any) -> Any:
     return "other", repr(value)
 
 
-def _measured(scene: Scene, *, measure: Callable[[Result], Measured]) -> tuple[xr.Dataset | str, list[str]]:
+def _measured(
+    scene: Scene, *, measure: Callable[[Result], Measured], memory: Memory | None
+) -> tuple[xr.Dataset | str, list[str]]:
     """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
+    solved = memory.result(_solved, scene) if memory else _solved(scene)
+    if isinstance(solved, str):
+        return solved, []
+    return _dataset(measure(Result(solved))), solved.remarks
+
+
+def _solved(scene: Scene) -> Solution | str:
+    """The solution of a scene, or why it has no equilibrium."""
     try:
-        solution = solve_scene(scene)
+        return solve_scene(scene)
     except SOLVE_ERRORS as error:
-        return " ".join(str(error).split()), []
-    return _dataset(measure(Result(solution))), solution.remarks
+        return " ".join(str(error).split())
 
 
 def _dataset(measured: Measured) -> xr.Dataset:
