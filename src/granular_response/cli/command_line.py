@@ -21,6 +21,7 @@ from typer.core import TyperGroup
 from .. import __version__
 from ..errors import GranularError
 from ..machine import floating_point, without_dask
+from ..sweeps.errors import SweepError
 
 floating_point.pin()
 
@@ -162,5 +163,5 @@ def _said(error: Exception) -> str | None:
     if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
         return f"{error.filename}: {error.strerror}"
     cause = error.__cause__
-    programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, GranularError)
+    programming = isinstance(error, SweepError) and cause and not isinstance(cause, GranularError)
     return str(error) if isinstance(error, GranularError) and not programming else None
