@@ -19,7 +19,6 @@ import pytest
 
 from granular_response.scene import Scene
 from granular_response.solve import Problem
-from granular_response.sweeps import cluster as dask_tasks
 from granular_response.sweeps import executor, keys, memory, processes
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
@@ -543,21 +542,6 @@ def test_a_scheduler_without_workers_is_reported_and_then_waited_for(scheduler, 
             process.terminate()  # it ends what it has started
             process.wait()
     assert said == [f"the Dask scheduler at {address} has no workers: waiting for one"]
-
-
-def test_a_client_that_gets_no_turn_is_started_again(monkeypatch):
-    import distributed
-
-    asked = []
-
-    def late(address, **_):
-        asked.append(address)
-        raise AssertionError  # what distributed says of a thread that did not start
-
-    monkeypatch.setattr(distributed, "Client", late)
-    with pytest.raises(SweepError, match="too busy to start a Dask client"):
-        map_tasks(slow_first, range(2), scheduler="tcp://127.0.0.1:1")
-    assert asked == ["tcp://127.0.0.1:1"] * dask_tasks.STARTS
 
 
 def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd, monkeypatch):
