@@ -12,11 +12,9 @@ import io
 import os
 import sys
 import warnings
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 import typer
-from typer.core import TyperGroup
 
 from .. import __version__
 from ..errors import GranularError
@@ -24,10 +22,6 @@ from ..machine import floating_point, without_dask
 from ..sweeps.errors import SweepError
 
 floating_point.pin()
-
-
-class CommandError(GranularError):
-    """A command that this command line does not have. One line that says where it is."""
 
 
 class CommandLine:
@@ -41,15 +35,12 @@ class CommandLine:
         What it is for, in one line.
     examples
         Arguments worth showing, as they follow the name.
-    elsewhere
-        Commands of other programs that a user may look for here, with the line that says where they are.
     """
 
-    def __init__(self, name: str, about: str, *examples: str, elsewhere: Mapping[str, str] | None = None) -> None:
+    def __init__(self, name: str, about: str, *examples: str) -> None:
         self.name = name
         self.app = typer.Typer(
             name=name,
-            cls=_group(elsewhere or {}),
             no_args_is_help=True,
             add_completion=False,
             rich_markup_mode=None,  # plain help answers twice as fast
@@ -120,18 +111,6 @@ def loaded() -> None:
     if not gc.isenabled():
         gc.freeze()
         gc.enable()
-
-
-def _group(elsewhere: Mapping[str, str]) -> type[TyperGroup]:
-    """Commands, and what is said to those who ask for one of another program."""
-
-    class Commands(TyperGroup):
-        def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-            if args[0] in elsewhere:
-                raise CommandError(f"{args[0]}: {elsewhere[args[0]]}")
-            return super().resolve_command(ctx, args)
-
-    return Commands
 
 
 #: Errors of a stream, which has no name.

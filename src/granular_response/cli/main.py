@@ -40,18 +40,11 @@ BIBTEX = f"""\
   version = {{{__version__}}}
 }}"""
 
-#: Commands of the reproduction, which has a command line of its own (``granular_response_paper``).
-REPRODUCTION = ("archive", "claims", "draw", "measure", "notebooks", "report", "restore", "simulate")
-
 commands = CommandLine(
     "granular-response",
     "Quasi-static response of two-dimensional granular solids to a localized force.",
     "run examples/slab.yaml -o slab.nc",
     "show slab.nc",
-    elsewhere={
-        name: f"is a command of the reproduction: granular-response-paper {name}, in a clone of the repository"
-        for name in REPRODUCTION
-    },
 )
 
 #: Files and settings that several commands take.
