@@ -18,7 +18,7 @@ import typer
 
 from .. import __version__
 from ..errors import GranularError
-from ..machine import floating_point, without_dask
+from ..machine import floating_point
 from ..sweeps.errors import SweepError
 
 floating_point.pin()
@@ -77,7 +77,6 @@ class CommandLine:
         gc.disable()
         warnings.formatwarning = lambda message, *_, **__: f"{self.name}: {message}\n"
         _speak_any_name()
-        without_dask.hide()
         try:
             try:
                 self.app()

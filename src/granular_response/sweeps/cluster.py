@@ -11,7 +11,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from typing import Any
 
-from ..machine import floating_point, without_dask
+from ..machine import floating_point
 from .errors import SweepError, failed
 from .executor import results
 
@@ -20,7 +20,6 @@ def over_dask(
     function: Callable, items: Sequence[Any], todo: Sequence[int], address: str
 ) -> Generator[tuple[int, Any], None, None]:
     """Results as they come. The scheduler itself runs again what a dead worker was at."""
-    without_dask.show()
     try:
         from distributed import Client, KilledWorker
     except ImportError:
