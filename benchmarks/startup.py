@@ -61,13 +61,6 @@ def main(path: str) -> None:
             rows.append({"what": name, **run([sys.executable, "-c", code], REPEATS)})
         command = [sys.executable, "-m", "granular_response", "--version"]
         rows.append({"what": "granular-response --version", **run(command, REPEATS)})
-        for text, first in (
-            ("granular-response run, two disks, by its function", "pass"),
-            ("the same with xarray, for which store/labelled.py stands in", "import xarray"),
-        ):
-            code = f"{first}\nfrom granular_response.cli.main import main\nmain()"
-            command = [sys.executable, "-c", code, "run", str(scene), "-o", str(result)]
-            rows.append({"what": text, **run(command, REPEATS)})
     for row in rows:
         print(row)
     write(path, {"runs": rows})

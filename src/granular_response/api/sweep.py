@@ -10,9 +10,10 @@ import os
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from ..scene import Scene
 from ..scene.errors import show
@@ -24,9 +25,6 @@ from ..sweeps.resources import current, using
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import TerminalProgress
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: What a measure may return.
 Measured = Any
@@ -166,8 +164,6 @@ def _solved(scene: Scene) -> Solution | str:
 
 def _dataset(measured: Measured) -> xr.Dataset:
     """What a measure returned as a dataset."""
-    import xarray as xr
-
     if isinstance(measured, xr.Dataset):
         return measured
     if isinstance(measured, xr.DataArray):
@@ -189,8 +185,6 @@ def _dataset(measured: Measured) -> xr.Dataset:
 
 def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str]) -> xr.Dataset:
     """One dataset of those of all combinations, which are in the order of the product of ``values``."""
-    import xarray as xr
-
     errors = [one if isinstance(one, str) else "" for one in found]
     good = [(place, one) for place, one in enumerate(found) if not isinstance(one, str)]
     if not good:
@@ -285,8 +279,6 @@ def _side_by_side(results: Sequence[xr.Dataset]) -> tuple[xr.Dataset, set[Any]]:
 
     These are numbered here, and so filled up where a result is shorter, or has nothing along them.
     """
-    import xarray as xr
-
     bare = {dim for one in results for dim in one.dims if dim not in one.coords}
     along: dict[Any, set[Any]] = {dim: set() for dim in bare}
     for one in results:

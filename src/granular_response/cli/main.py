@@ -64,9 +64,9 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
     import time
 
     from ..store import files as store
-    from ..store.result import to_labelled
+    from ..store.result import to_dataset
 
-    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
+    store.write(output, to_dataset(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
     typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
     for remark in solution.remarks:
         commands.say(f"{output}: {remark}")
