@@ -347,8 +347,6 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
     applied = np.array([solution.applied_force(state) for state in solution.loaded] or [np.nan])
     response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
-    several = len(loaded) > 1
-    dims = ("load", "floor_disk") if several else ("floor_disk",)
     of_states = _states(states, "state")
     data = {
         "state_load_factor": of_states.pop("load_factor"),
@@ -356,10 +354,10 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         **described_forces(states),
         **load_coordinates(solution.load_factors),
         "floor_force_rest": variable("floor_disk", at_rest, f"vertical floor force at rest {FORCE}"),
-        "floor_force": variable(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
-        "floor_response": variable(
-            dims,
-            response if several else response[0],
+        "floor_force": _by_load(forces, ("floor_disk",), f"vertical floor force under load {FORCE}"),
+        "floor_response": _by_load(
+            response,
+            ("floor_disk",),
             "vertical floor force that the load adds, per total magnitude of the applied forces",
         ),
         "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
@@ -369,11 +367,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "applied_load": variable(
             ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
         ),
-        "total_force": variable(
-            ("load",) if several else (),
-            applied if several else applied[0],
-            f"total magnitude of the applied forces {FORCE}",
-        ),
+        "total_force": _by_load(applied, (), f"total magnitude of the applied forces {FORCE}"),
         **(_reaction(solution) if loaded and len(problem.held) else {}),
         **_listed(own, states),
         **_certificates(states, "state"),
@@ -446,10 +440,14 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
 def _reaction(solution: Solution) -> dict[str, xr.Variable]:
     """What holds displaced disks, under each load."""
     values = np.stack([solution.reaction(state) for state in solution.loaded])
-    dims = ("load_point", "axis")
     text = f"force x, z with which each load holds its disk at its displacement {FORCE}; 0 along free directions"
-    several = len(values) > 1
-    return {"reaction": variable(("load", *dims) if several else dims, values if several else values[0], text)}
+    return {"reaction": _by_load(values, ("load_point", "axis"), text)}
+
+
+def _by_load(values: np.ndarray, dims: tuple[str, ...], long_name: str) -> xr.Variable:
+    """What was measured under each load, along ``load``; without it where there is one load or none."""
+    made = variable(("load", *dims), values, long_name)
+    return made if len(values) > 1 else made[0]
 
 
 def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:
