@@ -12,13 +12,12 @@ import pickle
 import sys
 from collections.abc import Collection, Mapping
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from ..errors import GranularError
 from ..scene.base import Description
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: What pickles of arrays, numbers, sets, paths and datasets call.
 _PLAIN = {
@@ -83,16 +82,13 @@ def decode(data: bytes, modules: Collection[str] = ()) -> Any:
 class _Writer(pickle.Pickler):
     def reducer_override(self, value: Any) -> Any:
         """A dataset goes by its parts: the classes inside are xarray's own affair."""
-        xarray = sys.modules.get("xarray")
-        if xarray is None or type(value) is not xarray.Dataset:
+        if type(value) is not xr.Dataset:
             return NotImplemented
         variables = {name: (one.dims, one.values, one.attrs) for name, one in value.variables.items()}
         return _dataset, (variables, list(value.coords), value.attrs)
 
 
 def _dataset(variables: Mapping[str, Any], coordinates: Collection[str], attributes: Mapping[str, Any]) -> xr.Dataset:
-    import xarray as xr
-
     return xr.Dataset(variables, attrs=attributes).set_coords(coordinates)
 
 
