@@ -28,17 +28,6 @@ BEFORE = {
     "numpy, scipy.sparse, numba and xarray imported": "import numpy, scipy.sparse.linalg, numba, xarray, netCDF4",
     "the interpreter alone": "pass",
 }
-#: What our own code for quick commands buys: the same commands without it.
-WITHOUT = {
-    "run": (
-        "with xarray, for which store/labelled.py stands in",
-        "from granular_response.machine import without_dask; without_dask.hide(); import xarray",
-    ),
-    "show": (
-        "with Dask in sight, which machine/without_dask.py hides",
-        "from granular_response.machine import without_dask; without_dask.hide = lambda: None",
-    ),
-}
 REPEATS = 5
 
 
@@ -72,15 +61,6 @@ def main(path: str) -> None:
             rows.append({"what": name, **run([sys.executable, "-c", code], REPEATS)})
         command = [sys.executable, "-m", "granular_response", "--version"]
         rows.append({"what": "granular-response --version", **run(command, REPEATS)})
-        arguments = {"run": ["run", str(scene), "-o", str(result)], "show": ["show", str(result)]}
-        for name, (what, before) in WITHOUT.items():
-            for text, first in (
-                (f"granular-response {name}, two disks, by its function", "pass"),
-                (f"the same {what}", before),
-            ):
-                code = f"{first}\nfrom granular_response.cli.main import main\nmain()"
-                command = [sys.executable, "-c", code, *arguments[name]]
-                rows.append({"what": text, **run(command, REPEATS)})
     for row in rows:
         print(row)
     write(path, {"runs": rows})

@@ -74,20 +74,4 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *_HOME})
 
 
-__all__ = [
-    "Event",
-    "GranularError",
-    "Result",
-    "ResultError",
-    "Scene",
-    "SceneError",
-    "SolveError",
-    "StoreError",
-    "SweepError",
-    "__version__",
-    "find_event",
-    "open_result",
-    "plot",
-    "solve",
-    "sweep",
-]
+__all__ = ["__version__", *_HOME]

@@ -50,8 +50,7 @@ def test_one_load_has_no_dimension(solution):
 
 
 def test_factors_may_repeat():
-    values = load_coordinates([0.5, 1.0, 0.5])
-    made = indexed(xr.Dataset({"a": ("load", [1, 2, 3])}, {name: tuple(value) for name, value in values.items()}))
+    made = indexed(xr.Dataset({"a": ("load", [1, 2, 3])}, load_coordinates([0.5, 1.0, 0.5])))
     assert made["a"].sel(load=0.5).values.tolist() == [1, 3]
     assert made["a"].sel(step=3) == 3 and made["load_factor"].values.tolist() == [0.5, 1.0, 0.5]
 

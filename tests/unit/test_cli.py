@@ -97,14 +97,6 @@ def test_version():
         assert call("--version", package=package).stdout == f"{program} {__version__}\n"
 
 
-@pytest.mark.parametrize("command", OF_THE_PAPER)
-def test_a_command_of_the_reproduction_says_where_it_is(command):
-    for arguments in ([command], [command, "pile_dip", "--option"], [command, "--help"]):
-        finished = call(*arguments, package=LIBRARY)
-        assert_one_line_error(finished, f"granular-response: {command}: ", f": granular-response-paper {command}, ")
-        assert finished.stdout == ""
-
-
 def test_cite_agrees_with_the_citation_file():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert citation["version"] == __version__
@@ -528,7 +520,6 @@ def test_every_command_is_listed():
     for names, module in ((COMMANDS, cli), (OF_THE_PAPER, paper)):
         registered = module.commands.app.registered_commands
         assert sorted(names) == sorted(command.name or command.callback.__name__ for command in registered)
-    assert set(cli.REPRODUCTION) == set(OF_THE_PAPER)
 
 
 def test_a_shell_takes_the_floating_point_choices():

@@ -31,7 +31,7 @@ ALLOWED = {
     "theory": {"numpy", "scipy"},
     "plot": {"cycler", "matplotlib", "numpy", "xarray"},
     "store": {"gsd", "netCDF4", "numpy", "rich", "xarray"},
-    "sweeps": {"cloudpickle", "distributed", "xarray"},
+    "sweeps": {"cloudpickle", "distributed", "numpy", "xarray"},
     "api": {"numpy", "rich", "xarray"},
     "cli": {"rich", "typer"},
     "granular_response_paper": {

@@ -12,6 +12,7 @@ import xarray as xr
 from rich.console import Console
 
 import granular_response as gr
+from granular_response.api import sweep as sweeping
 from granular_response.api.terminal import TerminalProgress
 from granular_response.observe.events import EventNotBracketed
 from granular_response.scene import SceneError
@@ -262,7 +263,7 @@ def test_the_sweep_of_the_notes_runs_as_a_script_with_workers(tmp_path):
     assert any((tmp_path / "kept").iterdir())
 
 
-def test_a_sweep_continues_from_its_checkpoint(tmp_path):
+def test_a_sweep_continues_from_its_checkpoint(tmp_path, monkeypatch):
     calls = []
 
     def count(done, total, what):
@@ -271,10 +272,25 @@ def test_a_sweep_continues_from_its_checkpoint(tmp_path):
     def largest(result):
         return result.floor_response.max()
 
-    one = gr.sweep(SCENE, {"contact.friction": [0.0]}, largest, workers=1, checkpoint=tmp_path, progress=count)
-    two = gr.sweep(SCENE, {"contact.friction": [0.0, 0.1]}, largest, workers=1, checkpoint=tmp_path, progress=count)
-    assert calls == [(0, 1, "scenes"), (1, 1, "scenes"), (1, 2, "scenes"), (2, 2, "scenes")]
+    kept = {"workers": 1, "checkpoint": tmp_path / "kept"}
+    one = gr.sweep(SCENE, {"contact.friction": [0.0]}, largest, progress=count, **kept)
+    two = gr.sweep(SCENE, {"contact.friction": [0.0, 0.1]}, largest, progress=count, **kept)
+    assert calls == [(0, 1, "scenes"), (1, 1, "scenes"), (0, 2, "scenes"), (1, 2, "scenes"), (2, 2, "scenes")]
     assert one["floor_response"][0] == two["floor_response"][0]
+    monkeypatch.setattr(sweeping, "solve_scene", None)  # another measure takes what was solved
+    whole = gr.sweep(SCENE, {"contact.friction": [0.0, 0.1]}, lambda result: result.to_dataset(), **kept)
+    np.testing.assert_array_equal(whole["floor_response"].max("floor_disk"), two["floor_response"])
+
+
+def test_a_reason_is_kept_too(tmp_path, monkeypatch):
+    falls = SCENE.updated({"loads": [{"disk": "top-centre", "force": [0.0, 50.0]}]})
+    axes = {"contact.friction": [0.0]}
+    with pytest.raises(SweepError) as first:
+        gr.sweep(falls, axes, workers=1, checkpoint=tmp_path / "kept", progress=False)
+    monkeypatch.setattr(sweeping, "solve_scene", None)
+    with pytest.raises(SweepError) as again:
+        gr.sweep(falls, axes, workers=1, checkpoint=tmp_path / "kept", progress=False)
+    assert str(again.value) == str(first.value)
 
 
 def opened(result):

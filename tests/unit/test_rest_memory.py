@@ -11,7 +11,7 @@ from granular_response.solve import Problem
 from granular_response.solve import solution as solve
 from granular_response.store import atomic
 from granular_response.sweeps import rest as settled
-from granular_response.sweeps.digest import digest
+from granular_response.sweeps.keys import key
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
 
@@ -62,7 +62,7 @@ def test_a_kept_state_is_the_computed_one(folder, computed):
     first = settled.rest_state(Problem.from_scene(SCENE))
     again = settled.rest_state(Problem.from_scene(SCENE.updated({"loads.0.force": [1.0, -2.0]})))
     assert len(computed) == 1
-    assert digest(again) == digest(first)
+    assert key(again) == key(first)
     np.testing.assert_array_equal(again.pairs.spring, first.pairs.spring)
 
 

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from typing import Any, overload
 
+import xarray as xr
+
 from ..scene.errors import suggestion
 from ..state import CONTACT_EVENTS, LOST_EVENTS, Event
 
@@ -65,8 +67,6 @@ class Events(Sequence[Event]):
 
     def to_dataframe(self) -> Any:
         """A ``pandas.DataFrame``, a row for each event: its fields, after the index of the ``state`` it leads to."""
-        import xarray as xr
-
         columns = {"state": self.states}
         columns |= {field.name: tuple(getattr(event, field.name) for event in self._events) for field in fields(Event)}
         return xr.Dataset({name: ("event", list(values)) for name, values in columns.items()}).to_dataframe()

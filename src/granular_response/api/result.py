@@ -10,9 +10,10 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from ..observe.floor import origin_of
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
@@ -25,9 +26,6 @@ from ..store import files
 from ..store.checked import read_result
 from ..store.result import scene_of, solution_from, state_from, to_dataset
 from .event_table import Events
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class Result:
@@ -159,8 +157,6 @@ class Result:
             Unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
             state at rest.
         """
-        import xarray as xr
-
         state = self._index(state)
         added = state > 0 if added is None else added
         if added and state == 0:
@@ -209,8 +205,6 @@ class Result:
         granular_response.solve.EquilibriumError
             For a state that is not stable, or has contacts at the Coulomb limit where these are refused.
         """
-        import xarray as xr
-
         state = self._index(state)
         solution = self._solution or solution_from(self._data, folder=self._folder)
         chosen = (solution.rest, *solution.loaded)[state]

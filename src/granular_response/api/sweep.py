@@ -10,21 +10,21 @@ import os
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from ..scene import Scene
 from ..scene.errors import show
 from ..solve import SOLVE_ERRORS, solve_scene
-from ..solve.solution import checked_problem, load_programme
+from ..solve.solution import Solution, checked_problem, load_programme
 from ..sweeps.errors import SweepError
+from ..sweeps.memory import Memory
+from ..sweeps.resources import current, using
 from ..sweeps.tasks import Progress, map_tasks
 from .result import Result, described
 from .terminal import TerminalProgress
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: What a measure may return.
 Measured = Any
@@ -61,7 +61,8 @@ def sweep(
     load_factors : multipliers of the scene's loads at which states are kept; those of the scene if left out.
     workers : local processes; all cores if left out, this process if 1.
     scheduler : address of a Dask scheduler; ``DASK_SCHEDULER_ADDRESS`` is asked if left out.
-    checkpoint : folder that keeps what is measured, so that an interrupted sweep continues.
+    checkpoint : folder that keeps each solution, so that an interrupted sweep continues, and another ``measure`` takes
+        what was solved. Workers of a Dask cluster keep their own there, so it is one that all reach.
     progress : a line on the terminal, or in a notebook; False for none, or a function that is called as
         ``progress(done, total, what)``.
 
@@ -95,14 +96,13 @@ def sweep(
     scenes = [base.updated(point).updated(programme) for point in points]
     for each in scenes:
         checked_problem(each)
-    task = functools.partial(_measured, measure=measure)
+    folder = checkpoint or current().checkpoint
+    task = functools.partial(_measured, measure=measure, memory=Memory(folder) if folder else None)
     with contextlib.ExitStack() as stack:
+        stack.enter_context(using(checkpoint=None))
         if progress is True:
             progress = stack.enter_context(TerminalProgress())
-        found = map_tasks(
-            task, scenes, workers=workers, scheduler=scheduler, checkpoint=checkpoint, progress=progress or None,
-            what="scenes",
-        )  # fmt: skip
+        found = map_tasks(task, scenes, workers=workers, scheduler=scheduler, progress=progress or None, what="scenes")
     remarks = Counter(remark for _, remarks in found for remark in remarks)
     for remark, count in remarks.items():
         warnings.warn(f"{count} of {len(found)} combinations: {remark}", stacklevel=2)
@@ -144,19 +144,26 @@ def _comparable(value: Any) -> Any:
     return "other", repr(value)
 
 
-def _measured(scene: Scene, *, measure: Callable[[Result], Measured]) -> tuple[xr.Dataset | str, list[str]]:
+def _measured(
+    scene: Scene, *, measure: Callable[[Result], Measured], memory: Memory | None
+) -> tuple[xr.Dataset | str, list[str]]:
     """What is measured on a scene, or why it has no equilibrium, and the remarks on the solution."""
+    solved = memory.result(_solved, scene) if memory else _solved(scene)
+    if isinstance(solved, str):
+        return solved, []
+    return _dataset(measure(Result(solved))), solved.remarks
+
+
+def _solved(scene: Scene) -> Solution | str:
+    """The solution of a scene, or why it has no equilibrium."""
     try:
-        solution = solve_scene(scene)
+        return solve_scene(scene)
     except SOLVE_ERRORS as error:
-        return " ".join(str(error).split()), []
-    return _dataset(measure(Result(solution))), solution.remarks
+        return " ".join(str(error).split())
 
 
 def _dataset(measured: Measured) -> xr.Dataset:
     """What a measure returned as a dataset."""
-    import xarray as xr
-
     if isinstance(measured, xr.Dataset):
         return measured
     if isinstance(measured, xr.DataArray):
@@ -178,8 +185,6 @@ def _dataset(measured: Measured) -> xr.Dataset:
 
 def _gridded(values: Mapping[str, list[Any]], found: Sequence[xr.Dataset | str]) -> xr.Dataset:
     """One dataset of those of all combinations, which are in the order of the product of ``values``."""
-    import xarray as xr
-
     errors = [one if isinstance(one, str) else "" for one in found]
     good = [(place, one) for place, one in enumerate(found) if not isinstance(one, str)]
     if not good:
@@ -274,8 +279,6 @@ def _side_by_side(results: Sequence[xr.Dataset]) -> tuple[xr.Dataset, set[Any]]:
 
     These are numbered here, and so filled up where a result is shorter, or has nothing along them.
     """
-    import xarray as xr
-
     bare = {dim for one in results for dim in one.dims if dim not in one.coords}
     along: dict[Any, set[Any]] = {dim: set() for dim in bare}
     for one in results:

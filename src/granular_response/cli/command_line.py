@@ -12,21 +12,16 @@ import io
 import os
 import sys
 import warnings
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 import typer
-from typer.core import TyperGroup
 
 from .. import __version__
 from ..errors import GranularError
-from ..machine import floating_point, without_dask
+from ..machine import floating_point
+from ..sweeps.errors import SweepError
 
 floating_point.pin()
-
-
-class CommandError(GranularError):
-    """A command that this command line does not have. One line that says where it is."""
 
 
 class CommandLine:
@@ -40,15 +35,12 @@ class CommandLine:
         What it is for, in one line.
     examples
         Arguments worth showing, as they follow the name.
-    elsewhere
-        Commands of other programs that a user may look for here, with the line that says where they are.
     """
 
-    def __init__(self, name: str, about: str, *examples: str, elsewhere: Mapping[str, str] | None = None) -> None:
+    def __init__(self, name: str, about: str, *examples: str) -> None:
         self.name = name
         self.app = typer.Typer(
             name=name,
-            cls=_group(elsewhere or {}),
             no_args_is_help=True,
             add_completion=False,
             rich_markup_mode=None,  # plain help answers twice as fast
@@ -85,7 +77,6 @@ class CommandLine:
         gc.disable()
         warnings.formatwarning = lambda message, *_, **__: f"{self.name}: {message}\n"
         _speak_any_name()
-        without_dask.hide()
         try:
             try:
                 self.app()
@@ -121,18 +112,6 @@ def loaded() -> None:
         gc.enable()
 
 
-def _group(elsewhere: Mapping[str, str]) -> type[TyperGroup]:
-    """Commands, and what is said to those who ask for one of another program."""
-
-    class Commands(TyperGroup):
-        def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-            if args[0] in elsewhere:
-                raise CommandError(f"{args[0]}: {elsewhere[args[0]]}")
-            return super().resolve_command(ctx, args)
-
-    return Commands
-
-
 #: Errors of a stream, which has no name.
 _NOT_WRITTEN = (errno.EIO, errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
@@ -162,5 +141,5 @@ def _said(error: Exception) -> str | None:
     if isinstance(error, OSError) and error.filename is not None:  # a path that cannot be read or written
         return f"{error.filename}: {error.strerror}"
     cause = error.__cause__
-    programming = type(error).__name__ == "SweepError" and cause and not isinstance(cause, GranularError)
+    programming = isinstance(error, SweepError) and cause and not isinstance(cause, GranularError)
     return str(error) if isinstance(error, GranularError) and not programming else None

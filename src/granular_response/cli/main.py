@@ -40,18 +40,11 @@ BIBTEX = f"""\
   version = {{{__version__}}}
 }}"""
 
-#: Commands of the reproduction, which has a command line of its own (``granular_response_paper``).
-REPRODUCTION = ("archive", "claims", "draw", "measure", "notebooks", "report", "restore", "simulate")
-
 commands = CommandLine(
     "granular-response",
     "Quasi-static response of two-dimensional granular solids to a localized force.",
     "run examples/slab.yaml -o slab.nc",
     "show slab.nc",
-    elsewhere={
-        name: f"is a command of the reproduction: granular-response-paper {name}, in a clone of the repository"
-        for name in REPRODUCTION
-    },
 )
 
 #: Files and settings that several commands take.
@@ -71,9 +64,9 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
     import time
 
     from ..store import files as store
-    from ..store.result import to_labelled
+    from ..store.result import to_dataset
 
-    store.write(output, to_labelled(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
+    store.write(output, to_dataset(solution), {"wall_clock_seconds": time.perf_counter() - started}, keep=True)
     typer.echo(f"{output}: {said}, {time.perf_counter() - started:.1f} s")
     for remark in solution.remarks:
         commands.say(f"{output}: {remark}")

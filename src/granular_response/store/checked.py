@@ -10,9 +10,10 @@ import json
 import os
 from dataclasses import fields
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from ..state import Certificate, Event, status
 from ..state.box import FARTHEST, WALL_MEANINGS
@@ -27,9 +28,6 @@ from .result import (
     load_coordinates,
     state_from,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _REAL, _WHOLE, _TEXT = "fiu", "iu", "UO"
 #: Variables that every result has: dimensions and kinds of numbers.
@@ -150,9 +148,7 @@ def _renewed(dataset: xr.Dataset) -> xr.Dataset:
     """A result of the layout before, with what has been added since."""
     states = [state_from(dataset, k) for k in range(dataset.sizes["state"])]
     coordinates = load_coordinates([state.load_factor for state in states[1:]])
-    return dataset.assign_coords({name: tuple(value) for name, value in coordinates.items()}).assign(
-        {name: tuple(value) for name, value in described_forces(states).items()}
-    )
+    return dataset.assign_coords(coordinates).assign(described_forces(states))
 
 
 def _with_events(dataset: xr.Dataset) -> xr.Dataset:
@@ -169,8 +165,7 @@ def _with_events(dataset: xr.Dataset) -> xr.Dataset:
         while state < len(stretches) and not stretches[state - 1][0] <= start < stretches[state - 1][1]:
             state += 1
         found.append((state, Event(start, "jump", until=until, displacement=moved, reason=str(reason))))
-    known = {name: tuple(value) for name, value in described_events(found).items()}
-    return dataset.drop_vars(_CROSSINGS).assign(known)
+    return dataset.drop_vars(_CROSSINGS).assign(described_events(found))
 
 
 def _check_events(dataset: xr.Dataset) -> None:

@@ -18,19 +18,18 @@ import secrets
 import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import netCDF4
 import numpy as np
+import xarray as xr
+from xarray.backends import NetCDF4DataStore
 
 from .. import __version__
 from ..errors import GranularError
 from ..inputs import check_regular
 from . import atomic
-from .labelled import Labelled, labelled
-
-if TYPE_CHECKING:  # whoever writes without reading does not wait for it
-    import xarray as xr
+from .conventions import encoded_attributes, encoded_variables
 
 #: What the name of every file of datasets ends with.
 SUFFIX = ".nc"
@@ -56,7 +55,7 @@ def _error(path: str | os.PathLike[str], problem: str) -> StoreError:
 
 def write(
     path: str | os.PathLike[str],
-    datasets: xr.Dataset | Labelled | Mapping[str, xr.Dataset],
+    datasets: xr.Dataset | Mapping[str, xr.Dataset],
     attributes: Mapping[str, Any] | None = None,
     *,
     keep: bool = False,
@@ -68,8 +67,8 @@ def write(
     path
         The file to make or to replace, ``.nc``. Missing folders are made.
     datasets
-        One dataset, of xarray or as its parts, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""``
-        is the root) to datasets. Every variable and coordinate has the attributes ``long_name`` and ``units``.
+        One dataset, or a mapping from group names (``"mu_0.2"``, ``"slab/rest"``; ``""`` is the root) to datasets.
+        Every variable and coordinate has the attributes ``long_name`` and ``units``.
     attributes
         Attributes of the file as a whole. ``format`` and ``package_version`` are added.
     keep
@@ -83,14 +82,11 @@ def write(
         was there before is then as it was.
     """
     path = _named(path)
-    single = isinstance(datasets, Labelled) or hasattr(datasets, "data_vars")
-    given: Mapping[str, Any] = {"": datasets} if single else datasets  # type: ignore[assignment]
-    groups = {name: labelled(dataset) for name, dataset in given.items()}
-    for name, parts in groups.items():
-        _check(path, name, parts)
-    root = groups.pop("", Labelled())
+    groups = {"": datasets} if isinstance(datasets, xr.Dataset) else dict(datasets)
+    for name, dataset in groups.items():
+        _check(path, name, dataset)
     marks = {"format": FORMAT, "package_version": __version__}
-    root = Labelled(root.variables, root.coordinates, {**root.attributes, **(attributes or {}), **marks})
+    root = groups.pop("", xr.Dataset()).assign_attrs({**(attributes or {}), **marks})
     groups = {"": root, **groups}
     data = _made(path, groups)
     data += _SEAL + hashlib.sha256(data).digest()
@@ -159,19 +155,19 @@ def read_attributes(path: str | os.PathLike[str], *, sealed: bool = True) -> dic
     return {name: v.item() if isinstance(v, np.generic) else v for name, v in attributes.items()}
 
 
-def _check(path: Path, group: str, parts: Labelled) -> None:
+def _check(path: Path, group: str, dataset: xr.Dataset) -> None:
     """Names and labels of one group."""
     if group and not _GROUP.fullmatch(group):
         raise _error(path, f"group name {group!r}: must be letters, digits, '_', '.', '+' or '-'")
-    for name, variable in parts.variables.items():
+    for name, variable in dataset.variables.items():
         where = f"variable {group + '/' if group else ''}{name}"
         for label in ("long_name", "units"):
-            value = variable.attributes.get(label)
+            value = variable.attrs.get(label)
             if not isinstance(value, str) or not value.strip():
                 raise _error(path, f"{where} needs the attribute {label} (units: '1' in reduced units)")
 
 
-def _made(path: Path, groups: Mapping[str, Labelled]) -> bytes:
+def _made(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
     """The file as bytes."""
     try:
         with tempfile.TemporaryDirectory(prefix="granular_response_") as folder:
@@ -189,19 +185,19 @@ def _made(path: Path, groups: Mapping[str, Labelled]) -> bytes:
         raise _error(path, f"cannot be written: {error}; is there space in {tempfile.gettempdir()}?") from error
 
 
-def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, Labelled]) -> None:
-    for name, parts in groups.items():
+def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, xr.Dataset]) -> None:
+    for name, dataset in groups.items():
         try:
-            _dump(parts, file.createGroup(name) if name else file)
+            _dump(dataset, file.createGroup(name) if name else file)
         except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
             raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
 
 
-def _dump(parts: Labelled, group: netCDF4.Dataset) -> None:
+def _dump(dataset: xr.Dataset, group: netCDF4.Dataset) -> None:
     """Write a dataset as xarray would, by the CF conventions: the same bytes."""
-    for name, value in parts.encoded_attributes().items():
+    for name, value in encoded_attributes(dataset).items():
         _set_attribute(group, name, value)
-    variables = parts.encoded_variables()
+    variables = encoded_variables(dataset)
     for variable in variables.values():
         for dimension, size in zip(variable.dimensions, variable.values.shape, strict=True):
             if dimension not in group.dimensions:
@@ -226,14 +222,14 @@ def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
         group.setncattr(name, value)
 
 
-def _verify(data: bytes, groups: Mapping[str, Labelled]) -> None:
+def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
     """Decode every variable of every group once before the file counts; raises OSError if one cannot be."""
     try:
         with netCDF4.Dataset(_NO_NAME, mode="r", memory=data) as file:
-            for name, parts in groups.items():
+            for name, dataset in groups.items():
                 group = file[name] if name else file
-                for key, variable in parts.variables.items():
-                    if group[key][...].shape != variable.values.shape:
+                for key, variable in dataset.variables.items():
+                    if group[str(key)][...].shape != variable.shape:
                         raise OSError(f"variable {name}/{key} reads back with another shape")
     except (RuntimeError, IndexError, KeyError) as error:
         raise OSError(f"it does not read back: {error}") from error
@@ -293,9 +289,6 @@ def _walk(file: netCDF4.Dataset, prefix: str = "") -> list[tuple[str, netCDF4.Da
 
 
 def _load(group: netCDF4.Dataset) -> xr.Dataset:
-    import xarray as xr
-    from xarray.backends import NetCDF4DataStore
-
     store = NetCDF4DataStore(group)
     # seconds stay numbers: decoding them to time spans would lose digits
     dataset = xr.open_dataset(store, decode_times=False, decode_timedelta=False).load()

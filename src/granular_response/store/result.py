@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from .. import __version__
 from ..errors import GranularError
@@ -26,10 +27,6 @@ from ..solve.problem import Problem
 from ..solve.solution import Solution
 from ..solve.timestep import time_step_reason
 from ..state import CONTACT_EVENTS, LOST_EVENTS, Box, Certificate, Contacts, Event, Reached, State, box, status
-from .labelled import Labelled, Values
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
 
@@ -70,18 +67,20 @@ class ResultError(GranularError, ValueError):
     """A dataset that is not a result, or not one that can be continued. The message is one line."""
 
 
-def described(dims, values, long_name: str, **attributes) -> Values:
-    """Values with the attributes that every stored variable has."""
-    dimensions = (dims,) if isinstance(dims, str) else tuple(dims)
-    return Values(dimensions, np.asarray(values), {"long_name": long_name, "units": "1", **attributes})
-
-
 def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
-    """The same as a variable of xarray."""
-    import xarray as xr
-
+    """xr.Variable with the attributes that every stored variable has."""
+    dimensions = (dims,) if isinstance(dims, str) else tuple(dims)
     # numpy's arrays are taken as they are: xarray need not find out whether they are Dask's
-    return xr.Variable(*described(dims, values, long_name, **attributes), fastpath=True)
+    return xr.Variable(
+        dimensions, np.asarray(values), {"long_name": long_name, "units": "1", **attributes}, fastpath=True
+    )
+
+
+def _dataset(
+    data: Mapping[str, xr.Variable], coordinates: Collection[str] = (), attributes: Mapping[str, Any] | None = None
+) -> xr.Dataset:
+    given = {name: one for name, one in data.items() if name not in coordinates}
+    return xr.Dataset(given, {name: one for name, one in data.items() if name in coordinates}, attributes)
 
 
 def common_candidates(states: Sequence[State], radius) -> list[State]:
@@ -97,36 +96,36 @@ def common_candidates(states: Sequence[State], radius) -> list[State]:
 
 def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
     """States of one packing and one candidate list, stacked along ``dimension``."""
-    return Labelled(_states(states, dimension), frozenset({"axis"})).dataset()
+    return _dataset(_states(states, dimension), {"axis"})
 
 
-def _states(states: Sequence[State], dimension: str) -> dict[str, Values]:
-    data: dict[str, Values] = {}
+def _states(states: Sequence[State], dimension: str) -> dict[str, xr.Variable]:
+    data: dict[str, xr.Variable] = {}
     for name, (dims, long_name) in _STATE_VARIABLES.items():
-        data[name] = described((dimension, *dims), np.stack([getattr(s, name) for s in states]), long_name)
+        data[name] = variable((dimension, *dims), np.stack([getattr(s, name) for s in states]), long_name)
     for kind, (dim, prefix) in _KINDS.items():
         contacts: list[Contacts] = [getattr(s, kind) for s in states]
         second = "partner" if kind == "pairs" else "wall"
         first_name = f"{prefix}_disk"
-        data[first_name] = described(dim, contacts[0].first, "disk that the contact force acts on")
+        data[first_name] = variable(dim, contacts[0].first, "disk that the contact force acts on")
         if kind == "pairs":
-            data[f"{prefix}_{second}"] = described(dim, contacts[0].second, "other disk")
+            data[f"{prefix}_{second}"] = variable(dim, contacts[0].second, "other disk")
         else:
-            data["wall_index"] = described(dim, contacts[0].second, "wall", **_WALL_FLAGS)
+            data["wall_index"] = variable(dim, contacts[0].second, "wall", **_WALL_FLAGS)
         for name, long_name in _CONTACT_VARIABLES.items():
             values = np.stack([getattr(c, name) for c in contacts])
             coded = STATUSES if name == "status" else {}
-            data[f"{prefix}_{name}"] = described((dimension, dim), values, long_name, **coded)
-    data["load_factor"] = described(dimension, [s.load_factor for s in states], "multiplier of the scene's loads")
-    return {**data, "axis": described("axis", ["x", "z"], "axis labels")}
+            data[f"{prefix}_{name}"] = variable((dimension, dim), values, long_name, **coded)
+    data["load_factor"] = variable(dimension, [s.load_factor for s in states], "multiplier of the scene's loads")
+    return {**data, "axis": variable("axis", ["x", "z"], "axis labels")}
 
 
 def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
     """The certificates of states along ``dimension``."""
-    return Labelled(_certificates(states, dimension)).dataset()
+    return _dataset(_certificates(states, dimension))
 
 
-def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
+def _certificates(states: Sequence[State], dimension: str) -> dict[str, xr.Variable]:
     names = {
         "force_residual": f"largest unbalanced force on a disk {FORCE}",
         "torque_residual": "largest unbalanced torque on a disk in mean weight times mean radius",
@@ -143,7 +142,7 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, Values]:
         return NOT_DETERMINED if value is None else value
 
     return {
-        f"certificate_{name}": described(dimension, [number(getattr(c, name)) for c in certificates], text)
+        f"certificate_{name}": variable(dimension, [number(getattr(c, name)) for c in certificates], text)
         for name, text in names.items()
     }
 
@@ -164,7 +163,7 @@ EVENTS = {
 EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS
 
 
-def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, Values]:
+def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variable]:
     """Events with the index of the state that each leads to, along ``event``; no variables where there are none."""
     if not found:
         return {}
@@ -179,8 +178,8 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, Values]:
             values, attributes = np.array(values, np.int8), flags(("no", "yes"))
         elif name == "reason":
             values = np.array(values, str)
-        data[f"event_{name}"] = described("event", values, text, **attributes)
-    return {**data, "event_state": described("event", [k for k, _ in found], "state that the event leads to")}
+        data[f"event_{name}"] = variable("event", values, text, **attributes)
+    return {**data, "event_state": variable("event", [k for k, _ in found], "state that the event leads to")}
 
 
 def events_from(dataset: xr.Dataset, index: int | None = None) -> list[tuple[int, Event]]:
@@ -233,18 +232,18 @@ _REACHED = {
 }
 
 
-def _reached(states: Sequence[State]) -> dict[str, Values]:
+def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
     """How the states were reached, along ``state``."""
     data = {}
     for name, text in _REACHED.items():
         known = [getattr(state.reached, name) for state in states]
         if name == "method":
-            data["reached_method"] = described("state", np.array([one or "" for one in known], str), text)
+            data["reached_method"] = variable("state", np.array([one or "" for one in known], str), text)
         elif any(one is not None for one in known):
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
             missing = NOT_DETERMINED if whole else np.nan
             values = np.array([missing if one is None else one for one in known], np.int64 if whole else float)
-            data[f"reached_{name}"] = described("state", values, text + (" (-1: not known)" if whole else ""))
+            data[f"reached_{name}"] = variable("state", values, text + (" (-1: not known)" if whole else ""))
     return data
 
 
@@ -259,7 +258,7 @@ def _reached_from(one: xr.Dataset) -> dict[str, Any]:
     return found
 
 
-def load_coordinates(factors: Sequence[float]) -> dict[str, Values]:
+def load_coordinates(factors: Sequence[float]) -> dict[str, xr.Variable]:
     """Coordinates along ``load``: its index, ``load_factor`` and ``step``; a lone ``load_factor`` for one load.
 
     Factors may repeat: ``sel(load=0.5)`` then gives every step at half the loads.
@@ -267,11 +266,11 @@ def load_coordinates(factors: Sequence[float]) -> dict[str, Values]:
     text = "multiplier of the scene's loads"
     values = np.asarray(factors, float)
     if len(values) < 2:
-        return {"load_factor": described((), values[0], text)} if len(values) else {}
+        return {"load_factor": variable((), values[0], text)} if len(values) else {}
     return {
-        "load": described("load", values, f"index: {text}"),
-        "load_factor": described("load", values, text),
-        "step": described("load", np.arange(1, len(values) + 1), "step of the load programme"),
+        "load": variable("load", values, f"index: {text}"),
+        "load_factor": variable("load", values, text),
+        "step": variable("load", np.arange(1, len(values) + 1), "step of the load programme"),
     }
 
 
@@ -293,8 +292,6 @@ def added_forces_dataset(
 
     Gravity is subtracted as a vector. With the geometry under load that pictures need, and the certificates.
     """
-    import xarray as xr
-
     pairs, walls = rest[0].pairs, rest[0].walls
     both = list(zip(rest, loaded, strict=True))
     text = f"contact force that the load adds, on the first disk {FORCE}"
@@ -330,12 +327,7 @@ def added_forces_dataset(
 
 
 def to_dataset(solution: Solution) -> xr.Dataset:
-    """The labelled dataset of a solved scene, as :func:`to_labelled` describes it."""
-    return indexed(to_labelled(solution).dataset())
-
-
-def to_labelled(solution: Solution) -> Labelled:
-    """The labelled data of a solved scene.
+    """The labelled dataset of a solved scene.
 
     Dimension ``state``: at rest first, then one entry for each load factor, which ``state_load_factor`` gives.
     ``floor_force``, ``floor_response``, ``total_force`` and, where loads displace disks, ``reaction`` have a dimension
@@ -355,41 +347,35 @@ def to_labelled(solution: Solution) -> Labelled:
     forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
     applied = np.array([solution.applied_force(state) for state in solution.loaded] or [np.nan])
     response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
-    several = len(loaded) > 1
-    dims = ("load", "floor_disk") if several else ("floor_disk",)
     of_states = _states(states, "state")
     data = {
         "state_load_factor": of_states.pop("load_factor"),
         **of_states,
         **described_forces(states),
         **load_coordinates(solution.load_factors),
-        "floor_force_rest": described("floor_disk", at_rest, f"vertical floor force at rest {FORCE}"),
-        "floor_force": described(dims, forces if several else forces[0], f"vertical floor force under load {FORCE}"),
-        "floor_response": described(
-            dims,
-            response if several else response[0],
+        "floor_force_rest": variable("floor_disk", at_rest, f"vertical floor force at rest {FORCE}"),
+        "floor_force": _by_load(forces, ("floor_disk",), f"vertical floor force under load {FORCE}"),
+        "floor_response": _by_load(
+            response,
+            ("floor_disk",),
             "vertical floor force that the load adds, per total magnitude of the applied forces",
         ),
-        "radius": described("disk", packing.radius, f"disk radius {LENGTH}"),
-        "mass": described("disk", packing.mass, "disk mass in mean disk masses"),
-        "row": described("disk", packing.row, "row on the lattice from the bottom, -1 without lattice"),
-        "loaded_disk": described("load_point", problem.load_disk, "disks that carry the loads"),
-        "applied_load": described(
+        "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
+        "mass": variable("disk", packing.mass, "disk mass in mean disk masses"),
+        "row": variable("disk", packing.row, "row on the lattice from the bottom, -1 without lattice"),
+        "loaded_disk": variable("load_point", problem.load_disk, "disks that carry the loads"),
+        "applied_load": variable(
             ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
         ),
-        "total_force": described(
-            ("load",) if several else (),
-            applied if several else applied[0],
-            f"total magnitude of the applied forces {FORCE}",
-        ),
+        "total_force": _by_load(applied, (), f"total magnitude of the applied forces {FORCE}"),
         **(_reaction(solution) if loaded and len(problem.held) else {}),
         **_listed(own, states),
         **_certificates(states, "state"),
         **_reached(states),
         **described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events]),
-        "floor_disk": described("floor_disk", disks, "index of the floor disk"),
-        "x": described("floor_disk", x, f"rest position from the loaded disk {LENGTH}"),
-        "component": described("component", ["force_x", "force_z", "torque"], "component labels"),
+        "floor_disk": variable("floor_disk", disks, "index of the floor disk"),
+        "x": variable("floor_disk", x, f"rest position from the loaded disk {LENGTH}"),
+        "component": variable("component", ["force_x", "force_z", "torque"], "component labels"),
     }
     moved = any(state.reached.time_step is not None for state in states)
     methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
@@ -412,7 +398,7 @@ def to_labelled(solution: Solution) -> Labelled:
         "settled": _verdict([s.reached.settled is not False for s in states]),
         "units": UNITS,
     }
-    return Labelled(data, COORDINATES & set(data), attributes)
+    return indexed(_dataset(data, COORDINATES, attributes))
 
 
 def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
@@ -425,7 +411,7 @@ def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
     return places
 
 
-def _listed(own: Sequence[State], states: Sequence[State]) -> dict[str, Values]:
+def _listed(own: Sequence[State], states: Sequence[State]) -> dict[str, xr.Variable]:
     """Which of the common candidates each state listed itself and in what order, where that is not the common one."""
     found = {}
     for kind, (dim, prefix) in _KINDS.items():
@@ -433,7 +419,7 @@ def _listed(own: Sequence[State], states: Sequence[State]) -> dict[str, Values]:
         places = np.stack([_own_places(getattr(state, kind), common) for state in own])
         if (places != np.arange(places.shape[1])).any():
             text = "place among the candidates of the state when it was solved, -1 for none of them"
-            found[f"{prefix}_own_place"] = described(("state", dim), places, text)
+            found[f"{prefix}_own_place"] = variable(("state", dim), places, text)
     return found
 
 
@@ -451,21 +437,25 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
     return replace(state, pairs=own(state.pairs, "contact"), walls=own(state.walls, "wall"))
 
 
-def _reaction(solution: Solution) -> dict[str, Values]:
+def _reaction(solution: Solution) -> dict[str, xr.Variable]:
     """What holds displaced disks, under each load."""
     values = np.stack([solution.reaction(state) for state in solution.loaded])
-    dims = ("load_point", "axis")
     text = f"force x, z with which each load holds its disk at its displacement {FORCE}; 0 along free directions"
-    several = len(values) > 1
-    return {"reaction": described(("load", *dims) if several else dims, values if several else values[0], text)}
+    return {"reaction": _by_load(values, ("load_point", "axis"), text)}
 
 
-def described_forces(states: Sequence[State]) -> dict[str, Values]:
+def _by_load(values: np.ndarray, dims: tuple[str, ...], long_name: str) -> xr.Variable:
+    """What was measured under each load, along ``load``; without it where there is one load or none."""
+    made = variable(("load", *dims), values, long_name)
+    return made if len(values) > 1 else made[0]
+
+
+def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:
     """Contact forces as vectors, on the disk named first."""
     text = f"contact force x, z on the first disk {FORCE}"
     return {
-        "contact_force": described(("state", "contact", "axis"), np.stack([s.pair_force() for s in states]), text),
-        "wall_force": described(("state", "wall_contact", "axis"), np.stack([s.wall_force() for s in states]), text),
+        "contact_force": variable(("state", "contact", "axis"), np.stack([s.pair_force() for s in states]), text),
+        "wall_force": variable(("state", "wall_contact", "axis"), np.stack([s.wall_force() for s in states]), text),
     }
 
 

@@ -83,25 +83,34 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
 
 
 def _work(result: xr.Dataset, names: list[str]) -> Table:
-    table = Table(box=None, pad_edge=False)
-    _factors(table, result)
+    table = _by_factor(result)
     for name in names:
         values = result[f"reached_{name}"].values
         table.add_row(name.replace("_", " "), *("-" if value == NOT_DETERMINED else str(value) for value in values))
     return table
 
 
-def _factors(table: Table, result: xr.Dataset) -> None:
+def _by_factor(result: xr.Dataset) -> Table:
+    """A column for each state."""
+    table = Table(box=None, pad_edge=False)
     table.add_column("at load factor", style="dim")
     for factor in result["state_load_factor"].values:
         table.add_column(f"{factor:g}", justify="right")
+    return table
+
+
+def _titled(*titles: str, left: tuple[str, ...] = ()) -> Table:
+    """A table of numbers, with text in the columns on the ``left`` side."""
+    table = Table(box=None, pad_edge=False)
+    for title in titles:
+        table.add_column(title, justify="left" if title in left else "right")
+    return table
 
 
 def _events(result: xr.Dataset) -> Iterator[RenderableType]:
     """How many of each kind, the first opening, and each equilibrium that was lost."""
     found = events_from(result)
-    table = Table(box=None, pad_edge=False)
-    _factors(table, result)
+    table = _by_factor(result)
     for kind in EVENT_KINDS:
         counts = [sum(event.kind == kind for k, event in found if k == state) for state in range(result.sizes["state"])]
         if any(counts):
@@ -115,9 +124,8 @@ def _events(result: xr.Dataset) -> Iterator[RenderableType]:
         yield _text(f"events taken together within {within:.3g} mg, measured error {error:.1e} of the load")
     if lost := [event for _, event in found if event.lost]:
         yield Text("\nequilibria lost on the way", style="bold")
-        table = Table(box=None, pad_edge=False)
-        for title in ("at load factor", "until", "what", "largest displacement", "of", "why"):
-            table.add_column(title, justify="left" if title in ("what", "of", "why") else "right")
+        titles = ("at load factor", "until", "what", "largest displacement", "of", "why")
+        table = _titled(*titles, left=("what", "of", "why"))
         for event in lost:
             numbers = (f"{event.load_factor:.6g}", f"{event.until:.6g}", event.kind, f"{event.displacement:.3g}")
             table.add_row(*numbers, event.where, _text(event.reason))
@@ -125,8 +133,7 @@ def _events(result: xr.Dataset) -> Iterator[RenderableType]:
 
 
 def _certificate(result: xr.Dataset) -> Table:
-    table = Table(box=None, pad_edge=False)
-    _factors(table, result)
+    table = _by_factor(result)
     for name in map(str, result):
         if name.startswith("certificate_"):
             title = name.removeprefix("certificate_").replace("_", " ")
@@ -138,9 +145,7 @@ def _certificate(result: xr.Dataset) -> Table:
 
 
 def _reaction(result: xr.Dataset) -> Table:
-    table = Table(box=None, pad_edge=False)
-    for title in ("at load factor", "disk", "x", "z"):
-        table.add_column(title, justify="right")
+    table = _titled("at load factor", "disk", "x", "z")
     values = result["reaction"].values
     factors = result["state_load_factor"].values[1:]
     for factor, forces in zip(factors, values.reshape(-1, *values.shape[-2:]), strict=True):
@@ -150,9 +155,7 @@ def _reaction(result: xr.Dataset) -> Table:
 
 
 def _response(result: xr.Dataset) -> Table:
-    table = Table(box=None, pad_edge=False)
-    for title in ("total force", "sum", "at x = 0", "largest", "at x"):
-        table.add_column(title, justify="right")
+    table = _titled("total force", "sum", "at x = 0", "largest", "at x")
     x = result["x"].values
     responses = np.atleast_2d(result["floor_response"].values)
     forces = np.atleast_1d(result["total_force"].values) if "total_force" in result else np.full(len(responses), np.nan)

@@ -11,27 +11,26 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from typing import Any
 
-from ..machine import floating_point, without_dask
+from ..machine import floating_point
 from .errors import SweepError, failed
 from .executor import results
-
-#: How often a client is started that a busy machine does not let start.
-STARTS = 3
 
 
 def over_dask(
     function: Callable, items: Sequence[Any], todo: Sequence[int], address: str
 ) -> Generator[tuple[int, Any], None, None]:
     """Results as they come. The scheduler itself runs again what a dead worker was at."""
-    without_dask.show()
     try:
-        from distributed import KilledWorker
+        from distributed import Client, KilledWorker
     except ImportError:
         raise SweepError(
             f"a Dask scheduler is asked for ({address}), but the package distributed is not installed: "
             "pip install 'granular-response[dask]'"
         ) from None
-    client = _client(address)
+    try:
+        client = Client(address, timeout=10, set_as_default=False)
+    except (AssertionError, OSError, TimeoutError, ValueError) as error:  # the first: its thread had no turn in 10 s
+        raise SweepError(f"no Dask scheduler answers at {address}: {error}") from None
     with _quiet(), client:
         _compare_settings(client)
         executor = client.get_executor(pure=False)
@@ -54,19 +53,6 @@ def over_dask(
             ) from None
         finally:
             executor.shutdown(wait=False)
-
-
-def _client(address: str) -> Any:
-    from distributed import Client
-
-    for left in reversed(range(STARTS)):
-        try:
-            return Client(address, timeout=10, set_as_default=False)
-        except (OSError, TimeoutError, ValueError) as error:
-            raise SweepError(f"no Dask scheduler answers at {address}: {error}") from None
-        except AssertionError:  # its thread had no turn within ten seconds
-            if not left:
-                raise SweepError("this machine is too busy to start a Dask client") from None
 
 
 @contextlib.contextmanager

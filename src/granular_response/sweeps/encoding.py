@@ -9,23 +9,19 @@ from __future__ import annotations
 import dataclasses
 import io
 import pickle
-import re
 import sys
 from collections.abc import Collection, Mapping
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from ..errors import GranularError
 from ..scene.base import Description
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-_PACKAGE = __name__.partition(".")[0]
-#: Modules of this package that hold values; the others are programs.
-_OWN = re.compile(rf"{_PACKAGE}(\.(?!cli\b|__)[a-z_0-9]+)+")
-#: What pickles of arrays, numbers, sets and paths call.
+#: What pickles of arrays, numbers, sets, paths and datasets call.
 _PLAIN = {
+    __name__: {"_dataset"},
     "builtins": {"bytearray", "complex", "frozenset", "range", "set"},
     "numpy": {"dtype", "ndarray"},
     "numpy._core.multiarray": {"_reconstruct", "scalar"},
@@ -86,16 +82,13 @@ def decode(data: bytes, modules: Collection[str] = ()) -> Any:
 class _Writer(pickle.Pickler):
     def reducer_override(self, value: Any) -> Any:
         """A dataset goes by its parts: the classes inside are xarray's own affair."""
-        xarray = sys.modules.get("xarray")
-        if xarray is None or type(value) is not xarray.Dataset:
+        if type(value) is not xr.Dataset:
             return NotImplemented
         variables = {name: (one.dims, one.values, one.attrs) for name, one in value.variables.items()}
         return _dataset, (variables, list(value.coords), value.attrs)
 
 
 def _dataset(variables: Mapping[str, Any], coordinates: Collection[str], attributes: Mapping[str, Any]) -> xr.Dataset:
-    import xarray as xr
-
     return xr.Dataset(variables, attrs=attributes).set_coords(coordinates)
 
 
@@ -109,16 +102,14 @@ class _Reader(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
         if name in _PLAIN.get(module, ()):
             return super().find_class(module, name)
-        if (module, name) == (__name__, _dataset.__name__):
-            return _dataset
-        if _OWN.fullmatch(module) or (self._is_named(module) and module in sys.modules):
+        if module.partition(".")[0] == __name__.partition(".")[0] or (self._is_named(module) and module in sys.modules):
             kind = super().find_class(module, name)
             if isinstance(kind, type) and kind.__module__ == module and _holds_values(kind):
                 return kind
         raise NotDecodable(f"{module}.{name} is no class that may be made")
 
     def _is_named(self, module: str) -> bool:
-        return any(module == name or module.startswith(f"{name}.") for name in self.modules)
+        return any(f"{module}.".startswith(f"{name}.") for name in self.modules)
 
 
 def _holds_values(kind: type) -> bool:

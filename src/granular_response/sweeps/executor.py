@@ -8,7 +8,6 @@ once for all workers.
 
 from __future__ import annotations
 
-import builtins
 import functools
 import pickle
 import traceback
@@ -22,7 +21,6 @@ import cloudpickle
 
 from ..machine import threads
 from .errors import failed, raised
-from .memory import MemoryWarning
 
 #: Seconds without a result after which ``idle`` is called.
 PATIENCE = 10.0
@@ -84,8 +82,8 @@ def _run(function: bytes, item: bytes) -> bytes:
     """In a worker: call a packed function with a packed item."""
     with warnings.catch_warnings(record=True) as heard, threads.using(1):  # whatever the process had that was forked
         said, body = _called(function, item)
-    lines = [(str(one.message), one.category.__name__, one.filename, one.lineno) for one in heard]
-    return pickle.dumps((said, body, lines))
+    lines = [(str(one.message), one.category, one.filename, one.lineno) for one in heard]
+    return cloudpickle.dumps((said, body, lines))
 
 
 def _called(function: bytes, item: bytes) -> tuple[str | None, bytes]:
@@ -107,7 +105,7 @@ def _unpacked(index: int, items: Sequence[Any], outcome: bytes) -> Any:
     """The result of a task; raises SweepError if it raised, or returned what cannot be read here."""
     said, body, lines = pickle.loads(outcome)
     for text, category, file, line in lines:
-        warnings.warn_explicit(text, _category(category), file, line, registry=_SAID)
+        warnings.warn_explicit(text, category, file, line, registry=_SAID)
     try:
         value = pickle.loads(body)
     except Exception as error:
@@ -116,12 +114,6 @@ def _unpacked(index: int, items: Sequence[Any], outcome: bytes) -> Any:
     if said is None:
         return value
     raise raised(index, items, value, said) from value
-
-
-def _category(name: str) -> type[Warning]:
-    """The category of a name: one of Python's or of this package's, else a UserWarning."""
-    kind = {"MemoryWarning": MemoryWarning}.get(name) or getattr(builtins, name, None)
-    return kind if isinstance(kind, type) and issubclass(kind, Warning) else UserWarning
 
 
 @functools.lru_cache(maxsize=4)

@@ -1,7 +1,7 @@
 """Values kept in a folder under names made from what they depend on: rest states, and results of a sweep's tasks.
 
-One file for each value, ``FOLDER/SOURCES/NAME.kept``: ``SOURCES`` names the code that made it and ``NAME`` the content
-that it was made from (see :mod:`.digest`), so nothing is found that this code would not make of this content. Files
+One file for each value, ``FOLDER/SOURCES/NAME.kept``: ``SOURCES`` is the key of the code that made it and ``NAME`` that
+of what it was made from (see :mod:`.keys`), so nothing is found that this code would not make of this content. Files
 hold no code (see :mod:`.encoding`) and are sealed: what is damaged or stands under another name counts as absent.
 
 A memory is optional. What cannot be written or is of a kind that is not kept costs one warning, never the result.
@@ -16,12 +16,15 @@ import re
 import shutil
 import time
 import warnings
-from collections.abc import Collection
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ..store import atomic
 from .encoding import NotDecodable, NotEncodable, decode, encode
+from .keys import Indistinct, key, sources
+
+Value = TypeVar("Value")
 
 #: Stands for a value that is not there.
 MISSING: Any = object()
@@ -36,22 +39,48 @@ class MemoryWarning(UserWarning):
 
 
 class Memory:
-    """Values of one state of the sources in a folder.
+    """Values that the present sources make, in a folder.
 
     Parameters
     ----------
     folder
         Is made if it is not there, with the first value.
-    sources
-        Name of the code that makes the values, from :func:`.digest.sources`.
-    modules
-        Whose classes values may be of, beside those of this package; a package stands for all of its modules.
+    parts
+        The sources that make the values, as :func:`.keys.sources` takes them; all if none is named.
+    packages
+        Others whose code makes the values too, and of whose classes they may be.
+    module
+        One more whose classes values may be of.
     """
 
-    def __init__(self, folder: str | os.PathLike[str], sources: str, modules: Collection[str] = ()) -> None:
-        self.folder = Path(folder)
-        self.shelf = self.folder / sources
-        self.modules = modules
+    def __init__(
+        self,
+        folder: str | os.PathLike[str],
+        parts: Sequence[str] = (),
+        packages: Sequence[str] = (),
+        module: str = "granular_response",
+    ) -> None:
+        self.folder = Path(folder).absolute()  # also where it is used: in a worker process
+        self.shelf = self.folder / sources(*(parts or ("", *packages)))
+        self.packages, self.modules = packages, (module, *packages)
+
+    def name(self, *values: Any) -> str | None:
+        """The key of values; None, with a MemoryWarning, where they cannot be told from others."""
+        try:
+            return key(*values, packages=self.packages)
+        except Indistinct as error:
+            warn(f"{self.folder}: {error}, so results are not kept")
+            return None
+
+    def result(self, function: Callable[[Value], Any], value: Value) -> Any:
+        """``function(value)``, kept or computed; not kept if the value, a table of disks, has changed meanwhile."""
+        name = self.name(function, value)
+        found = MISSING if name is None else self.load(name)
+        if found is MISSING:
+            found = function(value)
+            if name is not None and self.name(function, value) == name:
+                self.save(name, found)
+        return found
 
     def load(self, name: str) -> Any:
         """The value under a name, or MISSING."""

@@ -14,7 +14,7 @@ from ..solve import solution as solvers
 from ..solve.choice import rest_method, stop_energy
 from ..solve.timestep import UnstableTimeStep, resolve_time_step
 from ..state import State
-from .digest import digest, sources
+from .keys import key
 from .memory import Memory
 from .resources import current
 
@@ -30,11 +30,11 @@ def rest_state(problem: Problem) -> State:
     folder = current().rest_states
     if folder is None:
         return solvers.rest_state(problem)
-    memory, key = Memory(folder, sources(*_PARTS)), name(problem)
-    state = memory.load(key)
+    memory, kept = Memory(folder, _PARTS), name(problem)
+    state = memory.load(kept)
     if not isinstance(state, State):
         state = solvers.rest_state(problem)
-        memory.save(key, state)
+        memory.save(kept, state)
     return state
 
 
@@ -68,7 +68,7 @@ def name(problem: Problem) -> str:
             protocol.maximum_steps,
             protocol.static_finish,
         )
-    return digest(
+    return key(
         packing,
         problem.pair_law,
         problem.wall_law,

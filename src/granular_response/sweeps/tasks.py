@@ -21,9 +21,8 @@ from typing import Any, Protocol, TypeVar
 
 from ..machine import threads
 from .cluster import over_dask
-from .digest import Indistinct, digest, sources
 from .errors import SweepError, raised
-from .memory import MISSING, Memory, warn
+from .memory import MISSING, Memory
 from .processes import over_processes
 from .resources import Progress as Progress
 from .resources import Resources, current, using
@@ -62,10 +61,10 @@ def map_tasks(
     checkpoint
         Folder in which the result of each finished task is kept until the caller removes it. A later call
         finds it there if function, item and the sources of this package, and of those that the resources in use name,
-        are the same (see :mod:`.digest`). If None, that of the resources in use; nothing is kept if there is none
-        either.
+        are the same (see :mod:`.keys`). Of a lambda or a function of a notebook nothing is kept. If None, that of the
+        resources in use; nothing is kept if there is none either.
     parts
-        The sources that the results depend on, as :func:`.digest.sources` takes them; all if none is named.
+        The sources that the results depend on, as :func:`.keys.sources` takes them; all if none is named.
     what
         What the tasks are, for the progress line.
 
@@ -82,9 +81,10 @@ def map_tasks(
     items = list(items)
     scheduler = scheduler or given.scheduler or os.environ.get(SCHEDULER_VARIABLE) or None
     folder = checkpoint or given.checkpoint
-    kept = _Checkpoint(folder, function, items, parts, given.packages) if folder and items else None
+    memory = Memory(folder, parts, given.packages, _module(function)) if folder and items else None
+    names = [memory.name(function, item) if memory else None for item in items]
 
-    results: list[Any] = [kept.load(index) if kept else MISSING for index in range(len(items))]
+    results: list[Any] = [memory.load(name) if memory and name else MISSING for name in names]
     todo = [index for index, result in enumerate(results) if result is MISSING]
     done = len(items) - len(todo)
     if progress:
@@ -103,8 +103,9 @@ def map_tasks(
     with contextlib.closing(finished):  # whatever goes wrong below ends the workers at once
         for index, result in finished:
             results[index] = result
-            if kept:
-                kept.save(index, items[index], result)
+            name = names[index]
+            if memory and name and memory.name(function, items[index]) == name:  # no table has changed meanwhile
+                memory.save(name, result)
             done += 1
             if progress:
                 progress(done, len(items), what)
@@ -145,42 +146,6 @@ def _here(function: Callable, items: Sequence[Any], todo: Sequence[int]) -> Gene
         except Exception as error:
             raise raised(index, items, error) from error
         yield index, result
-
-
-class _Checkpoint:
-    """Finished results of one function in a folder; nothing is kept of what has no name of its own."""
-
-    def __init__(
-        self,
-        folder: str | os.PathLike[str],
-        function: Callable,
-        items: Sequence[Any],
-        parts: Sequence[str],
-        packages: Sequence[str],
-    ) -> None:
-        code = sources(*(parts or ("", *packages)))
-        self.memory = Memory(folder, code, (_module(function), *packages))
-        self.packages = packages
-        self.function = self._name(function)
-        self.names = [self._name(self.function, item) if self.function else None for item in items]
-
-    def _name(self, *values: Any) -> str | None:
-        try:
-            return digest(*values, packages=self.packages)
-        except Indistinct as error:
-            warn(f"{self.memory.folder}: {error}, so results are not kept")
-            return None
-
-    def load(self, index: int) -> Any:
-        """The kept result of an item, or MISSING."""
-        name = self.names[index]
-        return MISSING if name is None else self.memory.load(name)
-
-    def save(self, index: int, item: Any, result: Any) -> None:
-        """Keep a result, unless what it was made from has changed meanwhile."""
-        name = self.names[index]
-        if name is not None and self._name(self.function, item) == name:
-            self.memory.save(name, result)
 
 
 def _module(function: Callable) -> str:

@@ -2,8 +2,7 @@
 
 A folder holds ``parameters.py`` (the class ``Parameters``, the group's section of ``params.yaml``), ``simulate.py``
 (parameters to datasets), ``draw.py`` (datasets to figures, and what these show) and, where the paper claims something,
-``claims.py`` (what is judged from its datasets). What the list calls ``needs`` is what the simulations of a group read
-beside what those of every group do.
+``claims.py`` (what is judged from its datasets).
 """
 
 import json

@@ -1,7 +1,4 @@
-"""Datasets as plain arrays, written as xarray writes them."""
-
-import subprocess
-import sys
+"""Datasets are written as xarray writes them."""
 
 import netCDF4
 import numpy as np
@@ -9,7 +6,7 @@ import pytest
 import xarray as xr
 
 from granular_response.store import files as store
-from granular_response.store.labelled import Labelled, Values, labelled
+from granular_response.store.conventions import encoded_variables
 
 LABELS = {"long_name": "a quantity", "units": "1"}
 
@@ -67,25 +64,10 @@ def test_the_same_variables_and_attributes_as_xarray_writes(tmp_path):
 
 
 def test_there_and_back(tmp_path):
-    store.write(tmp_path / "file.nc", labelled(dataset()))
+    store.write(tmp_path / "file.nc", dataset())
     xr.testing.assert_identical(store.read(tmp_path / "file.nc")[""].drop_attrs(), dataset().drop_attrs())
-    xr.testing.assert_identical(labelled(dataset()).dataset(), dataset())
 
 
 def test_values_that_no_file_can_hold():
-    parts = Labelled({"when": Values(("t",), np.zeros(2, "datetime64[s]"), LABELS)})
     with pytest.raises(TypeError, match="variable when"):
-        parts.encoded_variables()
-
-
-def test_a_scene_is_solved_and_stored_without_loading_xarray(tmp_path):
-    scene = tmp_path / "scene.yaml"
-    scene.write_text("packing: {kind: slab, layers: 3, disks_per_row: 5}\ncontact: {friction: 0.0}\n")
-    code = (
-        "import sys\nfrom granular_response.cli.main import commands\n"
-        f"commands.app(['run', {str(scene)!r}, '-o', {str(tmp_path / 'result.nc')!r}], standalone_mode=False)\n"
-        "print(sorted({'dask', 'pandas', 'xarray'} & set(sys.modules)))\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
-    assert store.read(tmp_path / "result.nc")[""].sizes["disk"] == 14
+        encoded_variables(xr.Dataset({"when": ("t", np.zeros(2, "datetime64[s]"), LABELS)}))

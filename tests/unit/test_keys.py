@@ -1,0 +1,129 @@
+"""Keys from content: equal values, equal keys; where two values cannot be told apart there is no key."""
+
+import dataclasses
+import enum
+import functools
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from granular_response.scene import Scene
+from granular_response.sweeps.keys import Indistinct, key
+
+
+@dataclasses.dataclass(frozen=True)
+class Task:
+    friction: float
+    forces: np.ndarray
+
+    def total(self, item):
+        return self.forces.sum() + item
+
+
+class Colour(enum.Enum):
+    RED = 1
+    BLUE = 2
+
+
+def test_equal_for_equal_values_only():
+    def task(friction=0.2, last=3.0):
+        return {"task": Task(friction, np.array([1.0, last])), "seed": 1}
+
+    assert key(task()) == key(dict(reversed(task().items())))
+    different = [
+        task(), task(friction=0.3), task(last=4.0), (1, 2), [1, 2], (1, 2.0), (1, True), "12", b"12", {1, 2}, 0.0, -0.0,
+        np.float64(1.0), np.float32(1.0), 1.0, np.zeros(4), np.zeros((2, 2)), range(3), Colour.RED, Colour.BLUE,
+        ("ab", "c"), ("a", "bc"), (("a",), "b"), {"a": 1}, {"a": 2}, {1: "a"}, np.sin, np.cos, len, None,
+    ]  # fmt: skip
+    assert len({key(value) for value in different}) == len(different)
+
+
+def test_equal_in_every_process():
+    script = "import sys; sys.path.insert(0, sys.argv[1]); from test_keys import *; print(key((Task, {'b', 'a'})))"
+    for seed in ("1", "2"):
+        name = subprocess.run(
+            [sys.executable, "-c", script, Path(__file__).parent],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout.strip()
+        assert name == key((Task, {"a", "b"}))
+
+
+def table(folder, radius):
+    folder.mkdir(exist_ok=True)
+    (folder / "disks.csv").write_text(f"x,z,radius\n2,1,{radius}\n5,1,1\n")
+    text = "packing: {kind: file, path: disks.csv, width: 10}\nloads: []\n"
+    return Scene.from_text(text, folder=folder)
+
+
+def test_a_table_counts_by_its_content(tmp_path):
+    one, same, other = table(tmp_path / "a", 1.0), table(tmp_path / "b", 1.0), table(tmp_path / "c", 0.9)
+    assert one.to_dict() == other.to_dict()
+    assert key(one) == key(same) != key(other)
+    before = key(one)
+    table(tmp_path / "a", 0.8)
+    assert key(one) != before
+    (tmp_path / "a" / "disks.csv").unlink()
+    with pytest.raises(Indistinct, match=r"disks.csv cannot be read"):
+        key(one)
+    (tmp_path / "a" / "disks.csv").symlink_to("/dev/zero")  # which never ends
+    with pytest.raises(Indistinct, match=r"disks.csv cannot be read: is not a regular file"):
+        key(one)
+
+
+def test_equal_parts_count_as_equal_whether_or_not_they_are_one_object():
+    one = np.arange(3.0)
+    assert key([one, one, "text"]) == key([one, one.copy(), "te" + "xt"])
+
+
+def test_functions_of_modules_count_by_name_and_file(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    file = tmp_path / "mine_to_measure.py"
+    file.write_text("def one(x): return x\ndef other(x): return x\n")
+    import mine_to_measure as mine
+
+    assert key(functools.partial(mine.one, 1)) == key(functools.partial(mine.one, 1))
+    assert len({key(f) for f in (mine.one, mine.other, functools.partial(mine.one, 1), abs, np.linalg.norm)}) == 5
+    before, by_name = key(mine.one), key(mine.one, packages=["mine_to_measure"])
+    file.write_text(file.read_text().replace("return x", "return x + 1"))
+    assert key(mine.one) != before and key(mine.one, packages=["mine_to_measure"]) == by_name
+
+
+def test_what_cannot_be_told_apart_has_no_key():
+    class Local:
+        pass
+
+    bound = [Task(0.1, np.ones(2)).total, [1].append]
+    for value in (
+        Local(),
+        Local,
+        threading.Lock(),
+        (n for n in [1]),
+        [Local()],
+        lambda: 1,
+        np.array([Local()]),
+        *bound,
+    ):
+        with pytest.raises(Indistinct) as refused:
+            key(value)
+        assert "\n" not in str(refused.value)
+
+
+def test_functions_of_a_script_count_by_its_file_and_those_of_a_notebook_not_at_all(tmp_path):
+    lines = "from granular_response.sweeps.keys import key\ndef measure(x):\n    return x\nprint(key(measure))\n"
+    (tmp_path / "script.py").write_text(lines)
+
+    def run(*arguments):
+        return subprocess.run([sys.executable, *arguments], capture_output=True, text=True)
+
+    first, again = (run(tmp_path / "script.py").stdout for _ in range(2))
+    (tmp_path / "script.py").write_text(lines.replace("return x", "return 2 * x"))
+    assert first == again != run(tmp_path / "script.py").stdout
+    assert "Indistinct: function measure stands in no module that can be imported" in run("-c", lines).stderr
