@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import WEIGHT, Caption, of_scene, panels, values
+from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
 
 from .parameters import Parameters
 
@@ -21,6 +21,7 @@ from .parameters import Parameters
 PROFILE_FRICTIONS, PROFILE_FORCES = (0.2, 1.0), (4.0, 10.0, 20.0, 30.0, 50.0)
 LARGE_FRICTION = 0.2
 CONTACT_FORCES = (6.0, 12.0, 20.0)
+CONTACTS = ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1"))
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
 DYNAMIC_FORCES = (91.0, 93.0, 95.0, 100.0)
 #: Frictions of Fig. 12.
@@ -49,7 +50,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     stored = response["friction"].values
     if np.isin(PROFILE_FRICTIONS, stored).all():
         figures["fig07_friction_response"] = _profiles(response)
-    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
+    for friction, stem in CONTACTS:
         states = datasets.get(f"states_mu_{friction:g}")
         if states is not None:
             figures[stem] = _contacts(states, friction)
@@ -60,74 +61,35 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    response = datasets["response"]
+    response, scene = datasets["response"], parameters.scene
     frictions = response["friction"].values.tolist()
-    stops = "".join(
+    axis = at_frictions(datasets["friction_axis"], AXIS_FRICTIONS)
+    given = {
+        "fig06_linear_range": of_scene(scene, force=response["force"].values.tolist(), friction=frictions),
+        "fig12_friction_crossover": of_scene(scene, force=parameters.friction_axis.force, friction=axis),
+    }
+    fields: dict[str, Any] = {"crossover": PAPER_CROSSOVER, "third": PAPER_THIRD_PEAK, "symmetric": PAPER_SYMMETRIC}
+    fields["stops"] = "".join(
         f" The curve of µ = {end.friction:g} ends at {end.force:g} {WEIGHT} to save time; the slab bears more."
         for end in parameters.ends
     )
-    found = {
-        "fig06_linear_range": Caption(
-            "Response at x = 0 of ordered slabs per force, against the force, for several coefficients of friction. "
-            "It is level in the linear range, which friction extends. Dotted: the forces at which the paper sees the "
-            f"first contact open, without friction, at µ = 0.2 and at µ = 1.{stops}",
-            "Curves against the force on a logarithmic axis, level and equal for small forces; they leave the level "
-            "the later the larger the friction, most of them downwards, that of µ = 1 upwards.",
-            of_scene(parameters.scene, force=response["force"].values.tolist(), friction=frictions),
-        ),
-        "fig12_friction_crossover": Caption(
-            "Floor response of ordered slabs at one force, for several coefficients of friction: two peaks at small "
-            "ones, one at large ones.",
-            "Curves from two high peaks without friction over a plateau to one peak.",
-            of_scene(
-                parameters.scene,
-                force=parameters.friction_axis.force,
-                friction=at_frictions(datasets["friction_axis"], AXIS_FRICTIONS),
-            ),
-        ),
-    }
     if np.isin(PROFILE_FRICTIONS, frictions).all():
-        found["fig07_friction_response"] = Caption(
-            f"Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2; the paper sees the crossover "
-            f"from one peak to two near {PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. "
-            "Each curve has its symbols at other disks, as some nearly cover each other.",
-            "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
-            of_scene(
-                parameters.scene,
-                force=at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist(),
-                friction=list(PROFILE_FRICTIONS),
-            ),
-        )
-    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
-        states = datasets.get(f"states_mu_{friction:g}")
-        if states is not None:
-            shown = contact_forces(states)
-            found[stem] = Caption(
-                f"What the force does to the contacts of an ordered slab at µ = {friction:g}, the central third: "
-                "those that it opens (thick), that slide (middle) and that it leaves alone (thin). Arrow and circle: "
-                f"the force and its disk; the line below is the floor. {panels(shown)}",
-                f"Triangular networks at friction {friction:g}: open contacts below the force, sliding ones beside "
-                "them, more and deeper from panel to panel.",
-                of_scene(parameters.scene, force=shown, friction=friction),
-            )
+        force = at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist()
+        given["fig07_friction_response"] = of_scene(scene, force=force, friction=list(PROFILE_FRICTIONS))
     if "large_forces" in datasets and LARGE_FRICTION in frictions:
         dynamic = datasets["large_forces"]
-        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values
-        left = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)["force"].values
-        found["fig16_large_forces"] = Caption(
-            f"Floor response of ordered slabs under large forces. (a) µ = 0.2, F_ext = {values(left.tolist())} "
-            f"{WEIGHT}; the paper sees the crossover near {PAPER_CROSSOVER:g} {WEIGHT} and a third peak at x = 0 "
-            f"from {PAPER_THIRD_PEAK:g} {WEIGHT} on. (b) µ = 1, dynamics from rest to F_ext = "
-            f"{values(beyond.tolist())} {WEIGHT}; in the paper symmetry is lost beyond {PAPER_SYMMETRIC:g} "
-            f"{WEIGHT}, and at 95 {WEIGHT} the response is the mirror image of another.",
-            "(a) A plateau, then two peaks with a third one between them. (b) One symmetric bell and three lopsided "
-            "curves with a sharp negative dip to the left or the right of the middle.",
-            of_scene(
-                parameters.scene,
-                force=sorted({*left.tolist(), *beyond.tolist()}),
-                friction=[0.2, float(dynamic["friction"])],
-            ),
+        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values.tolist()
+        left = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)["force"].values.tolist()
+        given["fig16_large_forces"] = of_scene(
+            scene, force=sorted({*left, *beyond}), friction=[0.2, float(dynamic["friction"])]
         )
+        fields |= {"left": left, "beyond": beyond}
+    found = of_group("friction_linear_range", given, **fields)
+    for friction, stem in CONTACTS:
+        if f"states_mu_{friction:g}" in datasets:
+            shown = contact_forces(datasets[f"states_mu_{friction:g}"])
+            said = {stem: of_scene(scene, force=shown, friction=friction)}
+            found |= of_group("friction_linear_range", said, friction=friction, panels=panels(shown))
     return found
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
 
 from .parameters import Parameters
 
@@ -54,21 +54,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    return {
-        "preparation": Caption(
-            "Not in the paper: the same slab prepared in several ways. (a) to (f) Forces between which each event "
-            "comes, against friction, a symbol for each way; an arrow: not up to there. Rough: the walls have the "
-            "friction of the disks; all others are smooth.",
-            "Six panels on one scale, an event in each, with the forces at which it comes side by side for every "
-            "preparation.",
-            of_scene(
-                parameters.scene,
-                force=parameters.forces,
-                friction=sorted({part.friction for part in parameters.parts}),
-                wall_friction=None,
-            ),
-        )
-    }
+    frictions = sorted({part.friction for part in parameters.parts})
+    said = of_scene(parameters.scene, force=parameters.forces, friction=frictions, wall_friction=None)
+    return of_group("preparation", {"preparation": said})
 
 
 def _event(panel: Axes, events: xr.Dataset, slabs: list[tuple[float, float]], ways: list[str]) -> None:

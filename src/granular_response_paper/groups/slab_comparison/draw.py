@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, letters, of_scene
+from granular_response_paper.captions import Caption, letters, of_group, of_scene
 
 from .parameters import Parameters
 
@@ -42,27 +42,15 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     cases = parameters.cases
     layers = sorted({n for case in cases for n in case.layers})
-    return {
-        "fig01b_slab_comparison": Caption(
-            "Not in the paper: simulated slabs beside the elastic slab with their moduli and floor. (c) Floor "
-            "pressure of a thin slab (open symbols) and of a deep one (small ones), each with its elastic slab. (d) "
-            "Largest distance of the two, per largest response, as the number of layers grows; 8 wide: eight disks "
-            "of a row for each layer; rough: as much friction on floor and walls as between disks; slow: gravity "
-            "grows slowly. Two things keep packings from the elastic slab: beside smooth walls gravity opens "
-            "contacts, which is felt in a narrow slab of any depth, and a sudden fall on a rough floor can open a "
-            "row in the middle, as with 15 layers.",
-            "(c) Symbols on two bell-shaped curves, the smooth floor's higher. (d) Distances that fall with the "
-            "number of layers on logarithmic axes, but for one outlier at 15 layers.",
-            of_scene(
-                parameters.scene,
-                force=parameters.force,
-                friction=sorted({case.friction for case in cases}),
-                wall_friction=sorted({case.friction if case.floor == "rough" else 0.0 for case in cases}),
-                stiffness_ratio=parameters.scene.contact.stiffness_ratio,
-                packing=f"slabs of {layers[0]} to {layers[-1]} layers",
-            ),
-        )
-    }
+    said = of_scene(
+        parameters.scene,
+        force=parameters.force,
+        friction=sorted({case.friction for case in cases}),
+        wall_friction=sorted({case.friction if case.floor == "rough" else 0.0 for case in cases}),
+        stiffness_ratio=parameters.scene.contact.stiffness_ratio,
+        packing=f"slabs of {layers[0]} to {layers[-1]} layers",
+    )
+    return of_group("slab_comparison", {STEM: said})
 
 
 def _cases(data: xr.Dataset) -> list[tuple[tuple, np.ndarray]]:

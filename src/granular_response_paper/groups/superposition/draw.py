@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, lettered, letters, of_scene
+from granular_response_paper.captions import Caption, Value, lettered, letters, of_group, of_scene
 
 from .parameters import Parameters
 
@@ -39,40 +39,20 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     given = of_scene(parameters.scene)
     diameters = [2 * offset for offset in parameters.offsets]
+    distances = {"distance": [2.0 * d for d in diameters]}
     panels = lettered(f"d = {d:g} diameters" for d in diameters)
-    compared = (
-        "Forces of single disks on the floor, not smoothed, per force of one load, in one realization of the "
-        "disorder. Left, Right: the response to a load to the left or right of the middle of the top, (Left+Right): "
-        "to both at once, (Left)+(Right): the sum of the two single ones. Arrows: the loads, their distance d being "
-        f"{panels}. Figs. 23 and 24 share realization and scale."
+    pairs: dict[str, Value] = {"force": parameters.forces, "realizations": parameters.pair_realizations}
+    found = of_group(
+        "superposition",
+        {"fig24b_superposition_error": given | distances | pairs},
+        p=parameters,
+        linear=datasets["linear_range"].sizes["realization"],
+        tolerance=100.0 * parameters.tolerance,
+        until=LINEAR_UNTIL,
     )
-    found = {
-        stem: Caption(
-            compared,
-            f"Four panels for growing distances under loads of {force:g}. Circles of the sum {how} the line of both "
-            "loads; far apart the response has two peaks.",
-            {**given, "force": force, "distance": [2.0 * d for d in diameters]},
-        )
-        for (stem, force), how in zip(FORCES.items(), ("lie on", "nearly lie on"), strict=True)
-    }
-    linear = datasets["linear_range"].sizes["realization"]
-    found["fig24b_superposition_error"] = Caption(
-        "Not in the paper: how far both loads at once are from the sum of each alone, root mean square relative to "
-        "both, against the force for (e) the floor forces and (f) all contact forces, and (g) against the depth, for "
-        "contacts between neighbouring rows. Means of the realizations with bands of one standard error. Black dots: "
-        "change of the contact forces per force under a single load, relative to the smallest one. Grey band: where "
-        f"the linear range of the middle half of {linear} realizations ends (response at x = 0, smoothed with w = "
-        f"{parameters.width:g}, changed by {100.0 * parameters.tolerance:g} %), broken line: the median; dotted: "
-        f"{LINEAR_UNTIL:g}, up to which the paper finds this system linear.",
-        "Three plots on one logarithmic scale. The difference grows with the force and is the smaller the farther "
-        "apart the loads are.",
-        {
-            **given,
-            "force": parameters.forces,
-            "distance": [2.0 * d for d in diameters],
-            "realizations": parameters.pair_realizations,
-        },
-    )
+    for (stem, force), how in zip(FORCES.items(), ("lie on", "nearly lie on"), strict=True):
+        said = given | distances | {"force": force}
+        found |= of_group("superposition", {stem: said}, panels=panels, force=force, how=how)
     return found
 
 

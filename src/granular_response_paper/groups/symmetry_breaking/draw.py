@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import RADIUS, WEIGHT, Caption, letters, of_scene, values
+from granular_response_paper.captions import Caption, letters, of_group, of_scene
 
 from .parameters import Parameters
 
@@ -60,34 +60,23 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    copies, held = parameters.copies, parameters.held
-    ramps = sorted({protocol.ramp_time for protocol in parameters.protocols})
-    steps = sorted({step for protocol in parameters.protocols for step in protocol.time_steps}, reverse=True)
-    forces = sorted({float(force) for force in datasets["runs"]["force"].values})
-    text = (
-        "Not in the paper: the loss of symmetry of Fig. 16 at large friction, where it begins and to which side. (c) "
-        "Asymmetry of the floor response against the force of one load each, by dynamics with ramps that last "
-        f"{values(ramps)} sqrt(R/g), full symbols with the time step {steps[0]:g}, hollow ones with {steps[-1]:g}; "
-        f"crosses: states of the quasi-static path, displaced at random by {held.displacement:g} {RADIUS} and "
-        f"settled again. Dotted: {PAPER:g} {WEIGHT}, from which the paper sees asymmetric responses. (d) Floor "
-        f"response under {copies.force:g} {WEIGHT} of copies of the packing that differ by the numbers of the disks "
-        f"or by random displacements of {copies.displacement:g} {RADIUS}: rounding decides the side."
+    steps = {step for protocol in parameters.protocols for step in protocol.time_steps}
+    contacts = (
+        " (e), (f) Contacts in the central third of the slab at the last symmetric and the first asymmetric force of "
+        f"the ramp that lasts {parameters.protocols[0].ramp_time:g}: thin lines are unchanged, thick ones opened, and "
+        "the marked ones are near the Coulomb limit. Arrow and circle: the force and its disk; the line below is the "
+        "floor."
     )
-    if datasets["states"].sizes["state"] == 3:
-        text += (
-            " (e), (f) Contacts in the central third of the slab at the last symmetric and the first asymmetric "
-            f"force of the ramp that lasts {parameters.protocols[0].ramp_time:g}: thin lines are unchanged, thick "
-            "ones opened, and the marked ones are near the Coulomb limit. Arrow and circle: the force and its disk; "
-            "the line below is the floor."
-        )
-    return {
-        "fig16s_symmetry_breaking": Caption(
-            text,
-            "The asymmetry jumps by orders of magnitude, at a smaller force for the slower ramp. Responses of copies "
-            "are mirror images of each other. Contacts that open, first symmetric, then not.",
-            of_scene(parameters.scene, force=forces),
-        ),
-    }
+    forces = sorted(set(datasets["runs"]["force"].values.tolist()))
+    return of_group(
+        "symmetry_breaking",
+        {"fig16s_symmetry_breaking": of_scene(parameters.scene, force=forces)},
+        p=parameters,
+        ramps=sorted({protocol.ramp_time for protocol in parameters.protocols}),
+        steps=(max(steps), min(steps)),
+        paper=PAPER,
+        contacts=contacts if datasets["states"].sizes["state"] == 3 else "",
+    )
 
 
 def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:

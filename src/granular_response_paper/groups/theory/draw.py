@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import RADIUS, Caption, values
+from granular_response_paper.captions import Caption, of_group
 
 from .parameters import Parameters
 
@@ -44,16 +44,4 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     poisson = float(datasets["predictions"]["poisson_ratio"])
-    return {
-        "fig01_predictions": Caption(
-            "Predictions for the pressure on the floor under a vertical force on top of a slab of height h, times h "
-            "over the force. (a) Elliptic: isotropic elasticity, a slab on a rough or a smooth rigid floor, and a "
-            f"half plane at the same depth; Poisson's ratio {poisson:.3f}, that of the lattice at k_T/k_N = "
-            f"{parameters.stiffness_ratio:g}. (b) Hyperbolic: two rays at {parameters.ray_angle:g}° to the vertical, "
-            "that of the lattice, which spread diffusively, the square of their width the depth times "
-            f"{parameters.diffusion_length:g} {RADIUS}; h = {values(parameters.depths)} {RADIUS}.",
-            "Two plots against x/h on one scale. (a) One broad peak in the middle for each of three bodies, highest "
-            "for the smooth floor, lowest for the half plane. (b) Two narrow peaks, narrower and higher for the "
-            "deeper slab.",
-        )
-    }
+    return of_group("theory", {"fig01_predictions": {}}, p=parameters, poisson=poisson)

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
-from granular_response_paper.captions import Caption, letters, of_scene
+from granular_response_paper.captions import Caption, letters, of_group, of_scene
 
 from .parameters import Parameters
 
@@ -26,28 +26,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
-    last = "abcdefgh"[len(parameters.torques) - 1]
-    return {
-        "fig18_torque": Caption(
-            f"(a) to ({last}) Contact forces that an oblique force on one disk of a slightly polydisperse slab adds, "
-            "for several clockwise torques on the same disk of the same packing. The effect of gravity is subtracted "
-            "as a vector. The central third of the upper half of the slab is shown. Lengths and widths of the lines "
-            "are proportional to the force, the same in all panels, as the key in each says, but none is thinner "
-            "than a hairline. Circle and straight arrow: the disk and the force, bent arrow: the torque.",
-            "Six pictures of disks with force chains that lead obliquely down from a disk on top. The torque gathers "
-            "two chains in one along the force.",
-            given,
-        ),
-        "fig18_torque_reach": Caption(
-            "Not in the paper: how far the torque reaches. Change by the torque of (g) the contact forces, (h) the "
-            "coarse-grained stress tensor and (i) its antisymmetric part, in rings around the loaded disk: the sum "
-            "of the magnitudes per sum of those that the force adds without torque, against the mean distance of the "
-            "ring.",
-            "Three plots on one logarithmic scale. Curves for growing torques lie above each other and fall with the "
-            "distance, the antisymmetric stress by far the fastest.",
-            {**given, "torque": parameters.torques[1:], "width": parameters.stress_width},
-        ),
-    }
+    reach = {**given, "torque": parameters.torques[1:], "width": parameters.stress_width}
+    last = chr(ord("a") - 1 + len(parameters.torques))
+    return of_group("torque", {"fig18_torque": given, "fig18_torque_reach": reach}, last=last)
 
 
 def _chains(data: xr.Dataset) -> Figure:
