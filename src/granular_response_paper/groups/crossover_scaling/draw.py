@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
@@ -145,9 +144,9 @@ def apart(layers: Iterable[int]) -> list[int]:
 def _plain(axes: Axes, ticks: list[int]) -> None:
     """Layers as they are, on a logarithmic axis."""
     axes.set_xticks(ticks, labels=[str(t) for t in ticks])
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.xaxis.set_minor_formatter("")
     axes.minorticks_off()
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_major_formatter("{x:g}")
 
 
 def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
@@ -166,7 +165,7 @@ def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure
             axes.plot(force, depth, label=f"{layers:.0f}", **look)
         unit = rf"$N^2\,{style.WEIGHT}$" if weight else "$NP$"
         axes.set(xlabel=rf"${style.F_EXT}\,/\,$({unit})", ylim=(-0.03, 1.35), xscale="log")
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.xaxis.set_minor_formatter("")
         axes.legend(title="layers", loc="upper left", ncols=3, columnspacing=1.0)
         style.letter(axes, letter, place="above", text=name(powers, series))
     panels[0, 0].set_ylabel("depth of the open region / slab")
@@ -210,8 +209,8 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if low > 0.0:
             axes.set_ylim(low / 1.3, high * max((high / low) ** 0.7, 3.0))
         for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter("")
         if kind == "disks_per_layer":  # within a decade
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
         axes.legend(loc="upper left", fontsize=7)

@@ -146,17 +146,11 @@ def _force_profiles(data: xr.Dataset) -> Figure:
     colours = style.ordered_colours(len(depths))
     for index, axes in enumerate(panels[0]):
         for row, depth in enumerate(depths):
-            axes.plot(
-                data["contact_x"].values[index, row],
-                data["magnitude"].values[index, row],
-                linestyle=style.LINE_STYLES[row % len(style.LINE_STYLES)],
-                linewidth=0.8,
-                color=colours[row],
-                marker=style.MARKERS[row % len(style.MARKERS)],
-                markersize=2.8,
-                markeredgewidth=0.0,
-                label=f"${depth:.1f}\\,{style.RADIUS}$",
+            look = (
+                style.marked_line(row) | style.line(row) | {"color": colours[row], "linewidth": 0.8, "markersize": 2.8}
             )
+            x, magnitude = (data[name].values[index, row] for name in ("contact_x", "magnitude"))
+            axes.plot(x, magnitude, **look, label=f"${depth:.1f}\\,{style.RADIUS}$")
         half = PROFILE_HALF_WIDTH
         axes.set(xlabel=style.POSITION, xlim=(-half, half))
         style.letter(axes, chr(ord("a") + index), place="above", text=_friction(frictions[index]))

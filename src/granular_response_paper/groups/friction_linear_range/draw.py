@@ -14,6 +14,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
+from granular_response_paper.panels import zero
 
 from .parameters import Parameters
 
@@ -103,7 +104,7 @@ def _linear_range(response: xr.Dataset) -> Figure:
         look = {**style.marked_line(index, colour=colour), "markersize": 3.0}
         panel.plot(curve["force"], curve, label=f"{friction:g}", **look)
     panel.set_xscale("log")
-    panel.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    panel.xaxis.set_major_formatter("{x:g}")
     panel.set_ylim(bottom=0.0, top=1.1 * float(response["response_at_centre"].max()))
     for friction, force in PAPER_OPENINGS.items():
         name = f"paper, $\\mu = {friction:g}$: {force:g}"
@@ -151,7 +152,7 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), style.FORCE, categorical=True))
     style.paper_note(right, f"paper:\n{PAPER_SYMMETRIC:g} symmetric")
     style.letter(right, "b", place="above", text=style.equals(style.FRICTION, float(dynamic["friction"])))
-    right.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(right)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)
     return figure

@@ -14,12 +14,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, MultipleLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, MultipleLocator
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import Caption, letters, of_group, of_scene, panels, values
+from granular_response_paper.panels import zero
 
 from .parameters import Parameters
 
@@ -94,17 +95,9 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     colours = style.ordered_colours(len(chosen))
     for at, (k, colour) in enumerate(zip(chosen, colours, strict=True)):
         one = data.isel(force=k)
-        profiles.plot(
-            x,
-            one["floor_response"],
-            color=colour,
-            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
-            marker=style.MARKERS[at % len(style.MARKERS)],
-            markersize=2.2,
-            linewidth=0.9,
-            label=f"{float(one['force']):g}",
-        )
-    profiles.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+        look = style.line(at) | {"color": colour, "marker": style.marked_line(at)["marker"], "markersize": 2.2}
+        profiles.plot(x, one["floor_response"], **look, linewidth=0.9, label=f"{float(one['force']):g}")
+    zero(profiles)
     profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
     profiles.legend(title=style.FORCE, loc="upper right")
 
@@ -131,7 +124,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
-    centre.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    centre.xaxis.set_major_formatter("{x:g}")
     centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
     style.letters(np.array([profiles, centre]), place="above")
     return figure
@@ -192,16 +185,8 @@ def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Datase
         force, values = one["force"].values[:end], one[name].values[:end]
         axes.plot(force, values, **style.marked_line(at, colour=colour), label=label(one))
         if len(reached):
-            axes.plot(
-                force[-1:],
-                values[-1:],
-                linestyle="none",
-                marker=style.MARKERS[at % len(style.MARKERS)],
-                markerfacecolor="white",
-                markeredgecolor=colour,
-                markersize=5.0,
-                zorder=4,
-            )
+            end = {"linestyle": "none", "marker": style.marked_line(at)["marker"], "markersize": 5.0, "zorder": 4}
+            axes.plot(force[-1:], values[-1:], **end, markerfacecolor="white", markeredgecolor=colour)
 
 
 def _stiffness(data: xr.Dataset) -> Figure:
@@ -248,8 +233,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
     style.logarithmic(events, "y")
     events.set(ylabel=f"force of the event, {style.FORCE}")
     events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
-    events.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    events.yaxis.set_minor_formatter(NullFormatter())
+    events.yaxis.set_major_formatter("{x:g}")
+    events.yaxis.set_minor_formatter("")
     events.legend()
     for axes in (centre, size, events):
         axes.set(xscale="log", xlabel=style.STIFFNESS)
@@ -272,13 +257,8 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height
-        profiles.plot(
-            one["x"].values[seen] / height,
-            one["floor_response"].values[seen] * height,
-            color=colour,
-            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
-            label=f"{int(one['layers'])}",
-        )
+        x, response = one["x"].values[seen] / height, one["floor_response"].values[seen] * height
+        profiles.plot(x, response, **style.line(at) | {"color": colour}, label=f"{int(one['layers'])}")
     label = f"{style.RESPONSE}$\\,\\times\\,h/{style.RADIUS}$"
     profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)

@@ -9,10 +9,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import NullFormatter
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import material, packing, zero
 
 from .parameters import Parameters
 
@@ -68,10 +68,6 @@ def looped(polydispersity: np.ndarray, friction: np.ndarray) -> tuple[list[int],
     return lattices.tolist(), int(rubbing[np.argmin(friction[rubbing])] if rubbing.size else lattices[0])
 
 
-def _packing(delta: float) -> str:
-    return style.equals(style.POLYDISPERSITY, delta) if delta else "lattice"
-
-
 def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     """(a) loops of the lattices, (b) the floor under one of them."""
     figure, ((loops, below),) = style.figure(1, 2, width="double", height=2.9)
@@ -106,7 +102,7 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     for branch, label in enumerate(("loaded", "unloaded", "loaded again")):
         dots = {"linestyle": "none", "marker": "o", "markersize": 2.6} if branch == 2 else {}
         below.plot(x[near], added[branch, near], label=label, **style.line(branch) | dots)
-    below.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(below)
     below.set(xlabel=style.POSITION, ylabel=rf"floor force less that at rest$\,/\,{style.WEIGHT}$")
     below.legend(loc="upper right")
     style.letter(below, "b", place="above", text=f"the floor, {style.equals(style.FRICTION, friction[one])}")
@@ -136,7 +132,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     left.axhline(events.attrs["left"], color=style.BLACK, linewidth=0.7, linestyle=(0, (4, 2)))
     for axes, label in ((left, "left on the floor, per change"), (lost, "lost, per work of the load")):
         axes.set(xscale="log", yscale="log", ylim=(LEAST, 1.0), xlabel=style.FORCE, ylabel=label)
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.xaxis.set_minor_formatter("")
     materials = [
         Line2D([], [], color=style.line(k)["color"], marker=style.MARKERS[k], markersize=3.0, linewidth=0.9)
         for k, mu in enumerate(frictions)
@@ -158,7 +154,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     ]
     texts = [text for text, _ in NAMES.values()]
     rubbing = [style.equals(style.FRICTION, mu) for mu in frictions if mu]
-    names = [*rubbing, *(_packing(one) for one in spreads), "first loop", "second loop", *texts]
+    names = [*rubbing, *(packing(one) for one in spreads), "first loop", "second loop", *texts]
     figure.legend([*materials, *packings, *loop, *handles], names, loc="outside lower center", ncols=5)
     style.letter(ends, "c", place="above", text="ranges")
     return figure
@@ -195,10 +191,10 @@ def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarra
                     "", (1.0, row), (middle.max(), row), xycoords=("axes fraction", "data"), textcoords="data",
                     arrowprops={"arrowstyle": "->", "color": colour, "linewidth": 0.9},
                 )  # fmt: skip
-    names = [f"{_packing(d)}, {style.equals(style.FRICTION, mu)}" for d, mu in zip(delta, friction, strict=True)]
+    names = list(map(material, delta, friction))
     axes.set(xlabel=style.FORCE, ylim=(len(names) - 0.4, -0.6))
     if last > 0.0:
         axes.set(xscale="log", xlim=(max(0.5 * first, 2e-3 * last), 3.0 * last))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.xaxis.set_minor_formatter("")
     axes.set_yticks(range(len(names)), names)
     axes.tick_params(axis="y", length=0.0, which="both")

@@ -13,6 +13,7 @@ from matplotlib.patches import Circle
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.panels import material, zero
 
 from .parameters import Parameters
 
@@ -42,9 +43,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 
 def _name(data: xr.Dataset, case: int) -> str:
-    delta = float(data["polydispersity"][case])
-    packing = f"$\\delta = {delta:g}$" if delta else "lattice"
-    return f"{packing}, $\\mu = {float(data['friction'][case]):g}$"
+    return material(float(data["polydispersity"][case]), float(data["friction"][case]))
 
 
 def compared(polydispersity: np.ndarray) -> list[int]:
@@ -116,7 +115,7 @@ def _decay(data: xr.Dataset) -> Figure:
         look = style.marked_line(case) | {"linestyle": "none", "markersize": 5}
         powers.errorbar([case], [mean], error, capsize=3, **look)
     powers.axhline(2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
-    powers.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(powers)
     powers.set_xticks(list(cases), [_name(data, case) for case in cases], rotation=30, ha="right")
     powers.set(ylabel="power of the height")
     style.letter(powers, "b", place="above", text="how fast it falls")

@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import material, zero
 
 from .parameters import Parameters
 
@@ -58,10 +59,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 
 def _name(data: xr.Dataset, case: int) -> str:
-    return (
-        f"${style.POLYDISPERSITY} = {float(data['polydispersity'][case]):g}$, "
-        f"${style.FRICTION} = {float(data['friction'][case]):g}$"
-    )
+    return material(float(data["polydispersity"][case]), float(data["friction"][case]))
 
 
 def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
@@ -117,7 +115,7 @@ def _responses(data: xr.Dataset) -> Figure:
             ("isotropic", {"color": style.COLOURS[1], "linestyle": (0, (1.2, 1.2))}, "isotropic slab"),
         ):
             axes.plot(place, one["predicted"].sel(solid=solid).mean("realization"), label=label, **look)
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+        zero(axes)
         layers = float(one["layers"])
         style.letter(axes, "abcdefgh"[case], place="above", text=f"{_name(data, case)}, {layers:g} layers")
     for axes in panels[:, 0]:

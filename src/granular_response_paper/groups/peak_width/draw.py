@@ -13,6 +13,7 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_group, of_scene
+from granular_response_paper.panels import material
 
 from .parameters import Parameters
 
@@ -67,11 +68,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def name(data: xr.Dataset, case: int) -> str:
     """A case as it stands in legends."""
     one = data.isel(case=case)
-    delta, force = float(one["polydispersity"]), float(one["force"])
-    packing = f"$\\delta = {delta:g}$" if delta else "lattice"
     prepared = "*" if str(one["gravity"].values) == "frictionless" else ""
-    load = f", $F = {force:g}$" if force else ""
-    return f"{packing}, $\\mu = {float(one['friction']):g}${prepared}{load}"
+    load = f", $F = {float(one['force']):g}$" if one["force"] else ""
+    return material(float(one["polydispersity"]), float(one["friction"])) + prepared + load
 
 
 def kinds(data: xr.Dataset) -> tuple[tuple[str, list[int]], ...]:

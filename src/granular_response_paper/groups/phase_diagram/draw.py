@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
+from granular_response_paper.panels import packing
 
 from .parameters import Parameters
 
@@ -117,8 +118,8 @@ def _grid(
     figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
     found = dict(zip(((w, d) for w in widths for d in deltas), panels.ravel(), strict=True))
     for index, ((width, delta), axes) in enumerate(found.items()):
-        name = f"$\\delta = {delta:g}$" if delta else "lattice"
-        style.letter(axes, chr(ord("a") + index), place="above", text=f"{name}, $w = {width:g}\\,\\bar R$")
+        text = f"{packing(delta)}, $w = {width:g}\\,\\bar R$"
+        style.letter(axes, chr(ord("a") + index), place="above", text=text)
     for axes in panels[-1]:
         axes.set_xlabel(x)
     for axes in panels[:, 0]:

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import material, packing, zero
 
 from .parameters import Parameters
 
@@ -153,7 +154,7 @@ def _response(data: xr.Dataset) -> Figure:
             axes.plot(x, rows.T, color="#BDBDBD", linewidth=0.5, linestyle="-")
             axes.plot(x, mean, color=style.BLACK, linewidth=1.4, linestyle="-", zorder=3)
             axes.fill_between(x, mean - error, mean + error, color=style.VERMILION, linewidth=0.0, zorder=2.5)
-            axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+            zero(axes)
             name = f"$\\mu = {friction:g}$, {START_NAMES[start]}, {len(rows)} realizations"
             style.letter(axes, "abcdefgh"[len(frictions) * row + column], place="above", text=name)
         panels[row, 0].set_ylabel(style.FLOOR_STRESS)
@@ -198,7 +199,7 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     for axes in (means, *others[:-1]):
         axes.tick_params(labelleft=False)
     one.set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
-    names = [f"$\\delta = {delta:g}$" if delta else "lattice" for delta in deltas]
+    names = list(map(packing, deltas))
     titles = [f"{names[0]}, one packing", f"{names[0]}, means", *names[1:], ""]
     for axes, letter, title in zip(panels[0], "abcdefgh", titles, strict=False):
         style.letter(axes, letter, place="above", text=title)
@@ -274,8 +275,8 @@ def _averages(data: xr.Dataset) -> Figure:
                 axes.set_axis_off()
                 continue
             _family(axes, data.isel(case=case, width=w), x)
-            name = f"$\\delta = {delta:g}$, $\\mu = {friction:g}$"
-            style.letter(axes, chr(ord("a") + row * len(deltas) + column), text=name)
+            letter = chr(ord("a") + row * len(deltas) + column)
+            style.letter(axes, letter, text=material(delta, friction))
         panels[row, 0].set_ylabel(style.FLOOR_STRESS)
     for axes in panels[-1]:
         axes.set(xlabel=style.POSITION, xlim=(-45.0, 45.0))
@@ -297,7 +298,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
         axes.fill_between(x, mean - error, mean + error, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(x, mean, color=colour, linestyle=style.LINE_STYLES[k], linewidth=1.1, label=label)
-    axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+    zero(axes)
     axes.legend(
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
@@ -332,7 +333,7 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
             continue
         density = np.nanmean(data["contact_angle_density"].values[case], axis=0)
         look = style.line(deltas.index(delta)) if start == usual else {"color": style.BLACK, "linestyle": "-"}
-        name = f"$\\delta = {delta:g}$" + ("" if start == usual else ", start $2\\bar R$")
+        name = packing(delta) + ("" if start == usual else ", start $2\\bar R$")
         directions.plot(angle, density, **{**look, "linewidth": 1.0}, label=name)
     directions.set(
         xlabel="angle to the horizontal (degrees)",
@@ -344,13 +345,12 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     for index, delta in enumerate(deltas):
         here = np.flatnonzero((data["polydispersity"].values == delta) & (starts == usual))
         here = here[np.argsort(data["friction"].values[here])]
-        name = f"$\\delta = {delta:g}$" if delta else "lattice"
         look = style.marked_line(index)
         here = here[np.isfinite(data["coordination_number_bulk"].values[here]).any(axis=1)]
         numbers = data["coordination_number_bulk"].values[here]
         mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
         look |= {"markersize": 3.5, "elinewidth": 0.8, "capsize": 2.0}
-        coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=name)
+        coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=packing(delta))
     coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="contacts per disk in the bulk")
     paper = rf"paper: {PAPER_CONTACTS:g} at $\delta = 0.01$, $\mu = 0$"
     style.paper_value(coordination, PAPER_CONTACTS, paper, along="y")
@@ -378,7 +378,5 @@ def _bearing(axes: Axes, averages: xr.Dataset, deltas: list[float]) -> None:
         look |= {"markeredgewidth": 0.8, "markerfacecolor": "white", "elinewidth": 0.8, "capsize": 1.5}
         part = at_rest / total
         error = np.sqrt(part * (1.0 - part) / total)
-        axes.errorbar(
-            one["force"].values[used], part, error, **look, label=f"$\\delta = {delta:g}$, $\\mu = {friction:g}$"
-        )
+        axes.errorbar(one["force"].values[used], part, error, **look, label=material(delta, friction))
         number += 1

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
@@ -39,7 +38,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         _event(panel, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs, ways)
         style.letter(panel, "abcdef"[index], place="above", text=title)
         panel.set_yscale("log")
-        panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        panel.yaxis.set_major_formatter("{x:g}")
         panel.set_xlim(-0.6, len(slabs) - 0.4)
     for panel in axes[-1]:
         panel.set_xticks(range(len(slabs)), [f"{mu:g}\nrough" if wall else f"{mu:g}" for wall, mu in slabs])

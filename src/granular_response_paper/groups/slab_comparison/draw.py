@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, letters, of_group, of_scene
+from granular_response_paper.panels import zero
 
 from .parameters import Parameters
 
@@ -84,7 +85,7 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
             axes.plot(x[near], pressure[near], **look, label=name)
         elastic = 0.5 * height * data["elastic"].values[k]
         axes.plot(x[near], elastic[near], **style.line(index), label=f"elastic slab, {floor}")
-    axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(axes)
     axes.set(xlabel=style.SCALED_POSITION, ylabel=style.PRESSURE, xlim=(-2.0, 2.0))
     axes.legend(**_BELOW)
 

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
+from granular_response_paper.panels import zero
 
 from .parameters import Parameters
 
@@ -66,7 +67,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     reach = min(40.0, float(np.abs(response["x"]).max()))
     top = 1.08 * float(response["floor_response"].max())
     for axes in (simulated, bodies):
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        zero(axes)
         axes.set(xlabel=style.POSITION, xlim=(-reach, reach), ylim=(-0.012 * top / 0.11, top))
     simulated.set_ylabel(style.RESPONSE)
     figure.legend(
@@ -98,7 +99,7 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
     dip = elastic["central_dip"].sel(rotations="free")
     simulated = {**style.marked_line(0), "color": style.BLACK}
     for panel in (axes, inset):
-        panel.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        zero(panel)
         if np.isfinite(high):
             panel.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)
         panel.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, lettered, letters, of_group, of_scene
+from granular_response_paper.panels import zero
 
 from .parameters import Parameters
 
@@ -39,19 +40,26 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     given = of_scene(parameters.scene)
     diameters = [2 * offset for offset in parameters.offsets]
-    distances = {"distance": [2.0 * d for d in diameters]}
+    distances = [2.0 * d for d in diameters]
     panels = lettered(f"d = {d:g} diameters" for d in diameters)
-    pairs: dict[str, Value] = {"force": parameters.forces, "realizations": parameters.pair_realizations}
+    realizations = parameters.pair_realizations
     found = of_group(
         "superposition",
-        {"fig24b_superposition_error": given | distances | pairs},
+        {
+            "fig24b_superposition_error": {
+                **given,
+                "force": parameters.forces,
+                "distance": distances,
+                "realizations": realizations,
+            }
+        },
         p=parameters,
         linear=datasets["linear_range"].sizes["realization"],
         tolerance=100.0 * parameters.tolerance,
         until=LINEAR_UNTIL,
     )
     for (stem, force), how in zip(FORCES.items(), ("lie on", "nearly lie on"), strict=True):
-        said = given | distances | {"force": force}
+        said: dict[str, Value] = {**given, "force": force, "distance": distances}
         found |= of_group("superposition", {stem: said}, panels=panels, force=force, how=how)
     return found
 
@@ -71,7 +79,7 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     for k, distance in enumerate(distances):
         axes = panels.ravel()[k]
         left, right, both = responses[k]
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        zero(axes)
         axes.plot(x, left, **{**style.line(0), "linestyle": (0, (5, 1.6)), "linewidth": 0.9}, label="Left")
         axes.plot(x, right, **{**style.line(2), "linewidth": 1.1}, label="Right")
         axes.plot(x, both, color=style.BLACK, linestyle="-", linewidth=0.9, label="(Left+Right)")

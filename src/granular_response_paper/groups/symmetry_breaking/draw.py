@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response_paper.captions import Caption, letters, of_group, of_scene
+from granular_response_paper.panels import zero
 
 from .parameters import Parameters
 
@@ -125,7 +126,7 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
         look |= {"markersize": 2.6} if index < 2 else {"markersize": 5.0, "markerfacecolor": "none"}
         look["markeredgewidth"] = 0.0 if index < 2 else 0.8
         panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=names[k], **look)
-    panel.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(panel)
     panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
     panel.legend(**OVER)
 

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group
+from granular_response_paper.panels import zero
 
 from .parameters import Parameters
 
@@ -28,12 +29,12 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     depths = data["depth"].values
     colours = style.ordered_colours(len(depths))
     for index, (depth, colour) in enumerate(zip(depths, colours, strict=True)):
-        look = {"color": colour, "linestyle": style.LINE_STYLES[index % len(style.LINE_STYLES)]}
+        look = style.line(index) | {"color": colour}
         hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=style.equals("h", depth, style.RADIUS))
     style.letter(hyperbolic, "b", text="hyperbolic")
 
     for axes in (elliptic, hyperbolic):
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+        zero(axes)
         axes.set(xlabel=style.SCALED_POSITION, xlim=(x[0], x[-1]))
         axes.margins(y=0.08)
         axes.legend(loc="upper right")
