@@ -185,8 +185,8 @@ def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Datase
         force, values = one["force"].values[:end], one[name].values[:end]
         axes.plot(force, values, **style.marked_line(at, colour=colour), label=label(one))
         if len(reached):
-            end = {"linestyle": "none", "marker": style.marked_line(at)["marker"], "markersize": 5.0, "zorder": 4}
-            axes.plot(force[-1:], values[-1:], **end, markerfacecolor="white", markeredgecolor=colour)
+            hollow = {"linestyle": "none", "marker": style.marked_line(at)["marker"], "markersize": 5.0, "zorder": 4}
+            axes.plot(force[-1:], values[-1:], **hollow, markerfacecolor="white", markeredgecolor=colour)
 
 
 def _stiffness(data: xr.Dataset) -> Figure:
