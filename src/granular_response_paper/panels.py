@@ -1,10 +1,32 @@
-"""What the figures of several groups repeat: names of packings, the line at zero."""
+"""What figures of several groups repeat: titles of panels, labels of a grid, names of packings, the line at zero."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Literal
+
+import numpy as np
 from matplotlib.axes import Axes
 
 from granular_response.plot import style
+
+from .captions import letters
+
+
+def titles(
+    axes: Iterable[Axes], texts: Iterable[str], *, stem: str = "", place: Literal["inside", "above"] = "above"
+) -> None:
+    """A letter and a text for each of ``axes``; letters are those of the picture ``stem``, by default from (a) on."""
+    for panel, name, text in zip(axes, letters(stem), texts, strict=False):
+        style.letter(panel, name, place=place, text=text)
+
+
+def outer(grid: np.ndarray, x: str, y: str) -> None:
+    """Labels below and to the left of a (rows, columns) grid of axes."""
+    for axes in grid[-1]:
+        axes.set_xlabel(x)
+    for axes in grid[:, 0]:
+        axes.set_ylabel(y)
 
 
 def packing(polydispersity: float) -> str:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.panels import titles
 
 from .parameters import Parameters
 
@@ -39,9 +40,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
             # one entry for the line and the symbols of a force
             name = f"${force:g}\\,{style.WEIGHT}$: {100 * difference:.1f} % apart"
             axes.plot([], [], **look, marker=style.MARKERS[k], markersize=3.0, markerfacecolor="none", label=name)
-        style.letter(axes, "abc"[index], place="above", text=style.equals(style.FRICTION, frictions[index]))
         axes.set_xlabel(style.POSITION)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), handlelength=3.0)
+    titles(panels, [style.equals(style.FRICTION, friction) for friction in frictions])
     panels[0].set_ylabel(style.RESPONSE)
     return {"contact_law": figure}
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import titles
 
 from .parameters import Parameters
 
@@ -98,8 +99,8 @@ def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
 def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """(a) crossover, (b) region at the floor, (c) first opening against layers, with power laws; names beside them."""
     figure, panels = style.figure(2, 2, width="double", height=5.6)
-    shown = dict(zip(("crossover", "reaches_floor", "first_opening"), panels.ravel(), strict=False))
-    for letter, (event, axes) in zip("abc", shown.items(), strict=True):
+    titles(panels.flat, NAMES.values())
+    for event, axes in zip(NAMES, panels.flat, strict=False):
         for look, series in enumerate(of_layers(powers)):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             layers = one["layers"].values.astype(float)
@@ -119,7 +120,6 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if low > 0.0:
             axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
         axes.legend(loc="upper left", title="power of $N$", fontsize=7, ncols=2, columnspacing=1.0)
-        style.letter(axes, letter, place="above", text=NAMES[event])
     key = panels[1, 1]
     key.set_axis_off()
     for look, series in enumerate(of_layers(powers)):
@@ -153,7 +153,8 @@ def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure
     """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
     chosen = regions_of(powers)
     figure, panels = style.figure(1, max(1, len(chosen)), width="double", height=2.7, sharey=True)
-    for letter, axes, series in zip("abcdef", panels[0], chosen, strict=False):
+    titles(panels[0], [name(powers, series) for series in chosen])
+    for axes, series in zip(panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
         colours = style.ordered_colours(len(rows))
         weight = float(powers["friction"][series]) > 0.0
@@ -167,7 +168,6 @@ def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure
         axes.set(xlabel=rf"${style.F_EXT}\,/\,$({unit})", ylim=(-0.03, 1.35), xscale="log")
         axes.xaxis.set_minor_formatter("")
         axes.legend(title="layers", loc="upper left", ncols=3, columnspacing=1.0)
-        style.letter(axes, letter, place="above", text=name(powers, series))
     panels[0, 0].set_ylabel("depth of the open region / slab")
     return figure
 

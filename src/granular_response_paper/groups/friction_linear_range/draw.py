@@ -14,7 +14,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
-from granular_response_paper.panels import zero
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -118,10 +118,10 @@ def _profiles(response: xr.Dataset) -> Figure:
     """Fig. 7."""
     figure, axes = style.figure(1, 2, width="double", height=2.7, sharey=True)
     extents = []
-    for panel, name, friction in zip(axes[0], "ab", PROFILE_FRICTIONS, strict=True):
+    titles(axes[0], [style.equals(style.FRICTION, friction) for friction in PROFILE_FRICTIONS])
+    for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
         curves = at_forces(response.sel(friction=friction), PROFILE_FORCES)
         extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), style.FORCE))
-        style.letter(panel, name, place="above", text=style.equals(style.FRICTION, friction))
         if friction == 1.0:
             _enlarge(panel, curves)
         else:
@@ -147,11 +147,10 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     curves = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
     _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), style.FORCE))
     style.paper_note(left, f"paper:\n{PAPER_CROSSOVER:g} crossover\n{PAPER_THIRD_PEAK:g} third peak")
-    style.letter(left, "a", place="above", text=style.equals(style.FRICTION, 0.2))
     curves = at_forces(dynamic, DYNAMIC_FORCES)
     _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), style.FORCE, categorical=True))
     style.paper_note(right, f"paper:\n{PAPER_SYMMETRIC:g} symmetric")
-    style.letter(right, "b", place="above", text=style.equals(style.FRICTION, float(dynamic["friction"])))
+    titles(axes[0], [style.equals(style.FRICTION, friction) for friction in (0.2, float(dynamic["friction"]))])
     zero(right)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)

@@ -20,7 +20,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import Caption, letters, of_group, of_scene, panels, values
-from granular_response_paper.panels import zero
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -281,8 +281,6 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     events.legend(fontsize=7, loc="upper left")
     force = float(at_force["force"])
     soft, stiff = (style.equals("k_N", k, style.STIFFNESS_UNIT) for k in (stiffnesses[0], stiffnesses[-1]))
-    names = letters("fig05c_depth_and_width")
-    style.letter(box, next(names), place="above", text=stiff)
-    style.letter(profiles, next(names), place="above", text=f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}")
-    style.letter(events, next(names), place="above")
+    load = f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}"
+    titles((box, profiles, events), (stiff, load, ""), stem="fig05c_depth_and_width")
     return figure

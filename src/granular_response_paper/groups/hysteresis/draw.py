@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import material, packing, zero
+from granular_response_paper.panels import material, packing, titles, zero
 
 from .parameters import Parameters
 
@@ -96,7 +96,6 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
         Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=2.6),
     ]
     loops.legend(handles, ["loading, unloading", "loading again"], loc="lower right")
-    style.letter(loops, "a", place="above", text="lattices")
     x, added = floor["x"].isel(case=one).values, floor["added"].isel(case=one).values
     near = np.abs(x) <= REACH
     for branch, label in enumerate(("loaded", "unloaded", "loaded again")):
@@ -105,7 +104,7 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     zero(below)
     below.set(xlabel=style.POSITION, ylabel=rf"floor force less that at rest$\,/\,{style.WEIGHT}$")
     below.legend(loc="upper right")
-    style.letter(below, "b", place="above", text=f"the floor, {style.equals(style.FRICTION, friction[one])}")
+    titles((loops, below), ("lattices", f"the floor, {style.equals(style.FRICTION, friction[one])}"))
     return figure
 
 
@@ -145,8 +144,6 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
         Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=3.0, markerfacecolor=fill)
         for fill in (style.MUTED, "white")
     ]
-    style.letter(left, "a", place="above", text="after unloading")
-    style.letter(lost, "b", place="above", text="energy")
     _ends(ends, events, delta, friction)
     handles = [
         Line2D([], [], color=style.COLOURS[k], marker=marker, linestyle="none", markersize=4.0)
@@ -156,7 +153,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     rubbing = [style.equals(style.FRICTION, mu) for mu in frictions if mu]
     names = [*rubbing, *(packing(one) for one in spreads), "first loop", "second loop", *texts]
     figure.legend([*materials, *packings, *loop, *handles], names, loc="outside lower center", ncols=5)
-    style.letter(ends, "c", place="above", text="ranges")
+    titles((left, lost, ends), ("after unloading", "energy", "ranges"))
     return figure
 
 

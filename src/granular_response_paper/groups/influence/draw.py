@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import material, zero
+from granular_response_paper.panels import material, titles, zero
 
 from .parameters import Parameters
 
@@ -57,7 +57,8 @@ def _maps(data: xr.Dataset) -> Figure:
     figure, (panels,) = style.figure(1, len(cases), width="double", height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
     largest = float(np.nanquantile(data["total"].values[cases], 0.995))
-    for panel, (case, axes) in enumerate(zip(cases, panels, strict=True)):
+    titles(panels, [_name(data, case) for case in cases])
+    for case, axes in zip(cases, panels, strict=True):
         one = data.isel(case=case)
         x, z = one["position"].values.T
         shown = np.flatnonzero(np.abs(x) <= REACH)
@@ -68,7 +69,6 @@ def _maps(data: xr.Dataset) -> Figure:
         axes.add_collection(drawn)
         axes.axhline(0.0, color=style.BLACK, linewidth=1.0)
         axes.set(xlim=(-REACH, REACH), ylim=(-1.0, z.max() + 1.5), aspect="equal", xlabel=style.POSITION)
-        style.letter(axes, "abcdefgh"[panel], place="above", text=_name(data, case))
     panels[0].set_ylabel(style.HEIGHT)
     ticks = [t for t in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if t <= largest]
     label = "absolute forces on the floor\nper unit force on the disk"
@@ -101,7 +101,6 @@ def _decay(data: xr.Dataset) -> Figure:
     style.logarithmic(falls)
     falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
     falls.legend(loc="lower left")
-    style.letter(falls, "a", place="above", text="a force and its two halves")
     for case in cases:
         each = data["exponent"].isel(case=case, separation=0).values
         each = each[np.isfinite(each[:, 0])]
@@ -118,5 +117,5 @@ def _decay(data: xr.Dataset) -> Figure:
     zero(powers)
     powers.set_xticks(list(cases), [_name(data, case) for case in cases], rotation=30, ha="right")
     powers.set(ylabel="power of the height")
-    style.letter(powers, "b", place="above", text="how fast it falls")
+    titles((falls, powers), ("a force and its two halves", "how fast it falls"))
     return figure

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import material, zero
+from granular_response_paper.panels import material, outer, titles, zero
 
 from .parameters import Parameters
 
@@ -116,14 +116,11 @@ def _responses(data: xr.Dataset) -> Figure:
         ):
             axes.plot(place, one["predicted"].sel(solid=solid).mean("realization"), label=label, **look)
         zero(axes)
-        layers = float(one["layers"])
-        style.letter(axes, "abcdefgh"[case], place="above", text=f"{_name(data, case)}, {layers:g} layers")
-    for axes in panels[:, 0]:
-        axes.set_ylabel(style.PRESSURE)
-    for axes in panels[-1]:
-        axes.set(xlabel=style.SCALED_POSITION, xlim=(place[0], place[-1]))
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+        axes.set_xlim(place[0], place[-1])
+    layers = np.nanmax(data["layers"].values, axis=1)
+    titles(panels.flat, [f"{_name(data, case)}, {layers[case]:g} layers" for case in cases])
+    outer(panels, style.SCALED_POSITION, style.PRESSURE)
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -151,8 +148,7 @@ def _sizes(data: xr.Dataset) -> Figure:
         axes.minorticks_off()
     panels[0].set_ylabel("largest difference / largest pressure")
     w = [str(name) for name in data["smoothing"].values]
-    style.letter(panels[0], "a", place="above", text=f"one load, $w$ = {w[smoothing[0]]}")
-    style.letter(panels[1], "b", place="above", text=f"mean over loads, $w$ = {w[smoothing[1]]}")
+    titles(panels, (f"one load, $w$ = {w[smoothing[0]]}", f"mean over loads, $w$ = {w[smoothing[1]]}"))
     handles, labels = panels[1].get_legend_handles_labels()
     figure.legend([handle[0] for handle in handles], labels, loc="outside lower center", ncols=3)
     return figure
@@ -192,9 +188,7 @@ def _lattice(data: xr.Dataset) -> Figure:
     turn.plot(steps, ends, color=look["color"], linewidth=0.7, linestyle=(0, (1.2, 1.2)))
     turn.set(xlabel="1 / layers", ylabel=f"${style.STIFFNESS_RATIO}$ where two peaks end")
     turn.set_xlim(-0.006, None)
-    style.letter(closed, "a", place="above", text="horizontal contacts closed")
-    style.letter(opened, "b", place="above", text="open")
-    style.letter(turn, "c", place="above")
+    titles((closed, opened, turn), ("horizontal contacts closed", "open", ""))
     keys = [(key, name) for axes in (opened, turn) for key, name in zip(*axes.get_legend_handles_labels(), strict=True)]
     figure.legend(*zip(*keys, strict=True), loc="outside lower center", ncols=3)
     return figure

@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_group, of_scene
-from granular_response_paper.panels import material
+from granular_response_paper.panels import material, titles
 
 from .parameters import Parameters
 
@@ -89,7 +89,7 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     parts = kinds(inside)
     figure, panels = style.figure(2, len(parts), width="double", height=5.2, sharex="row", sharey="row")
     for row, (data, label) in enumerate(((inside, "depth"), (floors, "height of the slab"))):
-        for (title, cases), axes in zip(parts, panels[row], strict=True):
+        for (_, cases), axes in zip(parts, panels[row], strict=True):
             for place, case in enumerate(cases):
                 _widths(axes, data, case, place)
             axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$")
@@ -97,9 +97,8 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
                 axis.set_major_locator(LogLocator(subs=TICKS))
                 axis.set_major_formatter("{x:g}")
                 axis.set_minor_formatter("")
-            letter = "abcdef"[row * len(parts) + parts.index((title, cases))]
-            style.letter(axes, letter, place="above", text=title + (", inside" if row == 0 else ", on the floor"))
         panels[row, 0].set_ylabel(rf"half width$\,/\,{style.RADIUS}$")
+    titles(panels.flat, [title + where for where in (", inside", ", on the floor") for title, _ in parts])
     for axes in panels.ravel():
         _guides(axes)
     for axes in panels[0]:
@@ -142,9 +141,8 @@ def _powers(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     """A row for each case: powers inside and on the floor, by both definitions, and of what elastic slabs have."""
     cases = [case for _, members in kinds(inside) for case in members]
     figure, (panels,) = style.figure(1, 2, width="double", height=0.6 + 0.3 * len(cases), sharey=True)
-    for axes, data, text, letter in zip(
-        panels, (inside, floors), ("inside, against the depth", "on the floor, against the height"), "ab", strict=True
-    ):
+    titles(panels, ("inside, against the depth", "on the floor, against the height"))
+    for axes, data in zip(panels, (inside, floors), strict=True):
         axes.axvspan(HALFWAY, 2.0 * ELASTIC - HALFWAY, color="#EEEEEE", linewidth=0.0, zorder=0)
         axes.axvline(ELASTIC, linestyle=DASHED, **GUIDE)
         axes.axvline(DIFFUSIVE, linestyle=DOTTED, **GUIDE)
@@ -163,7 +161,6 @@ def _powers(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
                     linestyle="none", label="elastic slab" if row == 0 and k else None,
                 )  # fmt: skip
         axes.set(xlabel="power with which the width grows")
-        style.letter(axes, letter, place="above", text=text)
     panels[0].set_yticks(range(len(cases)), [name(inside, case) for case in cases])
     panels[0].set_ylim(len(cases) - 0.4, -0.6)
     panels[1].legend(loc="upper right", fontsize=7)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
-from granular_response_paper.panels import packing
+from granular_response_paper.panels import outer, packing, titles
 
 from .parameters import Parameters
 
@@ -117,13 +117,8 @@ def _grid(
     """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels."""
     figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
     found = dict(zip(((w, d) for w in widths for d in deltas), panels.ravel(), strict=True))
-    for index, ((width, delta), axes) in enumerate(found.items()):
-        text = f"{packing(delta)}, $w = {width:g}\\,\\bar R$"
-        style.letter(axes, chr(ord("a") + index), place="above", text=text)
-    for axes in panels[-1]:
-        axes.set_xlabel(x)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(y)
+    titles(found.values(), [f"{packing(delta)}, $w = {width:g}\\,\\bar R$" for width, delta in found])
+    outer(panels, x, y)
     return figure, found
 
 

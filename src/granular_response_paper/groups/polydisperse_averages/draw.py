@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import material, packing, zero
+from granular_response_paper.panels import material, packing, titles, zero
 
 from .parameters import Parameters
 
@@ -200,9 +200,7 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         axes.tick_params(labelleft=False)
     one.set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
     names = list(map(packing, deltas))
-    titles = [f"{names[0]}, one packing", f"{names[0]}, means", *names[1:], ""]
-    for axes, letter, title in zip(panels[0], "abcdefgh", titles, strict=False):
-        style.letter(axes, letter, place="above", text=title)
+    titles(panels[0], [f"{names[0]}, one packing", f"{names[0]}, means", *names[1:], ""])
     ends = others[-1]
     for index, (delta, name) in enumerate(zip(deltas, names, strict=True)):
         here = data["polydispersity"].values == delta
@@ -358,8 +356,7 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), deltas)
     bearing.set(xlabel=style.FORCE, ylabel="part of the packings at rest", xscale="log", ylim=(0.0, 1.05))
     bearing.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
-    for axes, name in zip(panels[0], "abc", strict=True):
-        style.letter(axes, name, place="above")
+    style.letters(panels, place="above")
     return figure
 
 

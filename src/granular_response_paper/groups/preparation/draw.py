@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import outer, titles
 
 from .parameters import Parameters
 
@@ -34,20 +35,17 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     slabs = sorted(set(zip(events["wall_friction"].values.tolist(), events["friction"].values.tolist(), strict=True)))
     ways = list(dict.fromkeys(events["way"].values.tolist()))
     figure, axes = style.figure(2, 3, width="double", height=4.6, sharex=True, sharey=True)
-    for index, (panel, (name, title)) in enumerate(zip(axes.flat, PANELS.items(), strict=True)):
+    titles(axes.flat, PANELS.values())
+    for panel, name in zip(axes.flat, PANELS, strict=True):
         _event(panel, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs, ways)
-        style.letter(panel, "abcdef"[index], place="above", text=title)
         panel.set_yscale("log")
         panel.yaxis.set_major_formatter("{x:g}")
         panel.set_xlim(-0.6, len(slabs) - 0.4)
     for panel in axes[-1]:
         panel.set_xticks(range(len(slabs)), [f"{mu:g}\nrough" if wall else f"{mu:g}" for wall, mu in slabs])
         panel.tick_params(axis="x", which="both", length=0)
-        panel.set_xlabel("friction")
-    for row in axes:
-        row[0].set_ylabel(style.FORCE)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)))
+    outer(axes, "friction", style.FORCE)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=min(4, len(ways)))
     return {"preparation": figure}
 
 

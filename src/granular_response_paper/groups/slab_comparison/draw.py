@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, letters, of_group, of_scene
-from granular_response_paper.panels import zero
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -31,11 +30,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig01b_slab_comparison`` from the dataset ``slabs`` of the study of the same name."""
     data = datasets["slabs"]
     figure, ((profiles, distances),) = style.figure(1, 2, width="double", height=3.5)
-    first, second = islice(letters(STEM), 2)
     _profiles(profiles, data)
-    style.letter(profiles, first, place="above", text="response and elastic slab")
     _distances(distances, data)
-    style.letter(distances, second, place="above", text="distance")
+    titles((profiles, distances), ("response and elastic slab", "distance"), stem=STEM)
     return {STEM: figure}
 
 

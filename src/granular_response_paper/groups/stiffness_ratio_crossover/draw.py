@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
-from granular_response_paper.panels import zero
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -46,7 +46,6 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     for ratio in shown:
         one = response["floor_response"].sel(stiffness_ratio=ratio)
         simulated.plot(response["x"], one, **look[ratio], label=f"{ratio:g}")
-    style.letter(simulated, "a", place="above", text=f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}")
 
     profile = elastic["profile"].sel(rotations="free")
     marks: dict[str, dict[str, Any]] = {
@@ -59,10 +58,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
             bodies.plot(elastic["x"], one, **look[ratio], **marks[name])
     keys = [Line2D([], [], color=style.MUTED, linestyle="-", **marks[name]) for name in marks]
     bodies.legend(keys, list(marks), loc="upper right", borderaxespad=0.3)
-    style.letter(bodies, "b", place="above", text="elastic, no horizontal springs")
-
     _draw_dips(dips, response, elastic, events)
-    style.letter(dips, "c", place="above", text="depth of the dip")
+    load = f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}"
+    titles((simulated, bodies, dips), (load, "elastic, no horizontal springs", "depth of the dip"))
 
     reach = min(40.0, float(np.abs(response["x"]).max()))
     top = 1.08 * float(response["floor_response"].max())

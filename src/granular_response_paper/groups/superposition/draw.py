@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -12,8 +11,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, Value, lettered, letters, of_group, of_scene
-from granular_response_paper.panels import zero
+from granular_response_paper.captions import Caption, Value, lettered, of_group, of_scene
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -76,8 +75,7 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     high, low = float(drawn.max()), float(min(0.0, drawn.min()))  # of both figures, which share their scale
     for axes in panels.ravel()[len(distances) :]:
         axes.set_axis_off()
-    for k, distance in enumerate(distances):
-        axes = panels.ravel()[k]
+    for k, axes in enumerate(panels.flat[: len(distances)]):
         left, right, both = responses[k]
         zero(axes)
         axes.plot(x, left, **{**style.line(0), "linestyle": (0, (5, 1.6)), "linewidth": 0.9}, label="Left")
@@ -102,12 +100,12 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
                 arrowprops={"arrowstyle": "-|>", "linewidth": 0.8, "color": style.MUTED, "shrinkA": 0, "shrinkB": 0},
             )
         axes.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(1.2 * low if low < 0.0 else -0.03 * high, 1.36 * high))
-        style.letter(axes, chr(ord("a") + k), place="above", text=f"$d = {distance:g}$ diameters")
         if k % 2 == 0:
             axes.set_ylabel(style.RESPONSE)
         if k + 2 >= len(distances):
             axes.set_xlabel(style.POSITION)
             axes.tick_params(labelbottom=True)
+    titles(panels.flat, [f"$d = {distance:g}$ diameters" for distance in distances])
     panels[0, 1].legend(loc="upper right", fontsize=7.5)
     return figure
 
@@ -147,10 +145,9 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
         ncols=2,
         columnspacing=0.8,
     )
-    first, second, third = itertools.islice(letters("fig24b_superposition_error"), 3)
-    style.letter(floor, first, text="floor forces")
-    style.letter(contacts, second, text="all contact forces")
-    style.letter(deep, third, text=f"contacts between rows, {style.equals(style.F_EXT, last, style.WEIGHT)}")
+    rows = f"contacts between rows, {style.equals(style.F_EXT, last, style.WEIGHT)}"
+    texts = ("floor forces", "all contact forces", rows)
+    titles(panels[0], texts, stem="fig24b_superposition_error", place="inside")
     return figure
 
 

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import Caption, letters, of_group, of_scene
-from granular_response_paper.panels import zero
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -42,20 +42,16 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1
     figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
-    names = letters("fig16s_symmetry_breaking")
     _protocols(axes[0, 0], datasets["runs"], datasets["held"])
-    style.letter(axes[0, 0], next(names), place="above", text="after loading to one force")
     _copies(axes[0, 1], copies)
-    force = float(copies["force"])
-    style.letter(axes[0, 1], next(names), place="above", text=f"copies, {_load(force)}")
+    loads = ["after loading to one force", f"copies, {_load(float(copies['force']))}"]
     handles: dict[str, Any] = {}
     if with_states:
-        for index in (0, 1):
-            panel, loaded = axes[1, index], states.isel(state=index + 1)
-            _network(panel, states.isel(state=0), loaded, handles)
-            force = float(loaded["force"])
-            style.letter(panel, next(names), place="above", text=_load(force))
+        for panel, state in zip(axes[1], (1, 2), strict=True):
+            _network(panel, states.isel(state=0), states.isel(state=state), handles)
+            loads.append(_load(float(states["force"][state])))
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+    titles(axes.flat, loads, stem="fig16s_symmetry_breaking")
     return {"fig16s_symmetry_breaking": figure}
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group
-from granular_response_paper.panels import zero
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -24,15 +24,13 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     elliptic.plot(x, data["slab_rough"], **style.line(0), label="slab, rough floor")
     elliptic.plot(x, data["slab_smooth"], **style.line(1), label="slab, smooth floor")
     elliptic.plot(x, data["half_plane"], **style.line(2), label="half plane")
-    style.letter(elliptic, "a", text="elliptic")
 
     depths = data["depth"].values
     colours = style.ordered_colours(len(depths))
     for index, (depth, colour) in enumerate(zip(depths, colours, strict=True)):
         look = style.line(index) | {"color": colour}
         hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=style.equals("h", depth, style.RADIUS))
-    style.letter(hyperbolic, "b", text="hyperbolic")
-
+    titles((elliptic, hyperbolic), ("elliptic", "hyperbolic"), place="inside")
     for axes in (elliptic, hyperbolic):
         zero(axes)
         axes.set(xlabel=style.SCALED_POSITION, xlim=(x[0], x[-1]))

@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
-from granular_response_paper.captions import Caption, letters, of_group, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import titles
 
 from .parameters import Parameters
 
@@ -60,7 +61,7 @@ def _chains(data: xr.Dataset) -> Figure:
         network.draw_torque(axes, position[disk], -float(torques[index]))
         network.draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
         axes.set(**limits)
-        style.letter(axes, chr(ord("a") + index), place="above", text=_torque(float(torques[index])))
+    titles(panels.flat, map(_torque, torques.tolist()))
     return figure
 
 
@@ -77,15 +78,14 @@ def _reach(data: xr.Dataset) -> Figure:
     }
     changes = np.concatenate([data[name].values[turned].ravel() for name in panel_of])
     changes = changes[changes > 0.0]  # none without a torque, or where the rings lie beyond the slab
-    named = zip(panels[0], letters("fig18_torque_reach"), panel_of.items(), strict=False)
-    for axes, letter, (name, text) in named:
+    titles(panels[0], panel_of.values(), stem="fig18_torque_reach")
+    for axes, name in zip(panels[0], panel_of, strict=True):
         for number, k in enumerate(turned):
             look = {**style.marked_line(number), "color": colours[number]}
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
         axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None))
         if changes.size:
             axes.set(yscale="log", ylim=(0.6 * float(changes.min()), 1.6 * float(changes.max())))
-        style.letter(axes, letter, place="above", text=text)
     panels[0, 0].set_ylabel("relative change by the torque")
     if len(turned):
         panels[0, 2].legend(title=rf"torque$\,/\,{style.TORQUE_UNIT}$", loc="upper right")
