@@ -1,4 +1,4 @@
-"""What figures of several groups repeat: titles of panels, labels of a grid, names of packings, the line at zero."""
+"""What figures of several groups repeat: which values are drawn, titles and labels of panels, names of packings."""
 
 from __future__ import annotations
 
@@ -7,10 +7,17 @@ from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from granular_response.plot import style
 
 from .captions import letters
+
+
+def among(stored: ArrayLike, wanted: Iterable[float]) -> list[float]:
+    """The wanted values as far as they are stored; all that are stored if none is."""
+    there = np.asarray(stored, dtype=float).tolist()
+    return [value for value in wanted if value in there] or there
 
 
 def titles(

@@ -14,7 +14,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.panels import among, titles, zero
 
 from .parameters import Parameters
 
@@ -64,7 +64,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     response, scene = datasets["response"], parameters.scene
     frictions = response["friction"].values.tolist()
-    axis = at_frictions(datasets["friction_axis"], AXIS_FRICTIONS)
+    axis = among(datasets["friction_axis"]["friction"], AXIS_FRICTIONS)
     given = {
         "fig06_linear_range": of_scene(scene, force=response["force"].values.tolist(), friction=frictions),
         "fig12_friction_crossover": of_scene(scene, force=parameters.friction_axis.force, friction=axis),
@@ -134,7 +134,7 @@ def _profiles(response: xr.Dataset) -> Figure:
 def _friction_axis(axis: xr.Dataset) -> Figure:
     """Fig. 12."""
     figure, axes = style.figure(height=2.6)
-    curves = axis.sel(friction=at_frictions(axis, AXIS_FRICTIONS))
+    curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
     _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), f"${style.FRICTION}$"))
     axes[0, 0].set_ylabel(style.RESPONSE)
     return figure
@@ -161,12 +161,6 @@ def _labels(values: xr.DataArray) -> list[str]:
     return [f"{value:g}" for value in values.values]
 
 
-def at_frictions(axis: xr.Dataset, wanted: Sequence[float]) -> list[float]:
-    """The wanted frictions as far as they are stored; all of them if none is."""
-    stored = axis["friction"].values.tolist()
-    return [mu for mu in wanted if mu in stored] or stored
-
-
 def contact_forces(states: xr.Dataset) -> list[float]:
     """The forces of Figs. 8 and 9 as far as they are stored, else the first ones."""
     stored = states["force"].values.tolist()
@@ -176,8 +170,7 @@ def contact_forces(states: xr.Dataset) -> list[float]:
 def at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
     """The given forces as far as they are stored; all of them if none is."""
     stored = dataset.dropna("force", subset=["response_at_centre"])
-    shown = [force for force in forces if force in stored["force"].values]
-    return stored.sel(force=shown) if shown else stored
+    return stored.sel(force=among(stored["force"], forces))
 
 
 def _plot_profiles(

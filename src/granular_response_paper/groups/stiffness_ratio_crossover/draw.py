@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.panels import among, titles, zero
 
 from .parameters import Parameters
 
@@ -36,8 +36,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     response, elastic, events = datasets["response"], datasets["elastic"], datasets["events"]
     figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=3.1)
     force = float(response["force"])
-    available = response["stiffness_ratio"].values
-    shown = _among(available, DRAWN)
+    shown = among(response["stiffness_ratio"], DRAWN)
     colours = style.ordered_colours(len(shown))
     look: dict[float, dict[str, Any]] = {
         ratio: {"color": colour, "linestyle": dashes, "linewidth": 1.1}
@@ -52,7 +51,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         "slab": {},
         "half plane": {"marker": "o", "markerfacecolor": "white", "markersize": 3.0, "markevery": 3},
     }
-    for ratio in _among(np.array(shown), ELASTIC):
+    for ratio in among(shown, ELASTIC):
         for name, body in (("slab", "smooth floor"), ("half plane", "half plane")):
             one = profile.sel(body=body).sel(stiffness_ratio=ratio, method="nearest")
             bodies.plot(elastic["x"], one, **look[ratio], **marks[name])
@@ -111,9 +110,3 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
         style.paper_value(inset, value)
         place: dict[str, Any] = {"ha": side, "textcoords": "offset points"}
         inset.annotate(f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), **place, fontsize=7, color=style.PAPER)
-
-
-def _among(available: np.ndarray, wanted: tuple[float, ...]) -> list[float]:
-    """Those of ``wanted`` that the dataset has; all that it has if it has none of them."""
-    found = [ratio for ratio in wanted if np.any(np.isclose(available, ratio))]
-    return found or available.tolist()
