@@ -1,9 +1,9 @@
-"""What figures of several groups repeat: which values are drawn, titles and labels of panels, names of packings."""
+"""What figures of several groups repeat: which values are drawn, and how; titles of panels; names of packings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Literal
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,6 +18,12 @@ def among(stored: ArrayLike, wanted: Iterable[float]) -> list[float]:
     """The wanted values as far as they are stored; all that are stored if none is."""
     there = np.asarray(stored, dtype=float).tolist()
     return [value for value in wanted if value in there] or there
+
+
+def family(values: Sequence[Any] | np.ndarray, *, marked: bool = True) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Each of some ordered values with the look of its curve, dark to light: with markers, or else with dashes."""
+    for k, (value, colour) in enumerate(zip(values, style.ordered_colours(max(1, len(values))), strict=False)):
+        yield value, style.marked_line(k, colour=colour) if marked else style.line(k) | {"color": colour}
 
 
 def titles(

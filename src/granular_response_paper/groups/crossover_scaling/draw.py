@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import titles
+from granular_response_paper.panels import family, titles
 
 from .parameters import Parameters
 
@@ -156,14 +156,12 @@ def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure
     titles(panels[0], [name(powers, series) for series in chosen])
     for axes, series in zip(panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
-        colours = style.ordered_colours(len(rows))
         weight = float(powers["friction"][series]) > 0.0
-        for at, (k, colour) in enumerate(zip(rows, colours, strict=True)):
+        for k, look in family(rows):
             layers, confinement = float(slabs["layers"][k]), float(slabs["confinement"][k])
             force = paths["force"].values[k] / (layers**2 if weight else layers * confinement)
             depth = paths["depth"].values[k] / (ROW * (layers - 1.0))
-            look = style.marked_line(at, colour=colour) | {"markersize": 3.2}
-            axes.plot(force, depth, label=f"{layers:.0f}", **look)
+            axes.plot(force, depth, label=f"{layers:.0f}", **look | {"markersize": 3.2})
         unit = rf"$N^2\,{style.WEIGHT}$" if weight else "$NP$"
         axes.set(xlabel=rf"${style.F_EXT}\,/\,$({unit})", ylim=(-0.03, 1.35), xscale="log")
         axes.xaxis.set_minor_formatter("")

@@ -14,7 +14,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
-from granular_response_paper.panels import among, titles, zero
+from granular_response_paper.panels import among, family, titles, zero
 
 from .parameters import Parameters
 
@@ -99,10 +99,9 @@ def _linear_range(response: xr.Dataset) -> Figure:
     figure, axes = style.figure(height=3.0)
     panel = axes[0, 0]
     frictions = response["friction"].values
-    for index, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True)):
+    for friction, look in family(frictions):
         curve = response["response_at_centre"].sel(friction=friction).dropna("force")
-        look = {**style.marked_line(index, colour=colour), "markersize": 3.0}
-        panel.plot(curve["force"], curve, label=f"{friction:g}", **look)
+        panel.plot(curve["force"], curve, label=f"{friction:g}", **look | {"markersize": 3.0})
     panel.set_xscale("log")
     panel.xaxis.set_major_formatter("{x:g}")
     panel.set_ylim(bottom=0.0, top=1.1 * float(response["response_at_centre"].max()))

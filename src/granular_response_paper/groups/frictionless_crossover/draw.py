@@ -20,7 +20,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import Caption, letters, of_group, of_scene, panels, values
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
@@ -92,10 +92,9 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
-    colours = style.ordered_colours(len(chosen))
-    for at, (k, colour) in enumerate(zip(chosen, colours, strict=True)):
+    for at, (k, look) in enumerate(family(chosen, marked=False)):
         one = data.isel(force=k)
-        look = style.line(at) | {"color": colour, "marker": style.marked_line(at)["marker"], "markersize": 2.2}
+        look |= {"marker": style.marked_line(at)["marker"], "markersize": 2.2}
         profiles.plot(x, one["floor_response"], **look, linewidth=0.9, label=f"{float(one['force']):g}")
     zero(profiles)
     profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
@@ -177,16 +176,15 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
 
 def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Dataset], str]) -> None:
     """A measure of the teardrop against the force, up to where it reaches the floor (open marker)."""
-    colours = style.ordered_colours(slabs.sizes["slab"])
-    for at, colour in enumerate(colours):
+    for at, look in family(range(slabs.sizes["slab"])):
         one = slabs.isel(slab=at)
         reached = np.flatnonzero(one["reaches_floor"].values > 0)
         end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
         force, values = one["force"].values[:end], one[name].values[:end]
-        axes.plot(force, values, **style.marked_line(at, colour=colour), label=label(one))
+        axes.plot(force, values, **look, label=label(one))
         if len(reached):
-            hollow = {"linestyle": "none", "marker": style.marked_line(at)["marker"], "markersize": 5.0, "zorder": 4}
-            axes.plot(force[-1:], values[-1:], **hollow, markerfacecolor="white", markeredgecolor=colour)
+            hollow = {"linestyle": "none", "marker": look["marker"], "markersize": 5.0, "zorder": 4}
+            axes.plot(force[-1:], values[-1:], **hollow, markerfacecolor="white", markeredgecolor=look["color"])
 
 
 def _stiffness(data: xr.Dataset) -> Figure:
@@ -252,13 +250,12 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
 
     softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
     at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
-    colours = style.ordered_colours(softest.sizes["slab"])
-    for at, colour in enumerate(colours):
+    for at, look in family(range(softest.sizes["slab"]), marked=False):
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height
         x, response = one["x"].values[seen] / height, one["floor_response"].values[seen] * height
-        profiles.plot(x, response, **style.line(at) | {"color": colour}, label=f"{int(one['layers'])}")
+        profiles.plot(x, response, **look, label=f"{int(one['layers'])}")
     label = f"{style.RESPONSE}$\\,\\times\\,h/{style.RADIUS}$"
     profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)

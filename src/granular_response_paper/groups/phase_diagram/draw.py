@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
-from granular_response_paper.panels import outer, packing, titles
+from granular_response_paper.panels import family, outer, packing, titles
 
 from .parameters import Parameters
 
@@ -214,16 +214,14 @@ def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Da
     figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
     tolerances += [(float(t), others.sel({"tolerance": t})) for t in others["tolerance"].values]
-    colours = style.ordered_colours(len(tolerances))
     handles = {}
     for (width, delta), axes in panels.items():
         here = _of(crossovers, delta)
-        for k, (tolerance, data) in enumerate(sorted(tolerances, key=lambda pair: pair[0])):
+        for (tolerance, data), look in family(sorted(tolerances, key=lambda pair: pair[0])):
             one = data.sel(width=width).isel(case=here)
             found = one["kind"].values == FOUND
-            look = style.marked_line(k) | {"color": colours[k], "linewidth": 0.9, "markersize": 3.0}
             friction, force = one["friction"].values[found], one["force"].values[found]
-            (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look)
+            (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look | {"markersize": 3.0})
         single = realizations.sel(width=width).isel(case=here)
         friction, median = single["friction"].values, single["median"].values
         known = np.isfinite(median)

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import material, packing, titles, zero
+from granular_response_paper.panels import family, material, packing, titles, zero
 
 from .parameters import Parameters
 
@@ -176,22 +176,15 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 20: one packing, the means of all, the lattice, smoothed alike, and the ends of the linear ranges."""
     deltas = sorted(set(data["polydispersity"].values.tolist()), reverse=True)
     frictions = sorted(set(data["friction"].values.tolist()))
-    looks = {
-        friction: {**style.marked_line(k), "color": colour, "markersize": 3.0}
-        for k, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True))
-    }
+    looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions)}
     figure, panels = style.figure(1, len(deltas) + 2, width="double", height=3.0)
     one, means, *others = panels[0]
     responses = [one, *others[:-1]]
     for axes, delta in zip(responses, deltas, strict=True):
         for friction in frictions:
             path = int(np.flatnonzero((data["polydispersity"] == delta) & (data["friction"] == friction))[0])
-            axes.plot(
-                data["force"],
-                data["response_at_centre"].values[path],
-                **looks[friction],
-                label=f"$\\mu = {friction:g}$",
-            )
+            response = data["response_at_centre"].values[path]
+            axes.plot(data["force"], response, **looks[friction], label=f"$\\mu = {friction:g}$")
     _central_means(means, averages, deltas[0], float(data.attrs["width"]), looks)
     largest = 1.05 * max(line.get_ydata().max() for axes in (*responses, means) for line in axes.get_lines())
     for axes in (*responses, means):
@@ -290,12 +283,12 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     if not usable.size:
         return
     total = int(_realizations(one)[usable[0]])
-    for k, (step, colour) in enumerate(zip(steps, style.ordered_colours(len(steps)), strict=True)):
+    for step, look in family(steps, marked=False):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
-        axes.fill_between(x, mean - error, mean + error, color=colour, alpha=0.25, linewidth=0.0)
-        axes.plot(x, mean, color=colour, linestyle=style.LINE_STYLES[k], linewidth=1.1, label=label)
+        axes.fill_between(x, mean - error, mean + error, color=look["color"], alpha=0.25, linewidth=0.0)
+        axes.plot(x, mean, **look, linewidth=1.1, label=label)
     zero(axes)
     axes.legend(
         loc="lower center",

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
-from granular_response_paper.panels import among, titles, zero
+from granular_response_paper.panels import among, family, titles, zero
 
 from .parameters import Parameters
 
@@ -37,14 +37,10 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=3.1)
     force = float(response["force"])
     shown = among(response["stiffness_ratio"], DRAWN)
-    colours = style.ordered_colours(len(shown))
-    look: dict[float, dict[str, Any]] = {
-        ratio: {"color": colour, "linestyle": dashes, "linewidth": 1.1}
-        for ratio, colour, dashes in zip(shown, colours, style.LINE_STYLES, strict=False)
-    }
+    looks = {ratio: look | {"linewidth": 1.1} for ratio, look in family(shown, marked=False)}
     for ratio in shown:
         one = response["floor_response"].sel(stiffness_ratio=ratio)
-        simulated.plot(response["x"], one, **look[ratio], label=f"{ratio:g}")
+        simulated.plot(response["x"], one, **looks[ratio], label=f"{ratio:g}")
 
     profile = elastic["profile"].sel(rotations="free")
     marks: dict[str, dict[str, Any]] = {
@@ -54,7 +50,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     for ratio in among(shown, ELASTIC):
         for name, body in (("slab", "smooth floor"), ("half plane", "half plane")):
             one = profile.sel(body=body).sel(stiffness_ratio=ratio, method="nearest")
-            bodies.plot(elastic["x"], one, **look[ratio], **marks[name])
+            bodies.plot(elastic["x"], one, **looks[ratio], **marks[name])
     keys = [Line2D([], [], color=style.MUTED, linestyle="-", **marks[name]) for name in marks]
     bodies.legend(keys, list(marks), loc="upper right", borderaxespad=0.3)
     _draw_dips(dips, response, elastic, events)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, lettered, of_group, of_scene
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
@@ -116,15 +117,14 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     floor, contacts, deep = panels[0]
     errors, linear = datasets["errors"], datasets["linear_range"]
     force, distances = errors["force"].values, errors["distance"].values
-    colours = style.ordered_colours(len(distances))
     ends = 0.5 * (linear["linear_until"].values + linear["nonlinear_from"].fillna(np.inf).values)
     quarter, middle, three_quarters = np.quantile(ends, [0.25, 0.5, 0.75], method="closest_observation")
     for axes, name in ((floor, "floor_error"), (contacts, "contact_error")):
         axes.axvspan(quarter, min(three_quarters, force[-1]), color=style.FAINT, alpha=0.35, linewidth=0.0, zorder=0)
         if np.isfinite(middle):
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
-        for k, distance in enumerate(distances):
-            _mean_with_error(axes, force, errors[name].values[:, k], k, colours[k], f"{distance:g}")
+        for k, look in family(range(len(distances))):
+            _mean_with_error(axes, force, errors[name].values[:, k], look, f"{distances[k]:g}")
         style.paper_value(axes, LINEAR_UNTIL, f"paper: {LINEAR_UNTIL:g}", at=0.2)
         axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
     change = linear["contact_change"].values.mean(axis=0)[1:]  # zero at the first force, by definition
@@ -132,8 +132,8 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     floor.set_ylabel("difference of both and sum, relative")
     last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
-    for k in range(len(distances)):
-        _mean_with_error(deep, errors["gap"].values, profiles[:, k], k, colours[k], "")
+    for k, look in family(range(len(distances))):
+        _mean_with_error(deep, errors["gap"].values, profiles[:, k], look, "")
     deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel=rf"depth below the loads$\,/\,{style.RADIUS}$", xlim=(0.0, None))
     handles, names = floor.get_legend_handles_labels()
     deep.legend(
@@ -151,10 +151,12 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     return figure
 
 
-def _mean_with_error(axes: Axes, at: FloatArray, values: FloatArray, index: int, colour: str, label: str) -> None:
+def _mean_with_error(axes: Axes, at: FloatArray, values: FloatArray, look: dict[str, Any], label: str) -> None:
     """Mean over realizations (first axis) with a band of its standard error, if there are several."""
     mean = values.mean(axis=0)
     if len(values) > 1:
         error = values.std(axis=0, ddof=1) / np.sqrt(len(values))
-        axes.fill_between(at, np.maximum(mean - error, 1e-9), mean + error, color=colour, alpha=0.18, linewidth=0.0)
-    axes.plot(at, mean, **style.marked_line(index, colour=colour), label=label)
+        axes.fill_between(
+            at, np.maximum(mean - error, 1e-9), mean + error, color=look["color"], alpha=0.18, linewidth=0.0
+        )
+    axes.plot(at, mean, **look, label=label)

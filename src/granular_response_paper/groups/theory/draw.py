@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
@@ -26,9 +26,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     elliptic.plot(x, data["half_plane"], **style.line(2), label="half plane")
 
     depths = data["depth"].values
-    colours = style.ordered_colours(len(depths))
-    for index, (depth, colour) in enumerate(zip(depths, colours, strict=True)):
-        look = style.line(index) | {"color": colour}
+    for depth, look in family(depths, marked=False):
         hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=style.equals("h", depth, style.RADIUS))
     titles((elliptic, hyperbolic), ("elliptic", "hyperbolic"), place="inside")
     for axes in (elliptic, hyperbolic):

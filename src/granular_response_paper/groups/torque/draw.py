@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import titles
+from granular_response_paper.panels import family, titles
 
 from .parameters import Parameters
 
@@ -70,7 +70,6 @@ def _reach(data: xr.Dataset) -> Figure:
     figure, panels = style.figure(1, 3, width="double", height=2.7, sharex=True, sharey=True)
     torques = data["torque"].values
     turned = np.flatnonzero(torques)
-    colours = style.ordered_colours(max(1, len(turned)))
     panel_of = {
         "force_change": "contact forces",
         "stress_change": "stress tensor",
@@ -80,8 +79,7 @@ def _reach(data: xr.Dataset) -> Figure:
     changes = changes[changes > 0.0]  # none without a torque, or where the rings lie beyond the slab
     titles(panels[0], panel_of.values(), stem="fig18_torque_reach")
     for axes, name in zip(panels[0], panel_of, strict=True):
-        for number, k in enumerate(turned):
-            look = {**style.marked_line(number), "color": colours[number]}
+        for k, look in family(turned):
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
         axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None))
         if changes.size:
