@@ -20,10 +20,13 @@ def among(stored: ArrayLike, wanted: Iterable[float]) -> list[float]:
     return [value for value in wanted if value in there] or there
 
 
-def family(values: Sequence[Any] | np.ndarray, *, marked: bool = True) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Each of some ordered values with the look of its curve, dark to light: with markers, or else with dashes."""
+def family(
+    values: Sequence[Any] | np.ndarray, *, marked: bool = True, dashed: bool = False
+) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Each of some ordered values with the look of its curve: dark to light, with markers, dashes, or both."""
     for k, (value, colour) in enumerate(zip(values, style.ordered_colours(max(1, len(values))), strict=False)):
-        yield value, style.marked_line(k, colour=colour) if marked else style.line(k) | {"color": colour}
+        look = style.marked_line(k) if marked else {}
+        yield value, look | (style.line(k) if dashed else {}) | {"color": colour}
 
 
 def titles(

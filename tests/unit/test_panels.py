@@ -14,7 +14,7 @@ def test_wanted_values_are_those_that_are_stored_or_all():
 
 @pytest.mark.parametrize("marked", [True, False])
 def test_curves_of_a_family_differ_in_colour_and_form(marked):
-    looks = [look for _, look in panels.family([4.0, 10.0, 20.0], marked=marked)]
+    looks = [look for _, look in panels.family([4.0, 10.0, 20.0], marked=marked, dashed=not marked)]
     assert len({look["color"] for look in looks}) == 3
     assert len({str(look["marker" if marked else "linestyle"]) for look in looks}) == 3
     assert not list(panels.family([]))

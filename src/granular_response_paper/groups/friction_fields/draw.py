@@ -12,6 +12,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.panels import family
 
 from .parameters import Parameters
 
@@ -143,12 +144,9 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
 def _force_profiles(data: xr.Dataset) -> Figure:
     frictions, depths = data["friction"].values, data["depth"].values
     figure, panels = style.figure(1, len(frictions), width="double", height=3.1, sharex=True, sharey=True)
-    colours = style.ordered_colours(len(depths))
     for index, axes in enumerate(panels[0]):
-        for row, depth in enumerate(depths):
-            look = (
-                style.marked_line(row) | style.line(row) | {"color": colours[row], "linewidth": 0.8, "markersize": 2.8}
-            )
+        for row, (depth, look) in enumerate(family(depths, dashed=True)):
+            look |= {"linewidth": 0.8, "markersize": 2.8}
             x, magnitude = (data[name].values[index, row] for name in ("contact_x", "magnitude"))
             axes.plot(x, magnitude, **look, label=f"${depth:.1f}\\,{style.RADIUS}$")
         half = PROFILE_HALF_WIDTH

@@ -179,12 +179,12 @@ def _plot_profiles(
 
     Returns the smallest and the largest response shown.
     """
-    colours = style.ordered_colours(len(labels))
     dimension = next(str(dim) for dim in curves["floor_response"].dims if dim != "floor_disk")
-    for index, (label, colour) in enumerate(zip(labels, colours, strict=True)):
-        # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
-        look: dict[str, Any] = style.marked_line(index, colour=None if categorical else colour)
-        look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD), "linestyle": style.line(index)["linestyle"]}
+    # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
+    for index, (label, look) in enumerate(family(labels, dashed=True)):
+        look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD)}
+        if categorical:
+            look |= {"color": style.line(index)["color"]}
         panel.plot(curves["x"], curves["floor_response"].isel({dimension: index}), label=label, **look)
     panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
     panel.legend(title=title, loc="upper right", handlelength=2.8)
@@ -202,11 +202,8 @@ def _enlarge(panel: Axes, curves: xr.Dataset) -> None:
     """The tops of curves that nearly cover each other, in the upper left corner."""
     inside = panel.inset_axes((0.09, 0.5, 0.28, 0.46))
     near = curves.isel(floor_disk=np.flatnonzero(np.abs(curves["x"].values) <= CLOSE))
-    for index, (top, colour) in enumerate(
-        zip(near["floor_response"].values, style.ordered_colours(near.sizes["force"]), strict=True)
-    ):
-        look = {**style.marked_line(index), **style.line(index), "color": colour, "markersize": 2.6}
-        inside.plot(near["x"], top, **look)
+    for top, look in family(near["floor_response"].values, dashed=True):
+        inside.plot(near["x"], top, **look | {"markersize": 2.6})
     inside.set_xlim(-CLOSE, CLOSE)
     inside.tick_params(labelsize=6)
 

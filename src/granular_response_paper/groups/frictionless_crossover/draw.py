@@ -92,7 +92,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
-    for at, (k, look) in enumerate(family(chosen, marked=False)):
+    for at, (k, look) in enumerate(family(chosen, marked=False, dashed=True)):
         one = data.isel(force=k)
         look |= {"marker": style.marked_line(at)["marker"], "markersize": 2.2}
         profiles.plot(x, one["floor_response"], **look, linewidth=0.9, label=f"{float(one['force']):g}")
@@ -250,7 +250,7 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
 
     softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
     at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
-    for at, look in family(range(softest.sizes["slab"]), marked=False):
+    for at, look in family(range(softest.sizes["slab"]), marked=False, dashed=True):
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height

@@ -283,7 +283,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     if not usable.size:
         return
     total = int(_realizations(one)[usable[0]])
-    for step, look in family(steps, marked=False):
+    for step, look in family(steps, marked=False, dashed=True):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
