@@ -19,17 +19,7 @@ OUTPUT = Path("figures") / "claims.json"
 BLOCK = "claims"
 
 #: What a stored table holds, and what it lists of each claim.
-KEYS = {
-    "counts",
-    "robustness",
-    "verdicts",
-    "verdict_kinds",
-    "robustness_kinds",
-    "changes",
-    "words",
-    "sensitivity",
-    "table",
-}
+KEYS = {"counts", "robustness", "verdict_kinds", "robustness_kinds", "changes", "words", "sensitivity", "table"}
 LISTED = {"id", "group", "verdict", "robustness", "robustness_reason", "ours", "reason", "interval_kind"}
 
 
