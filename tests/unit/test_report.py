@@ -544,7 +544,7 @@ def test_no_slider_without_states(root, tmp_path):
     assert text.count("Not drawn yet.") == 24 and text.count("Not measured yet") == 2
 
 
-@pytest.mark.parametrize(("content", "problem"), [(None, "no such file"), ("{", "cannot be read"), ("[]", "is not a")])
+@pytest.mark.parametrize(("content", "problem"), [(None, "No such file"), ("{", "Expecting"), ("[]", "is not a")])
 def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
     if content is not None:
         (tmp_path / "figures").mkdir()

@@ -31,10 +31,9 @@ def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
     """The stored table. Raises ClaimsError if it is missing or damaged."""
     try:
         found = read_json(Path(path))
-    except FileNotFoundError:
-        raise ClaimsError(f"{path}: no such file, make it with granular-response-paper claims") from None
     except (OSError, ValueError) as error:
-        raise ClaimsError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
+        problem = getattr(error, "strerror", None) or " ".join(str(error).split())
+        raise ClaimsError(f"{path}: {problem}; make it with granular-response-paper claims") from None
     try:
         whole = set(found) >= KEYS and all(set(row) >= LISTED for row in found["table"])
         whole = whole and all("verdict" in kind for kind in found["verdict_kinds"])
