@@ -1,8 +1,9 @@
 """Captions of the pictures, complete as the paper's are, made from the parameters that their dataset was made with.
 
 A group's ``draw.py`` has ``captions(datasets, parameters) -> dict[str, Caption]``: one for each picture by file stem,
-from the datasets that it is drawn from and the validated parameters that their file stores. The draw stage writes
-them as ``captions.json`` beside the pictures (:func:`document`); the page reads that file.
+from the datasets that it is drawn from and the validated parameters that their file stores. Their texts stand beside
+it as templates, in ``captions.yaml``, which :func:`of_group` fills in. The draw stage writes the captions as
+``captions.json`` beside the pictures (:func:`document`); the page reads that file.
 
 Texts are plain, as ``report.typeset`` sets them: ``F_ext``, ``k_T/k_N``, ``1e-13``, ``sqrt(R/g)``. They cite the panels
 by the letters that :func:`letters` gives: those of a figure of several pictures run on.
@@ -12,15 +13,19 @@ from __future__ import annotations
 
 import math
 import re
+import string
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import resources
 from typing import TYPE_CHECKING, Any
+
+from granular_response.scene import text as yaml
 
 if TYPE_CHECKING:
     from granular_response.scene import Scene
 
-#: Name of the file beside the pictures.
-FILE = "captions.json"
+#: Name of the file beside the pictures, and of the templates beside their ``draw.py``.
+FILE, TEMPLATES = "captions.json", "captions.yaml"
 
 NUMBER_OF_FIGURES = 24
 
@@ -81,6 +86,26 @@ class Caption:
             given["friction"] = f"µ_wall = {values(given.pop('wall_friction'))}"
         said = [SAID[key].format(values(given[key])) for key in SAID if key in given]
         return f"{self.text} {', '.join(said)}." if said else self.text
+
+
+class _Fields(string.Formatter):
+    """Those of ``str.format``, and ``{name!v}`` for one value or several in words."""
+
+    def convert_field(self, value: Any, conversion: str | None) -> Any:
+        return values(value) if conversion == "v" else super().convert_field(value, conversion)
+
+
+def of_group(group: str, parameters: Mapping[str, Mapping[str, Value]], **fields: Any) -> dict[str, Caption]:
+    """The captions of those pictures of a group that have ``parameters``, by file stem, from the group's templates.
+
+    Raises KeyError for a picture without a template, or a field that is not given.
+    """
+    templates = yaml.read(resources.files(f"{__package__}.groups.{group}").joinpath(TEMPLATES).read_text("utf-8"))
+
+    def filled(stem: str, name: str) -> str:
+        return _Fields().vformat(templates[stem][name], (), fields)
+
+    return {stem: Caption(filled(stem, "text"), filled(stem, "alternative"), of) for stem, of in parameters.items()}
 
 
 def of_scene(scene: Scene, *, frictions: Value | None = None, **others: Value | None) -> dict[str, Value]:

@@ -130,22 +130,20 @@ def claims(
     every: Annotated[bool, typer.Option("--list", help="Print the stored table; judge nothing anew.")] = False,
 ) -> None:
     """Compare the paper's claims with the stored datasets."""
-    from .claims import table as judging
+    from .claims import stored, table
 
     loaded()
 
-    found = judging.read(output) if every else judging.write(output, data, keep=[readme] if readme else [])
+    found = stored.read(output) if every else table.write(output, data, keep=[readme] if readme else [])
     if readme is not None:
-        judging.renew(readme, found)
+        stored.renew(readme, found)
     for row in found["table"] if every else ():
         kind = f" [{row['interval_kind']}]" if row["interval_kind"] else ""
         typer.echo(f"{row['id']:4} {row['verdict']:22} {row['ours'] or '-'}{kind}")
         typer.echo(f"{'':27} {row['reason']}")
         if row["robustness_reason"]:
             typer.echo(f"{'':27} Variants ({row['robustness']}): {row['robustness_reason']}")
-    typer.echo(f"{output}: {judging.sentence(found)}")
-    typer.echo(judging.robustness(found))
-    typer.echo(judging.firmness(found))
+    typer.echo(f"{output}: {stored.quoted(found)}")
 
 
 @commands.command(
@@ -174,16 +172,11 @@ def report(
 
     loaded()
 
-    documents = {
-        reporting.renew_notes: notes,
-        reporting.renew_figures: figures,
-        reporting.renew_beyond: beyond,
-        reporting.renew_data: data,
-    }
-    typer.echo(str(reporting.write(output, root, keep=[file for file in documents.values() if file])))
-    for renew, file in documents.items():
-        if file is not None:
-            renew(file, root)
+    options = {"notes": notes, "figures": figures, "beyond": beyond, "data": data}
+    documents = {kind: file for kind, file in options.items() if file is not None}
+    typer.echo(str(reporting.write(output, root, keep=[*documents.values()])))
+    for kind, file in documents.items():
+        reporting.renew(kind, file, root)
 
 
 @commands.command("notebooks", "notebooks pile_dip -o elsewhere")

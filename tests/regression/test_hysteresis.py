@@ -114,7 +114,7 @@ def test_figures_have_their_panels_and_captions(datasets):
 
 
 def test_the_document_gets_a_line_for_each_packing_and_how_the_books_close(datasets):
-    _, _, smooth, rough, disordered, _, count, lattices, disorder = beyond.loops(datasets)
+    _, _, smooth, rough, disordered, _, count, lattices, disorder = beyond.loops(datasets).splitlines()
     opening = datasets["events"].isel(case=ROUGH, realization=0).sel(event="first_opening")
     assert float(opening["high"]) == pytest.approx(float(opening["low"]), rel=1e-6)
     assert smooth.startswith("| lattice, µ = 0 |") and smooth.endswith("| above 2 | 2 | nothing | nothing | nothing |")

@@ -4,12 +4,14 @@ import json
 import re
 from collections import defaultdict
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from granular_response.plot import style
 from granular_response.scene import PilePacking, Scene
+from granular_response.scene import text as yaml
 from granular_response.store import files as store
 from granular_response_paper import captions
 from granular_response_paper.captions import Caption, of_scene
@@ -17,6 +19,7 @@ from granular_response_paper.groups import NAMES
 from granular_response_paper.pipeline import GroupError, drawing, group_member
 
 ROOT = Path(__file__).parents[2]
+GROUPS = ROOT / "src" / "granular_response_paper" / "groups"
 STORED = {group: ROOT / "figures" / group / captions.FILE for group in NAMES}
 
 
@@ -74,8 +77,22 @@ def test_letters_of_a_picture_are_those_that_are_drawn():
 
 
 @pytest.mark.parametrize("group", NAMES)
-def test_every_group_has_captions(group):
+def test_every_group_has_captions_with_both_texts(group):
     assert callable(group_member(group, "draw", "captions"))
+    templates = yaml.read((GROUPS / group / captions.TEMPLATES).read_text("utf-8"))
+    assert all(list(one) == ["text", "alternative"] for one in templates.values())
+
+
+def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
+    given = {"numerics": {"friction": 0.2}}
+    parameters = SimpleNamespace(
+        frictions=(0.2, 1.0), force=15.0, friction=0.2, restart=SimpleNamespace(forces=(1.0, 2.0, 15.0))
+    )
+    said = captions.of_group("numerics", given, p=parameters)["numerics"].whole
+    assert "for µ = 0.2 and 1 at 15 m̄g" in said and "under 1, 2 and 15 m̄g put back" in said
+    assert said.endswith("µ = 0.2. µ = 0.2.")
+    with pytest.raises(KeyError, match="p"):
+        captions.of_group("numerics", given)
 
 
 @pytest.mark.parametrize("group", NAMES)

@@ -15,6 +15,7 @@ from granular_response.state import SLIDING, STICKING
 from granular_response.store import files as store
 from granular_response.store import generated
 from granular_response_paper.claims import preparations, table, words
+from granular_response_paper.claims import stored as stored_table
 from granular_response_paper.claims.bootstrap import over_brackets, over_realizations, part_of
 from granular_response_paper.claims.claim import (
     Claim,
@@ -634,7 +635,7 @@ def test_stored_table_and_metrics_agree(tmp_path):
     store.write(tmp_path / "data" / "pile_dip.nc", pile)
     found = table.write(tmp_path / "claims.json", tmp_path / "data")
     stored = json.loads((tmp_path / "claims.json").read_text())
-    assert stored == found == table.read(tmp_path / "claims.json")
+    assert stored == found == stored_table.read(tmp_path / "claims.json")
     assert [row["id"] for row in stored["table"]] == list(CLAIM) == list(stored["verdicts"])
     assert all(stored["verdicts"][row["id"]]["verdict"] == row["verdict"] for row in stored["table"])
     others = dict.fromkeys((v.replace(" ", "_") for v in MEANINGS), 0)
@@ -650,21 +651,21 @@ def test_stored_table_and_metrics_agree(tmp_path):
     table.write(tmp_path / "claims.json", tmp_path / "data")
     assert (tmp_path / "claims.json").read_bytes() == again
     (tmp_path / "claims.json").write_text('{"counts": {}, "table": []}')
-    with pytest.raises(table.ClaimsError, match="is not a table of claims"):
-        table.read(tmp_path / "claims.json")
+    with pytest.raises(stored_table.ClaimsError, match="is not a whole table of claims"):
+        stored_table.read(tmp_path / "claims.json")
     for partial in ({**stored, "counts": {}}, {**stored, "table": [{"id": "P1"}]}, {**stored, "table": 3}):
         (tmp_path / "claims.json").write_text(json.dumps(partial))
-        with pytest.raises(table.ClaimsError, match="is not a whole table of claims"):
-            table.read(tmp_path / "claims.json")
+        with pytest.raises(stored_table.ClaimsError, match="is not a whole table of claims"):
+            stored_table.read(tmp_path / "claims.json")
 
 
 def test_the_counts_in_words(good):
     pile = put("pile_dip", "stress", "dip", 0.0)(good)["pile_dip"]
     data = Data({**{k: v for k, v in good.items() if k != "symmetry_breaking"}, "pile_dip": pile})
     found = table.document(data, table.evaluate(data))
-    text = table.sentence(found)
+    text = stored_table.sentence(found)
     varied = sum(bool(row["robustness_reason"]) and not row["beyond"] for row in found["table"])
-    assert table.robustness(found) == (
+    assert stored_table.robustness(found) == (
         f"Of {varied} that were also measured in variants of it (gravity, walls, stiffness, lattice, smoothing): "
         f"{varied} hold in all, 0 fail in one or more, 0 are open."
     )
@@ -684,8 +685,7 @@ def test_the_readme_quotes_the_stored_table():
         pytest.skip("figures/claims.json is not there yet: dvc repro claims")
     text = (ROOT / "README.md").read_text()
     found = json.loads(stored.read_text())
-    quoted = f"{table.sentence(found)}\n{table.robustness(found)}\n{table.firmness(found)}"
-    assert generated.replace(text, table.BLOCK, quoted) == text, "make quote"
+    assert generated.replace(text, stored_table.BLOCK, stored_table.quoted(found)) == text, "make quote"
 
 
 def test_each_deeper_slab_is_compared_with_the_thinnest():

@@ -21,6 +21,7 @@ from granular_response.store.result import variable
 from granular_response_paper import groups, report
 from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import Data
+from granular_response_paper.claims.stored import ClaimsError
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
 from granular_response_paper.report import against, benchmarks, beyond, contents, explorer, pictures, readings
 from granular_response_paper.report.typeset import typeset
@@ -255,7 +256,7 @@ def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
     count = len(readings.READINGS)
     study = readings_study(np.arange(1, count + 1) * 1e-3, response_sum=np.linspace(1.0, 0.9, count + 1))
     store.write(tmp_path / "data" / "sensitivity.nc", {"mu_0.2": study})
-    report.renew_notes(notes, tmp_path)
+    report.renew("notes", notes, tmp_path)
     text = notes.read_text()
     assert text.startswith("By hand.\n<!-- readings: begin -->\n| reading | choice |")
     assert text.endswith("<!-- readings: end -->\nBy hand too.\n")
@@ -266,7 +267,7 @@ def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
     place = 1 + list(reversed(list(readings.READINGS))).index("stop_1e-9")
     assert f"stopped at 1e-9 per disk: {study['response_sum'].values[place]:.4f} (µ = 0.2)" in text
     assert "literal rule:" not in text  # its kinetic energy is not stored here
-    report.renew_notes(notes, tmp_path)
+    report.renew("notes", notes, tmp_path)
     assert notes.read_text() == text
 
 
@@ -300,8 +301,7 @@ def test_the_document_beyond_the_paper_holds_the_stored_tables(group):
     if not stored.exists():
         pytest.skip(f"not simulated yet: {group}")
     text = (ROOT / "docs" / "beyond.md").read_text()
-    lines = "\n".join(beyond.BLOCKS[group](store.read(stored)))
-    assert generated.replace(text, group, lines) == text, "make quote"
+    assert generated.replace(text, group, beyond.BLOCKS[group](store.read(stored))) == text, "make quote"
 
 
 def test_every_figure_with_parameters_stands_beside_its_caption():
@@ -332,7 +332,7 @@ def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):
     store.write(tmp_path / "data" / "theory.nc", {"one": friction_study()["response"]})
     monkeypatch.setattr(against, "ROWS", (against.Row(3, "(a)", "F_ext", (5.0,), "theory/one:force"),))
     with pytest.raises(report.ReportError, match=r"figure 3, F_ext: 1, 4, 90 where the paper has 5, and nothing says"):
-        report.renew_figures(tmp_path / "figures.md", tmp_path)
+        report.renew("figures", tmp_path / "figures.md", tmp_path)
 
 
 def test_parameters_are_read_from_variables_scenes_and_attributes():
@@ -544,12 +544,12 @@ def test_no_slider_without_states(root, tmp_path):
     assert text.count("Not drawn yet.") == 24 and text.count("Not measured yet") == 2
 
 
-@pytest.mark.parametrize(("content", "problem"), [(None, "no such file"), ("{", "cannot be read"), ("[]", "is not a")])
+@pytest.mark.parametrize(("content", "problem"), [(None, "No such file"), ("{", "Expecting"), ("[]", "is not a")])
 def test_a_missing_or_damaged_table_is_one_line(tmp_path, content, problem):
     if content is not None:
         (tmp_path / "figures").mkdir()
         (tmp_path / "figures" / "claims.json").write_text(content)
-    with pytest.raises(report.ReportError, match=rf"claims\.json: {problem}") as caught:
+    with pytest.raises(ClaimsError, match=rf"claims\.json: {problem}") as caught:
         report.page(tmp_path)
     assert "\n" not in str(caught.value)
 
@@ -562,7 +562,7 @@ def test_a_table_that_lacks_a_part_is_one_line(root, tmp_path):
     partial += [{**whole, "table": 3}, {**whole, "verdict_kinds": [{}]}, {**whole, "counts": {}}]
     for found in partial:
         (tmp_path / "figures" / "claims.json").write_text(json.dumps(found))
-        with pytest.raises(report.ReportError, match=r"claims\.json: is not a whole table of claims") as caught:
+        with pytest.raises((ClaimsError, report.ReportError), match="is not a whole table of claims") as caught:
             report.page(tmp_path)
         assert "\n" not in str(caught.value)
 

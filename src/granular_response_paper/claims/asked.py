@@ -13,9 +13,9 @@ from .claim import Condition, Finding, NotMeasured, Quantity, Reading
 from .words import Bounds
 
 
-def near(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Condition:
-    """The ratio is off 1 by the word's bound at most."""
-    return Condition(what, _known(ratio), 1.0 - words[word], 1.0 + words[word], (word,))
+def near(what: str, found: float | Quantity, words: Bounds, word: str, of: float = 1.0) -> Condition:
+    """The number is off ``of`` by the word's part of it at most."""
+    return Condition(what, _known(found), (1.0 - words[word]) * of, (1.0 + words[word]) * of, (word,))
 
 
 def at_most(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
@@ -39,6 +39,11 @@ def higher(what: str, ratio: float | Quantity, words: Bounds, word: str) -> Cond
 def hardly_lower(what: str, ratio: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
     """The ratio is below 1 by the word's bound at most."""
     return Condition(what, _known(ratio), 1.0 - words[word], words=(word,), unit=unit)
+
+
+def none_of(what: str, number: float) -> Condition:
+    """There is none."""
+    return Condition(what, Quantity.exact(number), most=0.0)
 
 
 def one_of(what: str, values: ArrayLike, paper: float, words: Bounds, word: str) -> list[Condition]:
@@ -65,16 +70,33 @@ def one_reading(summary: str, reading: str, *conditions: Condition, remark: str 
 
 def each(
     what: str,
-    found: Mapping[str, Quantity],
+    found: Mapping[str, float | Quantity],
     condition: Callable[[Quantity], Condition],
     unit: str = "",
     remark: str = "",
     changed: Callable[[str], str] = lambda name: "",
+    form: str = "",
 ) -> Finding:
     """A number for each reading, by its name, and what is asked of each; ``changed`` says what a reading changes."""
-    texts = ", ".join(f"{quantity.text(unit)} ({name})" for name, quantity in found.items())
-    readings = [Reading(name, condition(quantity), change=changed(name)) for name, quantity in found.items()]
-    return Finding(what + texts, readings, remark)
+    readings = [Reading(name, condition(_known(number)), change=changed(name)) for name, number in found.items()]
+    return Finding(what + listed(found, form, unit), readings, remark)
+
+
+def listed(found: Mapping[str, float | Quantity], form: str = "", unit: str = "") -> str:
+    """Numbers with what they are in brackets: by the ``form`` of ``format``, or as quantities with a ``unit``."""
+    texts = {name: format(_known(one).value, form) if form else _known(one).text(unit) for name, one in found.items()}
+    return ", ".join(f"{text} ({name})" for name, text in texts.items())
+
+
+def by_friction(study: xr.Dataset, name: str) -> dict[str, float]:
+    """The values of a variable (friction,), by the friction in words."""
+    pairs = zip(study["friction"].values.tolist(), study[name].values.tolist(), strict=True)
+    return {f"friction {mu:g}": value for mu, value in pairs}
+
+
+def material(case: xr.Dataset) -> str:
+    """A case of a study in words."""
+    return f"polydispersity {float(case['polydispersity']):g}, friction {float(case['friction']):g}"
 
 
 def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:

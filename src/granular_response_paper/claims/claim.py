@@ -254,6 +254,11 @@ class Claims(list[Claim]):
 
         return said
 
+    def needs(self, there: object, what: str) -> None:
+        """Raises NotMeasured, which says ``what`` the group's datasets hold or lack, unless ``there`` is true."""
+        if not there:
+            raise NotMeasured(f"data/{self.group}.nc: {what}")
+
 
 def _figures(place: str) -> tuple[int, ...]:
     """The figures in a place of the paper such as "V.F, Fig. 17e, f"."""

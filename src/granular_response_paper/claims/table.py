@@ -12,19 +12,19 @@ import re
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-from granular_response.errors import GranularError
-from granular_response.inputs import read_json
-from granular_response.store import atomic, generated
+from granular_response.store import atomic
 from granular_response.store import files as store
 
 from ..groups import NAMES
 from . import preparations
 from .changes import CHANGES
-from .claim import Claim, Condition, Data, Quantity, rounded
-from .verdict import MEANINGS, ROBUSTNESS_MEANINGS, Entry, Verdict, judge
+from .claim import Claim, Data, Quantity, rounded
+from .stored import OUTPUT, ClaimsError
+from .verdict import MEANINGS, ROBUSTNESS_MEANINGS, Entry, Verdict, judge, key
 from .words import TABLE, bounds
 
 #: Kinds of claims by the first letter, in the order of the table.
@@ -48,35 +48,11 @@ CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in NAMES for claim in 
 #: Figure groups whose datasets the claims read.
 GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING}))
 
-#: Where the table of claims is kept.
-OUTPUT = Path("figures") / "claims.json"
-
-#: Name of the generated lines in the README.
-BLOCK = "claims"
-
 #: How the bounds of words are changed to see how the counts move.
 FACTORS = (0.5, 2.0)
 
 #: Intervals as they are named for readers.
 KINDS = {"none": "", "bracket": "bracket", "confidence": "95 % confidence", "range": "range"}
-
-
-#: What a stored table holds.
-KEYS = {
-    "counts",
-    "robustness",
-    "verdicts",
-    "verdict_kinds",
-    "robustness_kinds",
-    "changes",
-    "words",
-    "sensitivity",
-    "table",
-}
-
-
-class ClaimsError(GranularError):
-    """Nothing to judge, or no stored table. The message is one line."""
 
 
 def collect(folder: str | os.PathLike[str] = "data") -> Data:
@@ -98,11 +74,7 @@ def evaluate(data: Data, claims: Sequence[Claim] = CLAIMS) -> list[Entry]:
 
 def counts(verdicts: Sequence[Verdict]) -> dict[str, int]:
     """How many claims have each verdict."""
-    return {_key(verdict): sum(one == verdict for one in verdicts) for verdict in MEANINGS}
-
-
-def _key(verdict: str) -> str:
-    return verdict.replace(" ", "_")
+    return {key(verdict): sum(one == verdict for one in verdicts) for verdict in MEANINGS}
 
 
 def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
@@ -110,34 +82,23 @@ def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
 
     Only claims with a condition that names the word are judged again.
     """
+    own = {entry.claim.id: entry for entry in entries if not entry.claim.beyond}
+    verdicts = {name: entry.verdict for name, entry in own.items()}
     rows = []
-    for word in TABLE:
-        for factor in FACTORS:
-            changed = bounds(word.name, factor)
-            verdicts = {entry.claim.id: entry.verdict for entry in entries if not entry.claim.beyond}
-            moved = {}
-            for entry in entries:
-                named = any(word.name in c.words for c in _conditions(entry))
-                if entry.claim.beyond or not named:
-                    continue
-                now = judge(entry.claim, data, changed).verdict
-                if now != entry.verdict:
-                    moved[entry.claim.id] = now
-            verdicts.update(moved)
-            rows.append(
-                {
-                    "word": word.name,
-                    "bound": changed[word.name],
-                    "factor": factor,
-                    "counts": counts(list(verdicts.values())),
-                    "changed": moved,
-                }
-            )
+    for word, factor in product(TABLE, FACTORS):
+        changed = bounds(word.name, factor)
+        now = {name: judge(one.claim, data, changed).verdict for name, one in own.items() if word.name in one.words}
+        moved = {name: verdict for name, verdict in now.items() if verdict != verdicts[name]}
+        rows.append(
+            {
+                "word": word.name,
+                "bound": changed[word.name],
+                "factor": factor,
+                "counts": counts(list((verdicts | moved).values())),
+                "changed": moved,
+            }
+        )
     return rows
-
-
-def _conditions(entry: Entry) -> list[Condition]:
-    return [c for reading in entry.finding.readings for c in reading.conditions] if entry.finding else []
 
 
 def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
@@ -161,7 +122,7 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
             "total": len(own),
             "beyond": len(entries) - len(own),
         },
-        "robustness": {_key(kind): degrees.count(kind) for kind in ROBUSTNESS_MEANINGS},
+        "robustness": {key(kind): degrees.count(kind) for kind in ROBUSTNESS_MEANINGS},
         "verdicts": verdicts,
         "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
         "robustness_kinds": [{"robustness": kind, "meaning": meaning} for kind, meaning in ROBUSTNESS_MEANINGS.items()],
@@ -244,74 +205,3 @@ def write(
     target.parent.mkdir(parents=True, exist_ok=True)
     atomic.write_bytes(target, (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
     return found
-
-
-def read(path: str | os.PathLike[str] = OUTPUT) -> dict[str, Any]:
-    """The stored table. Raises ClaimsError if it is missing or damaged."""
-    try:
-        found = read_json(Path(path))
-    except (OSError, ValueError) as error:
-        raise ClaimsError(
-            f"{path}: {getattr(error, 'strerror', None) or error}; make it with granular-response-paper claims"
-        ) from None
-    if not isinstance(found, dict) or not set(found) >= KEYS:
-        raise ClaimsError(f"{path}: is not a table of claims")
-    try:
-        sentence(found), robustness(found), firmness(found)
-        whole = all(set(row) >= _LISTED for row in found["table"])
-    except (AttributeError, KeyError, TypeError, ValueError):
-        whole = False
-    if not whole:
-        raise ClaimsError(f"{path}: is not a whole table of claims; make it with granular-response-paper claims")
-    return found
-
-
-#: What is listed of each claim.
-_LISTED = {"id", "verdict", "robustness", "robustness_reason", "ours", "reason", "interval_kind"}
-
-
-def sentence(found: dict[str, Any]) -> str:
-    """The counts in words; derivations are counted apart."""
-    number = found["counts"]
-    named = [(number[_key(v)], v) for v in MEANINGS if v not in ("derivation", "not measured")]
-    judged = sum(n for n, _ in named)
-    parts = [
-        f"{n} {'depend' if n != 1 else 'depends'} on the interpretation" if v.startswith("depends") else f"{n} {v}"
-        for n, v in named
-        if n
-    ]
-    text = f"Of {judged} claims of the paper that were measured in its own set-up: {', '.join(parts)}."
-    algebra, missing, beyond = number["derivation"], number["not_measured"], number.get("beyond", 0)
-    if algebra:
-        text += f" {algebra} more {'are' if algebra != 1 else 'is'} algebra that no simulation can fail."
-    if beyond:
-        text += f" {beyond} more {'goes' if beyond == 1 else 'go'} beyond what the paper measured."
-    if missing:
-        text += f" {missing} {'are' if missing != 1 else 'is'} not measured."
-    return text
-
-
-def robustness(found: dict[str, Any]) -> str:
-    """The counts of the second column in words."""
-    number = found["robustness"]
-    varied = sum(n for kind, n in number.items() if kind != "not_varied")
-    changes = ", ".join(row["change"] for row in found["changes"])
-    return (
-        f"Of {varied} that were also measured in variants of it ({changes}): "
-        f"{number['robust']} hold in all, {number['breaks']} fail in one or more, {number['open']} are open."
-    )
-
-
-def firmness(found: dict[str, Any]) -> str:
-    """How far the counts move with the words, in a sentence."""
-    reproduced = [row["counts"]["reproduced"] for row in found["sensitivity"]]
-    moved = {name for row in found["sensitivity"] for name in row["changed"]}
-    return (
-        f"With the bound of any one word halved or doubled, {min(reproduced)} to {max(reproduced)} are reproduced "
-        f"({found['counts']['reproduced']} as it stands); {len(moved)} claims change their verdict in some of these."
-    )
-
-
-def renew(readme: str | os.PathLike[str], found: dict[str, Any]) -> None:
-    """Renew the counts that a file quotes. Raises GeneratedError if it cannot be read or has no place for them."""
-    generated.renew(readme, BLOCK, f"{sentence(found)}\n{robustness(found)}\n{firmness(found)}")

@@ -34,6 +34,12 @@ ROBUSTNESS_MEANINGS: dict[Robustness, str] = {
     "not varied": "no other set-up was measured",
 }
 
+
+def key(kind: str) -> str:
+    """Of a verdict or a robustness in the stored table."""
+    return kind.replace(" ", "_")
+
+
 #: Conditions of a reading that a reason quotes; the table has all.
 SHOWN = 2
 
@@ -48,6 +54,12 @@ class Entry:
     reason: str
     robustness: Robustness = "not varied"
     robustness_reason: str = ""
+
+    @property
+    def words(self) -> set[str]:
+        """Those that set a bound of one of its conditions."""
+        readings = self.finding.readings if self.finding else ()
+        return {word for reading in readings for condition in reading.conditions for word in condition.words}
 
 
 def verdict_of(readings: Sequence[Reading], *, derivation: bool = False) -> Verdict:

@@ -14,8 +14,8 @@ from typing import Any
 import xarray as xr
 
 from granular_response.store import atomic
-from granular_response_paper.claims.claim import Claim, Data, NotMeasured, rounded
-from granular_response_paper.claims.words import bounds
+from granular_response_paper.claims.claim import Claim, Data, rounded
+from granular_response_paper.claims.verdict import judge
 from granular_response_paper.pipeline import TOO_LITTLE, GroupError, group_member, stored
 
 #: Datasets of a group to numbers by name.
@@ -78,9 +78,12 @@ def _member(group: str, module: str, name: str) -> Any:
 
 def _claim(claim: Claim, group: str, datasets: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     try:
-        reading = claim.measure(Data({group: datasets}), bounds()).readings[0]
-        found = reading.conditions[0].found
-        values = {"value": found.value, "low": found.low, "high": found.high}
-        return {"outcome": reading.outcome, **{name: rounded(value) for name, value in values.items()}}
-    except (NotMeasured, *TOO_LITTLE):  # the table of claims, which has all datasets, is not as lenient
+        finding = judge(claim, Data({group: datasets})).finding
+    except TOO_LITTLE:  # the table of claims, which has all datasets, is not as lenient
+        finding = None
+    if finding is None:
         return {"outcome": "not measured"}
+    reading = finding.readings[0]
+    found = reading.conditions[0].found
+    values = {"value": found.value, "low": found.low, "high": found.high}
+    return {"outcome": reading.outcome, **{name: rounded(value) for name, value in values.items()}}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -18,10 +18,11 @@ import xarray as xr
 
 from granular_response import __version__
 from granular_response.errors import GranularError
-from granular_response.inputs import read_json
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
+from ..claims import stored
+from ..claims.verdict import key
 from . import against, benchmarks, beyond, contents, explorer, pictures, readings
 from .typeset import typeset
 
@@ -31,8 +32,6 @@ OUTPUT = Path("figures") / "report.html"
 #: Figure groups that the explorer shows, and the one whose table the readings come from.
 EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
 SENSITIVITY = "sensitivity"
-
-__all__ = ["OUTPUT", "ReportError", "page", "renew_beyond", "renew_figures", "renew_notes", "write"]
 
 
 class ReportError(GranularError):
@@ -48,8 +47,10 @@ def write(
 
     Raises
     ------
+    granular_response_paper.claims.stored.ClaimsError
+        If ``figures/claims.json`` is missing or not JSON.
     ReportError
-        If ``figures/claims.json`` is missing or not JSON, or a ``captions.json`` is damaged.
+        If a ``captions.json`` is damaged.
     granular_response.store.files.StoreError
         If a dataset cannot be read.
     OSError
@@ -69,64 +70,38 @@ def write(
     return target
 
 
-def renew_notes(notes: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
-    """Renew the table of readings in ``notes`` from ``data/`` below ``root``.
-
-    Raises
-    ------
-    granular_response.store.generated.GeneratedError
-        If the file cannot be read or has no place for the table.
-    granular_response.store.files.StoreError
-        If the dataset is missing or cannot be read.
-    """
-    datasets = store.read(Path(root) / "data" / f"{SENSITIVITY}.nc")
-    generated.renew(notes, readings.BLOCK, readings.markdown(datasets))
+def _of(group: str, lines: Callable[[Mapping[str, xr.Dataset]], str]) -> Callable[[Path], str]:
+    """What makes lines of the datasets in a folder, of one group's."""
+    return lambda data: lines(store.read(data / f"{group}.nc"))
 
 
-def renew_figures(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
-    """Renew the table of the captions' parameters in ``document`` from ``data/`` below ``root``.
+#: By kind of document, the blocks of generated lines and what makes them from the folder of datasets.
+BLOCKS: Mapping[str, Mapping[str, Callable[[Path], str]]] = {
+    "notes": {readings.BLOCK: _of(SENSITIVITY, readings.markdown)},
+    "figures": {against.BLOCK: against.markdown},
+    "beyond": {group: _of(group, lines) for group, lines in beyond.BLOCKS.items()},
+    "data": {contents.BLOCK: contents.markdown},
+}
+
+
+def renew(kind: str, document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
+    """Renew the generated lines of a document from ``data/`` below ``root``; its ``kind`` is a key of :data:`BLOCKS`.
 
     Raises
     ------
     ReportError
         If a parameter is not the paper's and nothing says why.
     granular_response.store.generated.GeneratedError
-        If the file cannot be read or has no place for the table.
+        If the file cannot be read or has no place for the lines.
     granular_response.store.files.StoreError
         If a dataset is missing or cannot be read.
     """
-    try:
-        lines = against.markdown(Path(root) / "data")
-    except ValueError as error:
-        raise ReportError(str(error)) from None
-    generated.renew(document, against.BLOCK, lines)
-
-
-def renew_beyond(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
-    """Renew the tables of groups beyond the paper in ``document`` from ``data/`` below ``root``.
-
-    Raises
-    ------
-    granular_response.store.generated.GeneratedError
-        If the file cannot be read or has no place for a table.
-    granular_response.store.files.StoreError
-        If a dataset is missing or cannot be read.
-    """
-    for group, lines in beyond.BLOCKS.items():
-        generated.renew(document, group, "\n".join(lines(store.read(Path(root) / "data" / f"{group}.nc"))))
-
-
-def renew_data(document: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> None:
-    """Renew the table of datasets in ``document`` from ``data/`` below ``root``.
-
-    Raises
-    ------
-    granular_response.store.generated.GeneratedError
-        If the file cannot be read or has no place for the table.
-    granular_response.store.files.StoreError
-        If a dataset cannot be read.
-    """
-    generated.renew(document, contents.BLOCK, contents.markdown(Path(root) / "data"))
+    for block, lines in BLOCKS[kind].items():
+        try:
+            made = lines(Path(root) / "data")
+        except ValueError as error:
+            raise ReportError(str(error)) from None
+        generated.renew(document, block, made)
 
 
 def page(root: Path, folder: Path | None = None) -> str:
@@ -134,7 +109,7 @@ def page(root: Path, folder: Path | None = None) -> str:
 
     Its links to files of the project, to those that are there, begin at ``folder``: by default ``figures/``.
     """
-    claims = _claims(root / "figures" / "claims.json")
+    claims = stored.read(root / stored.OUTPUT)
     try:
         shown = pictures.collect(root / "figures")
     except ValueError as error:
@@ -157,7 +132,7 @@ def page(root: Path, folder: Path | None = None) -> str:
         "version": __version__,
         "size": _SIZE,
         "claims": claims,
-        "verdicts": [(k["verdict"], k["verdict"].replace(" ", "_")) for k in claims["verdict_kinds"]],
+        "verdicts": [(k["verdict"], key(k["verdict"])) for k in claims["verdict_kinds"]],
         "numbered": shown.numbered,
         "small": {figure.number: figure.pictures[0].small for figure in shown.numbered if figure.pictures},
         "of_figure": lambda number: [row for row in claims["table"] if number in row.get("figures", ())],
@@ -178,7 +153,7 @@ def page(root: Path, folder: Path | None = None) -> str:
     try:
         text = template.render(values) + "\n"
     except jinja2.UndefinedError as error:
-        raise ReportError(f"{root / 'figures' / 'claims.json'}: is not a whole table of claims: {error}") from None
+        raise ReportError(f"{root / stored.OUTPUT}: is not a whole table of claims: {error}") from None
     return text.replace(_SIZE, f"{len(text.encode()) / 1e6:.1f} MB")
 
 
@@ -204,26 +179,6 @@ _SIZE = "(size of the page)"
 
 #: What the digits and the pictures come from.
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "matplotlib", "dvc")
-
-#: What the page needs of the table of claims.
-_CLAIMS = {"counts", "verdict_kinds", "robustness", "robustness_kinds", "changes", "words", "sensitivity", "table"}
-
-
-def _claims(path: Path) -> dict[str, Any]:
-    try:
-        found = read_json(path)
-        known = isinstance(found, dict) and set(found) >= _CLAIMS
-        known = known and all("group" in row for row in found["table"])
-        known = known and all("verdict" in kind for kind in found["verdict_kinds"])
-    except FileNotFoundError:
-        raise ReportError(f"{path}: no such file, make it with granular-response-paper claims") from None
-    except TypeError:
-        known = False
-    except (OSError, ValueError) as error:
-        raise ReportError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
-    if not known:
-        raise ReportError(f"{path}: is not a whole table of claims")
-    return found
 
 
 def _versions(lock: Path) -> list[tuple[str, str]]:

@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from granular_response.scene import Scene
 from granular_response.store import files as store
 
+from .markdown import table
+
 #: Name of the generated lines in the document.
 BLOCK = "figures"
 
@@ -187,15 +189,14 @@ def markdown(folder: Path) -> str:
     ValueError
         If a parameter is another one than the paper's, and no remark says why.
     """
-    lines = ["| figure | panels | parameter | paper | here | the same | dataset |", "|---" * 7 + "|"]
     datasets = {group: store.read(folder / f"{group}.nc") for group in dict.fromkeys(row.group for row in ROWS)}
+    cells = []
     for row in ROWS:
         stored = row.stored(datasets[row.group])
         paper, here = _values(row.paper) or "–", _values(np.unique(stored).tolist())
-        source = f"`{row.source}`"
-        cells = (str(row.figure), row.panels, row.parameter, paper, here, _judged(row, stored), source)
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+        judged = _judged(row, stored)
+        cells.append((str(row.figure), row.panels, row.parameter, paper, here, judged, f"`{row.source}`"))
+    return table(("figure", "panels", "parameter", "paper", "here", "the same", "dataset"), cells)
 
 
 def _judged(row: Row, stored: NDArray[np.float64]) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import xarray as xr
 
 from granular_response.state import FloatArray
+
+from .markdown import table
 
 Datasets = Mapping[str, xr.Dataset]
 
@@ -19,16 +21,16 @@ BALANCED = 1e-4
 CONFINED = {"constant": "constant", "walls": "the paper's walls", "as weight": "as weight"}
 
 
-def crossovers(datasets: Datasets) -> list[str]:
+def crossovers(datasets: Datasets) -> str:
     """A line for each series of layers of the group ``crossover_scaling``: powers, and what they lead to."""
     slabs, powers = datasets["slabs"], datasets["powers"]
     far = f"two peaks at {powers.attrs['layers']:g} layers, extrapolated"
     heads = ["friction, confinement", "layers", "two peaks: power of N", "region at the floor", "first opening", far]
-    lines = [_line(heads), "|---" * len(heads) + "|"]
+    rows = []
     for series in np.flatnonzero(powers["varied"].values == "layers"):
         one = powers.isel(series=series)
-        rows = slabs["series"].values == str(one["series"].values)
-        layers, stored = slabs["layers"].values[rows], slabs["surveyed"].values[rows] > 0
+        here = slabs["series"].values == str(one["series"].values)
+        layers, stored = slabs["layers"].values[here], slabs["surveyed"].values[here] > 0
         deep = f", from {layers[stored].min()} on the survey's" if stored.any() else ""
         cells = [
             f"{float(one['friction']):g}, {CONFINED[str(one['confined'].values)]}",
@@ -40,16 +42,16 @@ def crossovers(datasets: Datasets) -> list[str]:
             _with_ends(one["extrapolated"].sel(event="crossover").values, lambda value: f"{float(f'{value:.2g}'):,.0f}")
             + " mg",
         ]
-        lines.append(_line(cells))
-    return lines
+        rows.append(cells)
+    return table(heads, rows)
 
 
-def loops(datasets: Datasets) -> list[str]:
+def loops(datasets: Datasets) -> str:
     """A line for each packing of the group ``hysteresis``, of disorder median, least and largest; and the balance."""
     measured, events = datasets["loops"], datasets["events"]
     heads = ["packing", "first opening", "linear up to", "reversible up to", "F", "left on the floor"]
     heads += ["lost, first loop", "second loop"]
-    lines = [_line(heads), "|---" * len(heads) + "|"]
+    rows = []
     off: dict[str, list[FloatArray]] = {"lattices": [], "disorder": []}
     count = 0
     for case in range(measured.sizes["case"]):
@@ -68,18 +70,16 @@ def loops(datasets: Datasets) -> list[str]:
             balance = ((one[f"lost{again}"] - one[f"kept{again}"] - lost) / one["work"]).values
             off["disorder" if delta else "lattices"].append(np.abs(balance[np.isfinite(balance)]))
         at = one.isel(turn=last)
-        lines.append(
-            _line(
-                [
-                    f"δ = {delta:g}, µ = {friction:g}" if delta else f"lattice, µ = {friction:g}",
-                    *map(_range, brackets),
-                    f"{float(at['force']):g}",
-                    _part(at["floor_left"].values),
-                    *(_part((lost.isel(turn=last) / at["work"]).values) for lost in gone),
-                ]
-            )
+        rows.append(
+            [
+                f"δ = {delta:g}, µ = {friction:g}" if delta else f"lattice, µ = {friction:g}",
+                *map(_range, brackets),
+                f"{float(at['force']):g}",
+                _part(at["floor_left"].values),
+                *(_part((lost.isel(turn=last) / at["work"]).values) for lost in gone),
+            ]
         )
-    lines += ["", f"Disorder: median of {count} realizations (least to largest)."]
+    lines = [table(heads, rows), "", f"Disorder: median of {count} realizations (least to largest)."]
     for name, found in off.items():
         every = np.concatenate(found) if found else np.zeros(0)
         if every.size:
@@ -88,15 +88,11 @@ def loops(datasets: Datasets) -> list[str]:
                 f"Work, stored energy and what sliding takes balance within {every.max():.0e} of the work of the first "
                 f"loading in all loops of {name}, in {100.0 * close:.0f} % of them within {BALANCED:.0e}."
             )
-    return lines
+    return "\n".join(lines)
 
 
 #: Names of the generated lines, which are those of the groups.
-BLOCKS: Mapping[str, Callable[[Datasets], list[str]]] = {"crossover_scaling": crossovers, "hysteresis": loops}
-
-
-def _line(cells: Sequence[str]) -> str:
-    return "|" + "".join(f" {cell} |" for cell in cells)
+BLOCKS: Mapping[str, Callable[[Datasets], str]] = {"crossover_scaling": crossovers, "hysteresis": loops}
 
 
 def _with_ends(values: FloatArray, said: Callable[[float], str]) -> str:

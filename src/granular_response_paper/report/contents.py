@@ -8,6 +8,8 @@ import xarray as xr
 
 from granular_response.store import files as store
 
+from .markdown import table
+
 #: The lines between these marks of the document are made.
 BLOCK = "datasets"
 
@@ -20,16 +22,15 @@ def markdown(folder: Path) -> str:
     granular_response.store.files.StoreError
         If a dataset cannot be read.
     """
-    rows = ["| dataset | dimensions | variables (units) |", "|---|---|---|"]
-    for path in sorted(folder.glob("*.nc")):
-        rows += [_row(f"{path.stem}/{name}", data) for name, data in store.read(path).items()]
-    return "\n".join(rows)
+    files = sorted(folder.glob("*.nc"))
+    rows = [_row(f"{path.stem}/{name}", data) for path in files for name, data in store.read(path).items()]
+    return table(("dataset", "dimensions", "variables (units)"), rows)
 
 
-def _row(name: str, data: xr.Dataset) -> str:
+def _row(name: str, data: xr.Dataset) -> tuple[str, str, str]:
     sizes = ", ".join(f"{dimension} {size}" for dimension, size in data.sizes.items())
     variables = ", ".join(_with_unit(str(variable), data[variable]) for variable in data.data_vars)
-    return f"| `{name}` | {sizes} | {variables} |"
+    return f"`{name}`", sizes, variables
 
 
 def _with_unit(name: str, variable: xr.DataArray) -> str:

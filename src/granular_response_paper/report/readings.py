@@ -8,6 +8,8 @@ from typing import Any
 
 import xarray as xr
 
+from . import markdown as tables
+
 #: Name of the generated lines in the notes.
 BLOCK = "readings"
 
@@ -96,15 +98,13 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     """The table in Markdown, and below it what else the notes quote of the study. Equal data give equal text."""
     shown = table(datasets)
     heads = ["reading", "choice", "other option", *(f"change, {slab}" for slab in shown.slabs)]
-    lines = [_line(heads), "|---" * len(heads) + "|"]
-    before = Reading("", "", "")
+    rows, before = [], ""
     for row in shown.rows:
         reading = row.reading
-        same = reading.question == before.question
-        lines.append(
-            _line(["" if same else reading.question, "" if same else reading.choice, reading.option, *row.differences])
-        )
-        before = reading
+        said = ("", "") if reading.question == before else (reading.question, reading.choice)
+        rows.append([*said, reading.option, *row.differences])
+        before = reading.question
+    lines = [tables.table(heads, rows)]
     quoted = [
         f"* {what}: {', '.join(values)} ({', '.join(shown.slabs)})"
         for variant, name, form, what in _QUOTED
@@ -124,7 +124,3 @@ _QUOTED: tuple[tuple[str, str, Callable[[float], str], str], ...] = (
 def _values(datasets: Mapping[str, xr.Dataset], variant: str, name: str, form: Callable[[float], str]) -> list[str]:
     columns = [dict(_column(data, name)) for data in datasets.values() if set(data.variables) >= {name, *_NEEDED}]
     return [form(column[variant]) for column in columns if variant in column]
-
-
-def _line(cells: list[str]) -> str:
-    return "|" + "".join(f" {cell} |" if cell else " |" for cell in cells)

@@ -19,14 +19,11 @@ CLAIMS = Claims(GROUP)
 def linear_fit(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "responses", "difference", "friction", "force")
     what = "largest difference of the responses, per largest response"
-    readings = [
-        Reading(f"friction {mu:g}", asked.at_most(what, one.max(), words, "quite well", "%"))
-        for mu, one in zip(study["friction"].values.tolist(), study["difference"].values, strict=True)
-    ]
-    values = [reading.conditions[0].found.value for reading in readings]
+    largest = asked.by_friction(study.max("force"), "difference")
+    values = largest.values()
     return Finding(
         f"responses by the two laws are at most {min(values):.1%} to {max(values):.1%} of the largest response apart",
-        readings,
+        [Reading(name, asked.at_most(what, one, words, "quite well", "%")) for name, one in largest.items()],
         "Matched where both give the mean normal force at rest; the paper's statement is about its measured contacts, "
         "here it is asked of the response",
     )

@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, lettered, of_scene
+from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.panels import titles
 
 from .parameters import Parameters
 
@@ -39,9 +40,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
             # one entry for the line and the symbols of a force
             name = f"${force:g}\\,{style.WEIGHT}$: {100 * difference:.1f} % apart"
             axes.plot([], [], **look, marker=style.MARKERS[k], markersize=3.0, markerfacecolor="none", label=name)
-        style.letter(axes, "abc"[index], place="above", text=style.equals(style.FRICTION, frictions[index]))
         axes.set_xlabel(style.POSITION)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), handlelength=3.0)
+    titles(panels, [style.equals(style.FRICTION, friction) for friction in frictions])
     panels[0].set_ylabel(style.RESPONSE)
     return {"contact_law": figure}
 
@@ -49,15 +50,5 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     panels = lettered(f"µ = {mu:g}" for mu in parameters.friction)
-    return {
-        "contact_law": Caption(
-            "Not in the paper: Sec. III.B says that measurements on its disks gave a force that grows as the overlap "
-            "to the power 3/2, and that a linear law describes it well. Floor response with the linear law (lines) "
-            "and with the 3/2 law (symbols), whose force is the same at the mean overlap of the slab at rest, and "
-            f"their largest difference per largest response: {panels}. Without friction the disks of a row of the 3/2 "
-            "slab bear almost nothing along x: it has several equilibria, and little decides which one is met.",
-            "Three panels on one scale. Without friction symbols and lines differ widely, with friction 1 they nearly "
-            "agree.",
-            of_scene(parameters.scene, force=parameters.forces, friction=parameters.friction),
-        )
-    }
+    said = of_scene(parameters.scene, force=parameters.forces, friction=parameters.friction)
+    return of_group("contact_law", {"contact_law": said}, panels=panels)

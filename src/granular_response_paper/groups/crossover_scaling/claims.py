@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import xarray as xr
 
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "crossover_scaling"
+CLAIMS = Claims(GROUP)
 #: Of the layers: the weight of a piece of the slab that is as wide as deep.
 OF_WEIGHT = 2.0
 
@@ -22,8 +24,7 @@ def _powers(data: Data, event: str) -> list[tuple[str, xr.Dataset]]:
             kind = str(one["confined"].values)
             sides = {"walls": "between walls", "constant": "constant confinement"}.get(kind, "confined as weight")
             found.append((f"friction {float(one['friction']):g}, {sides}", one))
-    if not found:
-        raise NotMeasured(f"data/{GROUP}.nc: powers holds no series of layers")
+    CLAIMS.needs(found, "powers holds no series of layers")
     return found
 
 
@@ -32,6 +33,12 @@ def _quantity(ends: xr.DataArray) -> Quantity:
     return Quantity.range((least, largest), value)
 
 
+@CLAIMS.add(
+    "B8",
+    "beyond the paper, IV.B, VIII",
+    "power of the number of layers with which the crossover force grows, without and with friction",
+    "under identical loads very deep systems have one peak and shallow ones two; with friction too",
+)
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     series = _powers(data, "crossover")
     layers = float(data.get(GROUP, "powers", "extrapolated").attrs["layers"])
@@ -47,23 +54,22 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "B9",
+    "beyond the paper, IV.C",
+    "powers of the layers: of the force at which the open region reaches the floor, and of the crossover",
+    "contacts open in a competition of the force with the compression due to gravity",
+)
 def of_weight(data: Data, words: Bounds) -> Finding:
-    near = words["nearly"]
     readings, texts = [], []
     for event, what in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks")):
         series = [(name, _quantity(one["exponent"])) for name, one in _powers(data, event) if _by_itself(one)]
         texts.append(f"{what}: " + "; ".join(f"{power.text()} ({name})" for name, power in series))
         readings += [
-            Reading(
-                f"{what}, {name}",
-                Condition(
-                    "power of the layers", power, (1.0 - near) * OF_WEIGHT, (1.0 + near) * OF_WEIGHT, ("nearly",)
-                ),
-            )
+            Reading(f"{what}, {name}", asked.near("power of the layers", power, words, "nearly", OF_WEIGHT))
             for name, power in series
         ]
-    if not readings:
-        raise NotMeasured(f"data/{GROUP}.nc: powers holds no series in which gravity could decide")
+    CLAIMS.needs(readings, "powers holds no series in which gravity could decide")
     return Finding(
         "powers of the layers: " + "; ".join(texts),
         readings,
@@ -75,25 +81,3 @@ def of_weight(data: Data, words: Bounds) -> Finding:
 def _by_itself(one: xr.Dataset) -> bool:
     """Whether the power is not that of the weight by choice: no friction and a confinement that grows with it."""
     return bool(float(one["friction"]) > 0.0 or str(one["confined"].values) != "as weight")
-
-
-CLAIMS = (
-    Claim(
-        "B8",
-        "beyond the paper, IV.B, VIII",
-        "power of the number of layers with which the crossover force grows, without and with friction",
-        "under identical loads very deep systems have one peak and shallow ones two; with friction too",
-        deep_and_shallow,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "B9",
-        "beyond the paper, IV.C",
-        "powers of the layers: of the force at which the open region reaches the floor, and of the crossover",
-        "contacts open in a competition of the force with the compression due to gravity",
-        of_weight,
-        (),
-        GROUP,
-    ),
-)

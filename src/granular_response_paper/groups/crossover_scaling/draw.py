@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_scene, values
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import family, titles
 
 from .parameters import Parameters
 
@@ -56,41 +56,17 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     slabs = datasets["slabs"]
-    layers = values(sorted(set(slabs["layers"].values.tolist())))
-    frictions = sorted(set(slabs["friction"].values.tolist()))
-    said = of_scene(parameters.base, friction=frictions, normal_stiffness=None, packing=None)
-    stiffness = values(parameters.series[0].stiffness_per_layer)
-    deep = {layers for one in parameters.series for layers in one.surveyed}
-    survey = " Black edges: slabs of the survey, simulated apart from the pipeline." if deep else ""
-    return {
-        "crossover_scaling": Caption(
-            "Not in the paper: what the number of layers N does. (a) Force from which the floor response has two "
-            f"peaks, a dip at x = 0 of {parameters.visible:g} of its largest value; (b) force at which the region of "
-            "open contacts reaches the floor; (c) force at which the first contact opens in the central third. Bars "
-            "are brackets; lines and numbers powers of N, with the range over the fits with and without the smallest "
-            "slab and over the brackets. P is the force of horizontal contacts at rest: constant, in proportion to N "
-            "as the weight, or what the paper's walls make it. Periodic sides but where walls are named; "
-            f"{layers} layers; k_N = {stiffness} N, so that gravity makes the same overlaps in all.{survey}",
-            "Double logarithmic panels. Two peaks come along straight lines, about twice as steep with friction as "
-            "without; the region's lines are as steep where P grows with N; the first opening rises least.",
-            said,
-        ),
-        "crossover_scaling_regions": Caption(
-            "Depth of the region of open contacts below the load over that of the slab, against the force over what it "
-            "is scaled by: (a) without friction layers times the force P of horizontal contacts at rest, (b) and (c) "
-            "with friction layers squared.",
-            "Curves of slabs of different depths that fall on one another where the force is scaled.",
-            said,
-        ),
-        "crossover_scaling_apart": Caption(
-            "What else sets the force from which there are two peaks, each varied alone: (a) width, (b) stiffness at "
-            "the same P, (c) force P of horizontal contacts at rest. Numbers are powers with ranges, as for layers; "
-            "with friction the force levels off where P is small.",
-            "Nearly level lines for width and stiffness; against the confinement a straight rise without friction "
-            "and hardly any with friction.",
-            said,
-        ),
-    }
+    said = of_scene(
+        parameters.base, friction=sorted(set(slabs["friction"].values.tolist())), normal_stiffness=None, packing=None
+    )
+    surveyed = any(one.surveyed for one in parameters.series)
+    return of_group(
+        "crossover_scaling",
+        dict.fromkeys(("crossover_scaling", "crossover_scaling_regions", "crossover_scaling_apart"), said),
+        p=parameters,
+        layers=sorted(set(slabs["layers"].values.tolist())),
+        survey=" Black edges: slabs of the survey, simulated apart from the pipeline." if surveyed else "",
+    )
 
 
 def of_layers(powers: xr.Dataset) -> list[int]:
@@ -123,8 +99,8 @@ def _brackets(one: xr.Dataset, event: str) -> tuple[np.ndarray, np.ndarray]:
 def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """(a) crossover, (b) region at the floor, (c) first opening against layers, with power laws; names beside them."""
     figure, panels = style.figure(2, 2, width="double", height=5.6)
-    shown = dict(zip(("crossover", "reaches_floor", "first_opening"), panels.ravel(), strict=False))
-    for letter, (event, axes) in zip("abc", shown.items(), strict=True):
+    titles(panels.flat, NAMES.values())
+    for event, axes in zip(NAMES, panels.flat, strict=False):
         for look, series in enumerate(of_layers(powers)):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             layers = one["layers"].values.astype(float)
@@ -144,7 +120,6 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if low > 0.0:
             axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
         axes.legend(loc="upper left", title="power of $N$", fontsize=7, ncols=2, columnspacing=1.0)
-        style.letter(axes, letter, place="above", text=NAMES[event])
     key = panels[1, 1]
     key.set_axis_off()
     for look, series in enumerate(of_layers(powers)):
@@ -169,30 +144,28 @@ def apart(layers: Iterable[int]) -> list[int]:
 def _plain(axes: Axes, ticks: list[int]) -> None:
     """Layers as they are, on a logarithmic axis."""
     axes.set_xticks(ticks, labels=[str(t) for t in ticks])
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.xaxis.set_minor_formatter("")
     axes.minorticks_off()
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_major_formatter("{x:g}")
 
 
 def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Depth of the region of open contacts over that of the slab, against the scaled force, for each friction."""
     chosen = regions_of(powers)
     figure, panels = style.figure(1, max(1, len(chosen)), width="double", height=2.7, sharey=True)
-    for letter, axes, series in zip("abcdef", panels[0], chosen, strict=False):
+    titles(panels[0], [name(powers, series) for series in chosen])
+    for axes, series in zip(panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
-        colours = style.ordered_colours(len(rows))
         weight = float(powers["friction"][series]) > 0.0
-        for at, (k, colour) in enumerate(zip(rows, colours, strict=True)):
+        for k, look in family(rows):
             layers, confinement = float(slabs["layers"][k]), float(slabs["confinement"][k])
             force = paths["force"].values[k] / (layers**2 if weight else layers * confinement)
             depth = paths["depth"].values[k] / (ROW * (layers - 1.0))
-            look = style.marked_line(at, colour=colour) | {"markersize": 3.2}
-            axes.plot(force, depth, label=f"{layers:.0f}", **look)
+            axes.plot(force, depth, label=f"{layers:.0f}", **look | {"markersize": 3.2})
         unit = rf"$N^2\,{style.WEIGHT}$" if weight else "$NP$"
         axes.set(xlabel=rf"${style.F_EXT}\,/\,$({unit})", ylim=(-0.03, 1.35), xscale="log")
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.xaxis.set_minor_formatter("")
         axes.legend(title="layers", loc="upper left", ncols=3, columnspacing=1.0)
-        style.letter(axes, letter, place="above", text=name(powers, series))
     panels[0, 0].set_ylabel("depth of the open region / slab")
     return figure
 
@@ -234,8 +207,8 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if low > 0.0:
             axes.set_ylim(low / 1.3, high * max((high / low) ** 0.7, 3.0))
         for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter("")
         if kind == "disks_per_layer":  # within a decade
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
         axes.legend(loc="upper left", fontsize=7)

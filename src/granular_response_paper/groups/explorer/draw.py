@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import RADIUS, Caption
+from granular_response_paper.captions import Caption, of_group
 
 from .parameters import Parameters
 
@@ -39,11 +39,4 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    return {
-        "explorer": Caption(
-            "Not in the paper: response at x = 0 of the slabs of the explorer that no other figure shows. (a) Ordered "
-            "slabs with a small k_T/k_N, and (b) single disordered slabs, smoothed with "
-            f"w = {parameters.width:g} {RADIUS}, up to the last force before they collapse.",
-            "Two plots of the response at x = 0 against the force, a curve for each slab.",
-        )
-    }
+    return of_group("explorer", {"explorer": {}}, p=parameters)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims import asked
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, at
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading, at
 from ...claims.words import Bounds
 
 GROUP = "friction_fields"
@@ -83,13 +83,12 @@ def stress(data: Data, words: Bounds) -> Finding:
 )
 def closer_with_friction(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress", "distance_to_lattice", "friction").sortby("friction")
-    friction, distance = study["friction"].values, study["distance_to_lattice"].values
-    if len(friction) < 2:
-        raise NotMeasured(f"data/{GROUP}.nc: stress holds one friction, nothing to compare it with")
+    distance = study["distance_to_lattice"].values
+    CLAIMS.needs(len(distance) > 1, "stress holds one friction, nothing to compare it with")
     worst = float((distance[1:] / distance[:-1]).max())
     return asked.one_reading(
         "rms difference of sigma_zz from the isotropic harmonic lattice: "
-        + ", ".join(f"{d:.1%} (friction {mu:g})" for mu, d in zip(friction, distance, strict=True)),
+        + asked.listed(asked.by_friction(study, "distance_to_lattice"), ".1%"),
         "farther than 6 radii from the load",
         asked.lower("largest ratio of neighbouring frictions", worst, words, "visible"),
     )
@@ -109,8 +108,7 @@ def antisymmetric(data: Data, words: Bounds) -> Finding:
     near = np.hypot(x, z - float(study["load_height"])) < NEAR
     values: dict[str, list[float]] = {"per the largest pressure": [], "local": [], "root mean squares": []}
     frictions = [mu for mu in study["friction"].values.tolist() if mu > 0.0]
-    if not frictions or not near.any():
-        raise NotMeasured(f"data/{GROUP}.nc: stress holds no friction or no point near the load")
+    CLAIMS.needs(frictions and near.any(), "stress holds no friction or no point near the load")
     for mu in frictions:
         one = at(study, friction=mu)
         odd = 0.5 * np.abs(one["stress_xz"].values - one["stress_zx"].values)
@@ -119,21 +117,11 @@ def antisymmetric(data: Data, words: Bounds) -> Finding:
         values["per the largest pressure"].append(float(one["antisymmetric_near"]))
         values["local"].append(float((odd[there] / pressure[there]).max()))
         values["root mean squares"].append(float(one["antisymmetric_near_mean"]))
-    most = words["few per cent"]
     return Finding(
         f"antisymmetric part over pressure at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
         + "; ".join(f"{name} {', '.join(f'{v:.1%}' for v in found)}" for name, found in values.items()),
         [
-            Reading(
-                name,
-                Condition(
-                    "antisymmetric part over pressure",
-                    Quantity.exact(max(found)),
-                    most=most,
-                    words=("few per cent",),
-                    unit="%",
-                ),
-            )
+            Reading(name, asked.at_most("antisymmetric part over pressure", max(found), words, "few per cent", "%"))
             for name, found in values.items()
         ],
         "The largest local ratio is where the pressure itself is small, a tenth of its maximum or little more",

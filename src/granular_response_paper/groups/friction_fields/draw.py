@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box
-from granular_response_paper.captions import RADIUS, Caption, lettered, of_scene, values
+from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.panels import family
 
 from .parameters import Parameters
 
@@ -37,39 +38,24 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    frictions = list(parameters.frictions)
-    given = of_scene(parameters.scene, force=parameters.force, frictions=frictions)
+    scene, width = parameters.scene, parameters.stress_width
+    frictions, profiles = list(parameters.frictions), list(parameters.profiles.frictions)
+    given = of_scene(scene, force=parameters.force, frictions=frictions)
     each = [f"µ = µ_wall = {mu:g}" for mu in frictions]
-    below = sorted(float(depth) for depth in datasets["profiles"]["depth"].values) if "profiles" in datasets else []
-    profiles = list(parameters.profiles.frictions)
-    return {
-        "fig13_force_chains": Caption(
-            f"Contact forces that the force adds in ordered slabs, the central third: {lettered(each)}. The effect of "
-            "gravity is subtracted as a vector. Lengths and widths of the lines are proportional to the force, the "
-            "same in all panels, but none is thinner than a hairline. Arrow and circle: the force and its disk; the "
-            "line below is the floor.",
-            "Two force chains along the lattice without friction, chains in many directions with it and a vertical "
-            "one at the largest friction.",
-            given,
-        ),
-        "fig14_vertical_stress": Caption(
-            "Vertical stress of the forces of Fig. 13, coarse-grained with a Gaussian: "
-            f"{lettered([*each, 'the isotropic '])}harmonic lattice, with contours at {values(LEVELS)} of the largest "
-            "stress. (e) to (g) Differences of (a) to (c) to (d), contours broken where it is negative. The colours "
-            "of all maps are in equal steps of the square root. Hatched: the layer of one width w at the floor, in "
-            "which part of the Gaussian lies outside the slab, so that the stress falls short.",
-            "Maps of the stress: two lobes without friction, one broad lobe at the largest friction, nearly that of "
-            "the isotropic lattice.",
-            {**given, "width": parameters.stress_width},
-        ),
-        "fig15_force_profiles": Caption(
-            "Magnitudes of the contact forces between rows that a large force adds, against the horizontal position, "
-            f"at depths of {values([round(depth, 1) for depth in below])} {RADIUS} below the force: "
-            f"{lettered([f'µ = µ_wall = {mu:g}' for mu in profiles])}. Both panels have one scale, of the square root.",
-            "Curves with two sharp peaks without friction, and with a peak in the middle with it.",
-            of_scene(parameters.scene, force=parameters.profiles.force, frictions=profiles),
-        ),
-    }
+    below = sorted(datasets["profiles"]["depth"].values.tolist()) if "profiles" in datasets else []
+    return of_group(
+        "friction_fields",
+        {
+            "fig13_force_chains": given,
+            "fig14_vertical_stress": {**given, "width": width},
+            "fig15_force_profiles": of_scene(scene, force=parameters.profiles.force, frictions=profiles),
+        },
+        chains=lettered(each),
+        maps=lettered([*each, "the isotropic "]),
+        levels=LEVELS,
+        depths=[round(depth, 1) for depth in below],
+        profiles=lettered(f"µ = µ_wall = {mu:g}" for mu in profiles),
+    )
 
 
 def _force_chains(data: xr.Dataset) -> Figure:
@@ -158,20 +144,11 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
 def _force_profiles(data: xr.Dataset) -> Figure:
     frictions, depths = data["friction"].values, data["depth"].values
     figure, panels = style.figure(1, len(frictions), width="double", height=3.1, sharex=True, sharey=True)
-    colours = style.ordered_colours(len(depths))
     for index, axes in enumerate(panels[0]):
-        for row, depth in enumerate(depths):
-            axes.plot(
-                data["contact_x"].values[index, row],
-                data["magnitude"].values[index, row],
-                linestyle=style.LINE_STYLES[row % len(style.LINE_STYLES)],
-                linewidth=0.8,
-                color=colours[row],
-                marker=style.MARKERS[row % len(style.MARKERS)],
-                markersize=2.8,
-                markeredgewidth=0.0,
-                label=f"${depth:.1f}\\,{style.RADIUS}$",
-            )
+        for row, (depth, look) in enumerate(family(depths, dashed=True)):
+            look |= {"linewidth": 0.8, "markersize": 2.8}
+            x, magnitude = (data[name].values[index, row] for name in ("contact_x", "magnitude"))
+            axes.plot(x, magnitude, **look, label=f"${depth:.1f}\\,{style.RADIUS}$")
         half = PROFILE_HALF_WIDTH
         axes.set(xlabel=style.POSITION, xlim=(-half, half))
         style.letter(axes, chr(ord("a") + index), place="above", text=_friction(frictions[index]))

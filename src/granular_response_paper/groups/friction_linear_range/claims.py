@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,6 @@ from ...claims.claim import (
     Data,
     Finding,
     Measure,
-    NotMeasured,
     Quantity,
     Reading,
     about,
@@ -35,7 +34,7 @@ OWN = "gravity at once"
 
 
 def _ways(
-    data: Data, event: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]], own: str
+    data: Data, event: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]], own: str = OWN
 ) -> list[Reading]:
     """What is asked of the brackets of an event, in the reading ``own`` and with gravity brought otherwise."""
     here = Reading(own, *conditions(*(data.event(GROUP, event, mu) for mu in frictions)))
@@ -132,8 +131,7 @@ def _up_to_50(data: Data, *names: str) -> xr.Dataset:
     """The curve at friction 1."""
     curve = _curve(data, 1.0, *names)
     force = curve["force"].values
-    if not force.size or force.max() < 50.0:
-        raise NotMeasured(f"data/{GROUP}.nc: response does not reach 50 mg at friction 1")
+    CLAIMS.needs(force.max(initial=0.0) >= 50.0, "response does not reach 50 mg at friction 1")
     return curve.isel(force=force <= 50.0)
 
 
@@ -150,7 +148,7 @@ def single_peak(data: Data, words: Bounds) -> Finding:
             *(
                 Reading(
                     way,
-                    Condition("forces up to 50 mg with two peaks", Quantity.exact(number), most=0.0),
+                    asked.none_of("forces up to 50 mg with two peaks", number),
                     change="" if way == OWN else preparations.CHANGE,
                 )
                 for way, number in double.items()
@@ -169,12 +167,11 @@ def single_peak(data: Data, words: Bounds) -> Finding:
 def sharper(data: Data, words: Bounds) -> Finding:
     curve = _up_to_50(data, "half_maximum_width", "peak_height")
     width, height = curve["half_maximum_width"].values, curve["peak_height"].values
-    narrower = asked.lower("width at 50 mg per that at the smallest force", width[-1] / width[0], words, "visible")
     return asked.one_reading(
         f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[-1]:.1f} R, the height "
         f"grows from {height[0]:.4f} to {height[-1]:.4f}",
         OWN,
-        narrower,
+        asked.lower("width at 50 mg per that at the smallest force", width[-1] / width[0], words, "visible"),
     )
 
 
@@ -197,8 +194,7 @@ def third_peak_small(data: Data, words: Bounds) -> Finding:
     curve = _curve(data, 0.2, "third_peak_prominence")
     force, size = curve["force"].values, curve["third_peak_prominence"].values
     beyond = np.flatnonzero((force >= 40.0) & (size > 0.0))
-    if not beyond.size:
-        raise NotMeasured(f"data/{GROUP}.nc: response holds no third peak from 40 mg on")
+    CLAIMS.needs(beyond.size, "response holds no third peak from 40 mg on")
     return Finding(
         f"prominence {size[beyond[0]]:.3f} of the largest response at {force[beyond[0]]:g} mg, up to "
         f"{size[beyond].max():.3f} at {force[beyond][size[beyond].argmax()]:g} mg",
@@ -215,8 +211,7 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
     names = ("asymmetry", "force", "mobilised_contacts", "network_asymmetry", "floor_response", "asymmetry_sign")
     runs = data.get(GROUP, "large_forces", *names).sortby("force")
     lost = np.flatnonzero(runs["asymmetry"].values > 0.1)
-    if not lost.size or lost[0] == 0:
-        raise NotMeasured(f"data/{GROUP}.nc: large_forces holds no forces on both sides of the loss of symmetry")
+    CLAIMS.needs(lost[:1].any(), "large_forces holds no forces on both sides of the loss of symmetry")
     return runs, int(lost[0])
 
 
@@ -261,8 +256,7 @@ def sliding_drops(data: Data, words: Bounds) -> Finding:
         for margin, before, after in cases
         if before > 0
     ]
-    if not readings:
-        raise NotMeasured(f"data/{GROUP}.nc: large_forces holds no contact near the Coulomb limit before the change")
+    CLAIMS.needs(readings, "large_forces holds no contact near the Coulomb limit before the change")
     return Finding(
         "contacts near the Coulomb limit before and after: "
         + ", ".join(f"{before:.0f} and {after:.0f} (within {margin:.0%})" for margin, before, after in cases),
@@ -281,11 +275,11 @@ def sliding_drops(data: Data, words: Bounds) -> Finding:
 def network_changes(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     network = runs["network_asymmetry"].values
-    before, after = Quantity.exact(network[first - 1]), Quantity.exact(network[first:].min())
+    after = Quantity.exact(network[first:].min())
     return asked.one_reading(
         f"contacts without a mirror image: {network[first - 1]:.1%} before, {network[first]:.1%} after",
         RAMP,
-        Condition("contacts without a mirror image before", before, most=0.0),
+        asked.none_of("contacts without a mirror image before", network[first - 1]),
         Condition("smallest part without a mirror image after", after, 0.0, strict=True),
     )
 
@@ -302,8 +296,7 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     after = runs.isel(force=slice(first, None))
     response, force = after["floor_response"].values, after["force"].values
     sign, x = after["asymmetry_sign"].values, after["x"].values
-    if np.abs(x + x[::-1]).max() > 0.1:
-        raise NotMeasured(f"data/{GROUP}.nc: the floor disks are not symmetric about x = 0")
+    CLAIMS.needs(np.abs(x + x[::-1]).max() <= 0.1, "the floor disks are not symmetric about x = 0")
     # the paper's pair lies between 91 and 95 mg
     pairs = [
         (float(np.abs(response[a] - response[b][::-1]).max() / response[a].max()), force[a], force[b])
@@ -332,13 +325,14 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     (8, 9),
 )
 def floor_earlier(data: Data, words: Bounds) -> Finding:
-    def wanted(low: Quantity, high: Quantity) -> list[Condition]:
-        return [Condition("force at friction 1 per that at 0.2", low.per(high), most=1.0, strict=True)]
-
     low, high = (data.event(GROUP, "reaches_floor", mu) for mu in (1.0, 0.2))
+
+    def smaller(one: Quantity, other: Quantity) -> list[Condition]:
+        return [Condition("force at friction 1 per that at 0.2", one.per(other), most=1.0, strict=True)]
+
     return Finding(
         f"at the floor from {low.text('mg')} (friction 1) and {high.text('mg')} (friction 0.2)",
-        _ways(data, "reaches_floor", (1.0, 0.2), wanted, OWN),
+        _ways(data, "reaches_floor", (1.0, 0.2), smaller),
     )
 
 
@@ -347,13 +341,12 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     floor = data.event(GROUP, "reaches_floor", 1.0)
     curve = _curve(data, 1.0, "double_peaked")
     beyond = curve["force"].values >= floor.high
-    if not beyond.any():
-        raise NotMeasured(f"data/{GROUP}.nc: response ends before the open region reaches the floor")
+    CLAIMS.needs(beyond.any(), "response ends before the open region reaches the floor")
     double = int(np.count_nonzero(curve["double_peaked"].values[beyond]))
     return asked.one_reading(
         f"two peaks at {double} of {beyond.sum()} forces beyond {floor.high:.4g} mg",
         OWN,
-        Condition("forces beyond it with two peaks", Quantity.exact(double), most=0.0),
+        asked.none_of("forces beyond it with two peaks", double),
     )
 
 
@@ -362,18 +355,16 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
 )
 def crossover_rises(data: Data, words: Bounds) -> Finding:
     frictions = np.sort(data.get(GROUP, "response", "double_peaked", "force", "friction")["friction"].values).tolist()
-    ends = []
+    found = {}
     for mu in frictions:
         curve = _curve(data, mu, "double_peaked")
-        force, double = curve["force"].values, curve["double_peaked"].values
-        first = np.flatnonzero(double > 0)
-        if first.size and first[0] == 0:
-            raise NotMeasured(f"data/{GROUP}.nc: response has two peaks at the smallest force, friction {mu:g}")
-        k = int(first[0]) if first.size else len(force)
-        ends.append(Quantity.bracket(force[k - 1], force[k] if first.size else float("nan")))
+        force, double = np.append(curve["force"].values, np.nan), np.append(curve["double_peaked"].values, 1.0)
+        k = int(np.argmax(double > 0))
+        CLAIMS.needs(k > 0, f"response has two peaks at the smallest force, friction {mu:g}")
+        found[f"{mu:g}"] = Quantity.bracket(force[k - 1], force[k])
+    ends = list(found.values())
     return Finding(
-        "two peaks from, by friction: "
-        + ", ".join(f"{end.text('mg')} ({mu:g})" for mu, end in zip(frictions, ends, strict=True)),
+        "two peaks from, by friction: " + asked.listed(found, unit="mg"),
         [
             Reading(OWN, rises("crossover force", ends)),
             *preparations.readings(
@@ -395,8 +386,7 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     shared = [f for f in without["force"].values if f in full["force"].values]
     without, full = without.sel(force=shared), full.sel(force=shared)
     open_ = (without["teardrop_depth"].values > 2.0) & (full["reaches_floor"].values == 0)
-    if not open_.any():
-        raise NotMeasured(f"data/{GROUP}.nc: response holds no force at which the regions can be compared")
+    CLAIMS.needs(open_.any(), "response holds no force at which the regions can be compared")
     ratio = full["opened_contacts"].values[open_] / without["opened_contacts"].values[open_]
     found = Quantity.range(ratio, float(np.median(ratio)))
     return asked.one_reading(
@@ -415,15 +405,13 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
 )
 def floor_later(data: Data, words: Bounds) -> Finding:
     late, early = (data.event(GROUP, "reaches_floor", mu) for mu in (0.2, 0.0))
+
+    def later(end: Quantity) -> list[Condition]:
+        return [asked.higher("force with friction per without", end.per(early), words, "marked")]
+
     return Finding(
         f"at the floor from {late.text('mg')} (friction 0.2) and {early.text('mg')} (without)",
-        _ways(
-            data,
-            "reaches_floor",
-            (0.2,),
-            lambda end: [asked.higher("force with friction per without", end.per(early), words, "marked")],
-            OWN,
-        ),
+        _ways(data, "reaches_floor", (0.2,), later),
     )
 
 
@@ -438,14 +426,12 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "first_opening", 0.0)
     curve = _curve(data, 0.0, "response_at_centre")
     before = curve["response_at_centre"].values[curve["force"].values <= event.low]
-    if before.size < 2:
-        raise NotMeasured(f"data/{GROUP}.nc: response holds too few forces before the first opening")
+    CLAIMS.needs(before.size > 1, "response holds too few forces before the first opening")
     change = float(np.ptp(before) / before[0])
-    what = "change of the response before a contact opens"
     return asked.one_reading(
         f"the response at x = 0 changes by {change:.2%} up to the first opening at {event.text('mg')}",
         OWN,
-        asked.at_most(what, change, words, "visible", "%"),
+        asked.at_most("change of the response before a contact opens", change, words, "visible", "%"),
     )
 
 
@@ -462,18 +448,12 @@ def region_and_friction(data: Data, words: Bounds) -> Finding:
     readings = []
     for what, name in sizes.items():
         size = axis[name].values
-        if not size[0] > 0.0:
-            raise NotMeasured(f"data/{GROUP}.nc: friction_axis holds no open region without friction")
+        CLAIMS.needs(size[0] > 0.0, "friction_axis holds no open region without friction")
         growth = float(np.diff(size).max() / size[0])
         condition = asked.at_most("largest growth with friction, per size without", growth, words, "visible", "%")
         readings.append(Reading(what, condition))
-    opened = axis["opened_contacts"].values.tolist()
     return Finding(
-        "opened contacts at 15 mg: "
-        + ", ".join(
-            f"{n:.0f} (friction {mu:g})" for n, mu in zip(opened, axis["friction"].values.tolist(), strict=True)
-        ),
-        readings,
+        "opened contacts at 15 mg: " + asked.listed(asked.by_friction(axis, "opened_contacts"), ".0f"), readings
     )
 
 
@@ -493,8 +473,7 @@ def _sliding(data: Data) -> dict[float, FloatArray]:
         away = 0.5 * (position[first] + position[second])[slides] - position[int(states["loaded_disk"])]
         if 0.0 < force < 20.0 and away.size:
             found[force] = away
-    if len(found) < 2:
-        raise NotMeasured(f"data/{GROUP}.nc: states_mu_0.2 holds sliding contacts at fewer than two forces below 20 mg")
+    CLAIMS.needs(len(found) > 1, "states_mu_0.2 holds sliding contacts at fewer than two forces below 20 mg")
     return found
 
 
@@ -510,7 +489,7 @@ def sliding_near(data: Data, words: Bounds) -> Finding:
     what = f"sliding contacts within {NEAR:g} radii of the load"
     return asked.each(
         f"{what}: ",
-        {f"{force:g} mg": Quantity.exact(part) for force, part in near.items()},
+        {f"{force:g} mg": part for force, part in near.items()},
         lambda part: asked.at_least(what, part, words, "marked", "%"),
         "%",
         "The paper names no force",
@@ -546,26 +525,26 @@ def range_grows(data: Data, words: Bounds) -> Finding:
 def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
     axis = data.get(GROUP, "friction_axis", "central_dip", "floor_response", "friction").sortby("friction")
     dip = axis["central_dip"].values
-    back = float(np.diff(dip).max())
     largest = float(data.get(GROUP, "response", "friction")["friction"].max())
     elastic = _curve(data, largest, "response_at_centre", "floor_response")
     small = elastic["floor_response"].transpose("force", "floor_disk").values[0]
     response = axis["floor_response"].transpose("friction", "floor_disk").values
     off = np.sqrt(((response - small) ** 2).sum(axis=1) / (small**2).sum())
-    away = float(np.diff(off).max())
+    apart = dict(zip((f"{mu:g}" for mu in axis["friction"].values), off, strict=True))
     return Finding(
         f"dip at x = 0 at 15 mg from {dip[0]:.0%} without friction to {dip[-1]:.1%} at friction "
-        f"{float(axis['friction'][-1]):g}; rms difference from the elastic response "
-        + ", ".join(f"{d:.1%} ({mu:g})" for mu, d in zip(axis["friction"].values.tolist(), off.tolist(), strict=True)),
+        f"{float(axis['friction'][-1]):g}; rms difference from the elastic response " + asked.listed(apart, ".1%"),
         [
             Reading(
                 "dip at x = 0",
-                asked.at_most("largest growth of the dip with friction", back, words, "visible", "%"),
+                asked.at_most("largest growth of the dip with friction", np.diff(dip).max(), words, "visible", "%"),
                 asked.at_least("fall of the dip over all", dip[0] - dip[-1], words, "marked"),
             ),
             Reading(
                 "difference from the elastic response",
-                asked.at_most("largest growth of the difference with friction", away, words, "visible", "%"),
+                asked.at_most(
+                    "largest growth of the difference with friction", np.diff(off).max(), words, "visible", "%"
+                ),
                 asked.lower("the difference with the largest friction per without", off[-1] / off[0], words, "marked"),
             ),
         ],
@@ -586,17 +565,16 @@ def friction_crossover(data: Data, words: Bounds) -> Finding:
     axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
     first, last = float(axis["central_dip"][0]), float(axis["central_dip"][-1])
 
-    def wanted(dip: float) -> Sequence[Condition]:
-        return (
-            asked.at_least("dip without friction", first, words, "visible", "%"),
-            asked.at_most("dip with much friction", dip, words, "visible", "%"),
-        )
+    without = asked.at_least("dip without friction", first, words, "visible", "%")
+
+    def one_peak(dip: float) -> Condition:
+        return asked.at_most("dip with much friction", dip, words, "visible", "%")
 
     largest = float(axis["friction"][-1])
-    readings = [Reading(OWN, Condition("friction", event, 0.0, largest), *wanted(last))]
+    readings = [Reading(OWN, Condition("friction", event, 0.0, largest), without, one_peak(last))]
     if preparations.LOADING in data.groups:
         readings += [
-            Reading(name, *wanted(dip), change=preparations.change(name))
+            Reading(name, without, one_peak(dip), change=preparations.change(name))
             for name, dip in preparations.dips(data, 1.0).items()
         ]
     return Finding(f"two peaks up to friction {event.text()}, one above", readings)

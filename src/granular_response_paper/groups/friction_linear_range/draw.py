@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import WEIGHT, Caption, of_scene, panels, values
+from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
+from granular_response_paper.panels import among, family, titles, zero
 
 from .parameters import Parameters
 
@@ -21,6 +22,7 @@ from .parameters import Parameters
 PROFILE_FRICTIONS, PROFILE_FORCES = (0.2, 1.0), (4.0, 10.0, 20.0, 30.0, 50.0)
 LARGE_FRICTION = 0.2
 CONTACT_FORCES = (6.0, 12.0, 20.0)
+CONTACTS = ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1"))
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
 DYNAMIC_FORCES = (91.0, 93.0, 95.0, 100.0)
 #: Frictions of Fig. 12.
@@ -49,7 +51,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     stored = response["friction"].values
     if np.isin(PROFILE_FRICTIONS, stored).all():
         figures["fig07_friction_response"] = _profiles(response)
-    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
+    for friction, stem in CONTACTS:
         states = datasets.get(f"states_mu_{friction:g}")
         if states is not None:
             figures[stem] = _contacts(states, friction)
@@ -60,74 +62,35 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    response = datasets["response"]
+    response, scene = datasets["response"], parameters.scene
     frictions = response["friction"].values.tolist()
-    stops = "".join(
+    axis = among(datasets["friction_axis"]["friction"], AXIS_FRICTIONS)
+    given = {
+        "fig06_linear_range": of_scene(scene, force=response["force"].values.tolist(), friction=frictions),
+        "fig12_friction_crossover": of_scene(scene, force=parameters.friction_axis.force, friction=axis),
+    }
+    fields: dict[str, Any] = {"crossover": PAPER_CROSSOVER, "third": PAPER_THIRD_PEAK, "symmetric": PAPER_SYMMETRIC}
+    fields["stops"] = "".join(
         f" The curve of µ = {end.friction:g} ends at {end.force:g} {WEIGHT} to save time; the slab bears more."
         for end in parameters.ends
     )
-    found = {
-        "fig06_linear_range": Caption(
-            "Response at x = 0 of ordered slabs per force, against the force, for several coefficients of friction. "
-            "It is level in the linear range, which friction extends. Dotted: the forces at which the paper sees the "
-            f"first contact open, without friction, at µ = 0.2 and at µ = 1.{stops}",
-            "Curves against the force on a logarithmic axis, level and equal for small forces; they leave the level "
-            "the later the larger the friction, most of them downwards, that of µ = 1 upwards.",
-            of_scene(parameters.scene, force=response["force"].values.tolist(), friction=frictions),
-        ),
-        "fig12_friction_crossover": Caption(
-            "Floor response of ordered slabs at one force, for several coefficients of friction: two peaks at small "
-            "ones, one at large ones.",
-            "Curves from two high peaks without friction over a plateau to one peak.",
-            of_scene(
-                parameters.scene,
-                force=parameters.friction_axis.force,
-                friction=at_frictions(datasets["friction_axis"], AXIS_FRICTIONS),
-            ),
-        ),
-    }
     if np.isin(PROFILE_FRICTIONS, frictions).all():
-        found["fig07_friction_response"] = Caption(
-            f"Floor response of ordered slabs per force, for growing forces. (a) µ = 0.2; the paper sees the crossover "
-            f"from one peak to two near {PAPER_CROSSOVER:g} {WEIGHT}. (b) µ = 1, the tops enlarged in the corner. "
-            "Each curve has its symbols at other disks, as some nearly cover each other.",
-            "Two plots on one scale. (a) A bell, a plateau and two peaks. (b) Bells that nearly cover each other.",
-            of_scene(
-                parameters.scene,
-                force=at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist(),
-                friction=list(PROFILE_FRICTIONS),
-            ),
-        )
-    for friction, stem in ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1")):
-        states = datasets.get(f"states_mu_{friction:g}")
-        if states is not None:
-            shown = contact_forces(states)
-            found[stem] = Caption(
-                f"What the force does to the contacts of an ordered slab at µ = {friction:g}, the central third: "
-                "those that it opens (thick), that slide (middle) and that it leaves alone (thin). Arrow and circle: "
-                f"the force and its disk; the line below is the floor. {panels(shown)}",
-                f"Triangular networks at friction {friction:g}: open contacts below the force, sliding ones beside "
-                "them, more and deeper from panel to panel.",
-                of_scene(parameters.scene, force=shown, friction=friction),
-            )
+        force = at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist()
+        given["fig07_friction_response"] = of_scene(scene, force=force, friction=list(PROFILE_FRICTIONS))
     if "large_forces" in datasets and LARGE_FRICTION in frictions:
         dynamic = datasets["large_forces"]
-        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values
-        left = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)["force"].values
-        found["fig16_large_forces"] = Caption(
-            f"Floor response of ordered slabs under large forces. (a) µ = 0.2, F_ext = {values(left.tolist())} "
-            f"{WEIGHT}; the paper sees the crossover near {PAPER_CROSSOVER:g} {WEIGHT} and a third peak at x = 0 "
-            f"from {PAPER_THIRD_PEAK:g} {WEIGHT} on. (b) µ = 1, dynamics from rest to F_ext = "
-            f"{values(beyond.tolist())} {WEIGHT}; in the paper symmetry is lost beyond {PAPER_SYMMETRIC:g} "
-            f"{WEIGHT}, and at 95 {WEIGHT} the response is the mirror image of another.",
-            "(a) A plateau, then two peaks with a third one between them. (b) One symmetric bell and three lopsided "
-            "curves with a sharp negative dip to the left or the right of the middle.",
-            of_scene(
-                parameters.scene,
-                force=sorted({*left.tolist(), *beyond.tolist()}),
-                friction=[0.2, float(dynamic["friction"])],
-            ),
+        beyond = at_forces(dynamic, DYNAMIC_FORCES)["force"].values.tolist()
+        left = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)["force"].values.tolist()
+        given["fig16_large_forces"] = of_scene(
+            scene, force=sorted({*left, *beyond}), friction=[0.2, float(dynamic["friction"])]
         )
+        fields |= {"left": left, "beyond": beyond}
+    found = of_group("friction_linear_range", given, **fields)
+    for friction, stem in CONTACTS:
+        if f"states_mu_{friction:g}" in datasets:
+            shown = contact_forces(datasets[f"states_mu_{friction:g}"])
+            said = {stem: of_scene(scene, force=shown, friction=friction)}
+            found |= of_group("friction_linear_range", said, friction=friction, panels=panels(shown))
     return found
 
 
@@ -136,12 +99,11 @@ def _linear_range(response: xr.Dataset) -> Figure:
     figure, axes = style.figure(height=3.0)
     panel = axes[0, 0]
     frictions = response["friction"].values
-    for index, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True)):
+    for friction, look in family(frictions):
         curve = response["response_at_centre"].sel(friction=friction).dropna("force")
-        look = {**style.marked_line(index, colour=colour), "markersize": 3.0}
-        panel.plot(curve["force"], curve, label=f"{friction:g}", **look)
+        panel.plot(curve["force"], curve, label=f"{friction:g}", **look | {"markersize": 3.0})
     panel.set_xscale("log")
-    panel.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    panel.xaxis.set_major_formatter("{x:g}")
     panel.set_ylim(bottom=0.0, top=1.1 * float(response["response_at_centre"].max()))
     for friction, force in PAPER_OPENINGS.items():
         name = f"paper, $\\mu = {friction:g}$: {force:g}"
@@ -155,10 +117,10 @@ def _profiles(response: xr.Dataset) -> Figure:
     """Fig. 7."""
     figure, axes = style.figure(1, 2, width="double", height=2.7, sharey=True)
     extents = []
-    for panel, name, friction in zip(axes[0], "ab", PROFILE_FRICTIONS, strict=True):
+    titles(axes[0], [style.equals(style.FRICTION, friction) for friction in PROFILE_FRICTIONS])
+    for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
         curves = at_forces(response.sel(friction=friction), PROFILE_FORCES)
         extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), style.FORCE))
-        style.letter(panel, name, place="above", text=style.equals(style.FRICTION, friction))
         if friction == 1.0:
             _enlarge(panel, curves)
         else:
@@ -171,7 +133,7 @@ def _profiles(response: xr.Dataset) -> Figure:
 def _friction_axis(axis: xr.Dataset) -> Figure:
     """Fig. 12."""
     figure, axes = style.figure(height=2.6)
-    curves = axis.sel(friction=at_frictions(axis, AXIS_FRICTIONS))
+    curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
     _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), f"${style.FRICTION}$"))
     axes[0, 0].set_ylabel(style.RESPONSE)
     return figure
@@ -184,12 +146,11 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     curves = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
     _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), style.FORCE))
     style.paper_note(left, f"paper:\n{PAPER_CROSSOVER:g} crossover\n{PAPER_THIRD_PEAK:g} third peak")
-    style.letter(left, "a", place="above", text=style.equals(style.FRICTION, 0.2))
     curves = at_forces(dynamic, DYNAMIC_FORCES)
     _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), style.FORCE, categorical=True))
     style.paper_note(right, f"paper:\n{PAPER_SYMMETRIC:g} symmetric")
-    style.letter(right, "b", place="above", text=style.equals(style.FRICTION, float(dynamic["friction"])))
-    right.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    titles(axes[0], [style.equals(style.FRICTION, friction) for friction in (0.2, float(dynamic["friction"]))])
+    zero(right)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)
     return figure
@@ -197,12 +158,6 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
 
 def _labels(values: xr.DataArray) -> list[str]:
     return [f"{value:g}" for value in values.values]
-
-
-def at_frictions(axis: xr.Dataset, wanted: Sequence[float]) -> list[float]:
-    """The wanted frictions as far as they are stored; all of them if none is."""
-    stored = axis["friction"].values.tolist()
-    return [mu for mu in wanted if mu in stored] or stored
 
 
 def contact_forces(states: xr.Dataset) -> list[float]:
@@ -214,8 +169,7 @@ def contact_forces(states: xr.Dataset) -> list[float]:
 def at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
     """The given forces as far as they are stored; all of them if none is."""
     stored = dataset.dropna("force", subset=["response_at_centre"])
-    shown = [force for force in forces if force in stored["force"].values]
-    return stored.sel(force=shown) if shown else stored
+    return stored.sel(force=among(stored["force"], forces))
 
 
 def _plot_profiles(
@@ -225,12 +179,12 @@ def _plot_profiles(
 
     Returns the smallest and the largest response shown.
     """
-    colours = style.ordered_colours(len(labels))
     dimension = next(str(dim) for dim in curves["floor_response"].dims if dim != "floor_disk")
-    for index, (label, colour) in enumerate(zip(labels, colours, strict=True)):
-        # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
-        look: dict[str, Any] = style.marked_line(index, colour=None if categorical else colour)
-        look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD), "linestyle": style.line(index)["linestyle"]}
+    # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
+    for index, (label, look) in enumerate(family(labels, dashed=True)):
+        look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD)}
+        if categorical:
+            look |= {"color": style.line(index)["color"]}
         panel.plot(curves["x"], curves["floor_response"].isel({dimension: index}), label=label, **look)
     panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
     panel.legend(title=title, loc="upper right", handlelength=2.8)
@@ -248,11 +202,8 @@ def _enlarge(panel: Axes, curves: xr.Dataset) -> None:
     """The tops of curves that nearly cover each other, in the upper left corner."""
     inside = panel.inset_axes((0.09, 0.5, 0.28, 0.46))
     near = curves.isel(floor_disk=np.flatnonzero(np.abs(curves["x"].values) <= CLOSE))
-    for index, (top, colour) in enumerate(
-        zip(near["floor_response"].values, style.ordered_colours(near.sizes["force"]), strict=True)
-    ):
-        look = {**style.marked_line(index), **style.line(index), "color": colour, "markersize": 2.6}
-        inside.plot(near["x"], top, **look)
+    for top, look in family(near["floor_response"].values, dashed=True):
+        inside.plot(near["x"], top, **look | {"markersize": 2.6})
     inside.set_xlim(-CLOSE, CLOSE)
     inside.tick_params(labelsize=6)
 

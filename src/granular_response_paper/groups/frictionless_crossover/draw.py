@@ -14,12 +14,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, MultipleLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, MultipleLocator
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import RADIUS, WEIGHT, Caption, letters, of_scene, panels, values
+from granular_response_paper.captions import Caption, letters, of_group, of_scene, panels, values
+from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
@@ -60,57 +61,23 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         stored = datasets[dataset]["force"].values
         return stored[nearest(stored, wanted)].tolist()
 
-    slab = of_scene(parameters.scene)
-    depths, stiffnesses = values([n for n, _ in parameters.sizes]), values(parameters.size_stiffnesses)
-    deep = {**slab, "normal_stiffness": parameters.size_stiffnesses, "packing": f"slabs of {depths} layers"}
-    compared = values(drawn((COMPARED_FORCE,), "sizes"))
-    return {
-        "fig03_frictionless_response": Caption(
-            "Ordered slab without friction under a growing force. (a) Floor response per force in the interior of the "
-            "slab: one peak splits into two. (b) Response at x = 0 and its largest value against the force; broken "
-            "lines: forces at which the first contact opens, two peaks appear and the region of open contacts reaches "
-            "the floor; dotted: first opening in the paper.",
-            "(a) Curves from a single bell at small forces to two sharp peaks at large ones. (b) Both measures agree "
-            "until there are two peaks, then the response at x = 0 falls and the largest grows.",
-            {**slab, "force": drawn(PROFILE_FORCES, "response")},
-        ),
-        "fig04_frictionless_contacts": Caption(
-            "Contacts that the force opens in the slab of Fig. 3 (thick), and those that it does not (thin), the "
-            "central third. Arrow and circle: the force and its disk; the line below is the floor. "
-            + panels(drawn(NETWORK_FORCES, "states")),
-            "Triangular networks in which horizontal contacts open in a teardrop below the force, which grows until it "
-            "stands on the floor as a triangle.",
-            {**slab, "force": drawn(NETWORK_FORCES, "states")},
-        ),
-        "fig05_teardrop": Caption(
-            "Depth (left) and largest width (right) of the region of open contacts below the force, for slabs of "
-            f"several depths at k_N = {stiffnesses} {WEIGHT}/{RADIUS}, (a), (b) above and (c), (d) below. A curve "
-            "ends where the region reaches the floor (open symbol). In 60 layers of the paper's stiffness gravity "
-            "compresses the slab so far that its horizontal contacts carry far more than those of stiff slabs: "
-            "the first one opens late and the region stays small, which is not the effect of size that the paper "
-            "shows. Of stiff disks 60 layers are like the others.",
-            "Curves that grow with the force, deeper slabs a little later; with soft disks that of 60 layers stays "
-            "low.",
-            deep,
-        ),
-        "fig05b_stiffness": Caption(
-            "What the stiffness of the disks changes in the slab of Fig. 3. (e) Response at x = 0 over that of the "
-            "stiffest disks; shaded: 2 % from 1000 to 1e5, as the paper says. (f) Depth and largest width of the "
-            "region of open contacts; dotted: 2000, from which the paper sees it saturate. (g) Forces at which the "
-            "first contact opens, two peaks appear and the region reaches the floor. Stiffnesses at which gravity "
-            "alone rearranges the lattice are left out.",
-            "Three plots against the stiffness on a logarithmic axis; all curves level off beyond 2000.",
-            {**slab, "force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses},
-        ),
-        "fig05c_depth_and_width": Caption(
-            f"(h) Depth of the region for slabs of several widths; open symbols as in (a). (i) Response at {compared} "
-            f"{WEIGHT} for several depths, over the height h. (j) Forces at which two peaks appear and the region "
-            "reaches the floor, against the depth.",
-            "Three plots: depth against force, responses with two peaks in shallow slabs and one in deep ones, and "
-            "forces of the events that grow with the depth.",
-            {**deep, "force": parameters.size_forces},
-        ),
-    }
+    depths, stiffnesses = [n for n, _ in parameters.sizes], parameters.size_stiffnesses
+    slab, shown = of_scene(parameters.scene), drawn(NETWORK_FORCES, "states")
+    deep = {**slab, "normal_stiffness": stiffnesses, "packing": f"slabs of {values(depths)} layers"}
+    stiff = {**slab, "force": drawn(STIFFNESS_FORCES, "stiffness"), "normal_stiffness": parameters.stiffnesses}
+    return of_group(
+        "frictionless_crossover",
+        {
+            "fig03_frictionless_response": {**slab, "force": drawn(PROFILE_FORCES, "response")},
+            "fig04_frictionless_contacts": {**slab, "force": shown},
+            "fig05_teardrop": deep,
+            "fig05b_stiffness": stiff,
+            "fig05c_depth_and_width": {**deep, "force": parameters.size_forces},
+        },
+        panels=panels(shown),
+        stiffnesses=stiffnesses,
+        compared=drawn((COMPARED_FORCE,), "sizes"),
+    )
 
 
 def nearest(stored: np.ndarray, wanted: Sequence[float]) -> list[int]:
@@ -125,20 +92,11 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
-    colours = style.ordered_colours(len(chosen))
-    for at, (k, colour) in enumerate(zip(chosen, colours, strict=True)):
+    for at, (k, look) in enumerate(family(chosen, marked=False, dashed=True)):
         one = data.isel(force=k)
-        profiles.plot(
-            x,
-            one["floor_response"],
-            color=colour,
-            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
-            marker=style.MARKERS[at % len(style.MARKERS)],
-            markersize=2.2,
-            linewidth=0.9,
-            label=f"{float(one['force']):g}",
-        )
-    profiles.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+        look |= {"marker": style.marked_line(at)["marker"], "markersize": 2.2}
+        profiles.plot(x, one["floor_response"], **look, linewidth=0.9, label=f"{float(one['force']):g}")
+    zero(profiles)
     profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
     profiles.legend(title=style.FORCE, loc="upper right")
 
@@ -165,7 +123,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     style.paper_value(centre, PAPER_OPENING, f"paper: {PAPER_OPENING:g}", side="behind")
     centre.set_ylim(0.0, 1.65 * highest)
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
-    centre.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    centre.xaxis.set_major_formatter("{x:g}")
     centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
     style.letters(np.array([profiles, centre]), place="above")
     return figure
@@ -218,24 +176,15 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
 
 def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Dataset], str]) -> None:
     """A measure of the teardrop against the force, up to where it reaches the floor (open marker)."""
-    colours = style.ordered_colours(slabs.sizes["slab"])
-    for at, colour in enumerate(colours):
+    for at, look in family(range(slabs.sizes["slab"])):
         one = slabs.isel(slab=at)
         reached = np.flatnonzero(one["reaches_floor"].values > 0)
         end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
         force, values = one["force"].values[:end], one[name].values[:end]
-        axes.plot(force, values, **style.marked_line(at, colour=colour), label=label(one))
+        axes.plot(force, values, **look, label=label(one))
         if len(reached):
-            axes.plot(
-                force[-1:],
-                values[-1:],
-                linestyle="none",
-                marker=style.MARKERS[at % len(style.MARKERS)],
-                markerfacecolor="white",
-                markeredgecolor=colour,
-                markersize=5.0,
-                zorder=4,
-            )
+            hollow = {"linestyle": "none", "marker": look["marker"], "markersize": 5.0, "zorder": 4}
+            axes.plot(force[-1:], values[-1:], **hollow, markerfacecolor="white", markeredgecolor=look["color"])
 
 
 def _stiffness(data: xr.Dataset) -> Figure:
@@ -282,8 +231,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
     style.logarithmic(events, "y")
     events.set(ylabel=f"force of the event, {style.FORCE}")
     events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
-    events.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    events.yaxis.set_minor_formatter(NullFormatter())
+    events.yaxis.set_major_formatter("{x:g}")
+    events.yaxis.set_minor_formatter("")
     events.legend()
     for axes in (centre, size, events):
         axes.set(xscale="log", xlabel=style.STIFFNESS)
@@ -301,18 +250,12 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
 
     softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
     at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
-    colours = style.ordered_colours(softest.sizes["slab"])
-    for at, colour in enumerate(colours):
+    for at, look in family(range(softest.sizes["slab"]), marked=False, dashed=True):
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height
-        profiles.plot(
-            one["x"].values[seen] / height,
-            one["floor_response"].values[seen] * height,
-            color=colour,
-            linestyle=style.LINE_STYLES[at % len(style.LINE_STYLES)],
-            label=f"{int(one['layers'])}",
-        )
+        x, response = one["x"].values[seen] / height, one["floor_response"].values[seen] * height
+        profiles.plot(x, response, **look, label=f"{int(one['layers'])}")
     label = f"{style.RESPONSE}$\\,\\times\\,h/{style.RADIUS}$"
     profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
@@ -335,8 +278,6 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     events.legend(fontsize=7, loc="upper left")
     force = float(at_force["force"])
     soft, stiff = (style.equals("k_N", k, style.STIFFNESS_UNIT) for k in (stiffnesses[0], stiffnesses[-1]))
-    names = letters("fig05c_depth_and_width")
-    style.letter(box, next(names), place="above", text=stiff)
-    style.letter(profiles, next(names), place="above", text=f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}")
-    style.letter(events, next(names), place="above")
+    load = f"{style.equals(style.F_EXT, force, style.WEIGHT)}, {soft}"
+    titles((box, profiles, events), (stiff, load, ""), stem="fig05c_depth_and_width")
     return figure

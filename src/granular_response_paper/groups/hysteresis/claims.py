@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import xarray as xr
 
+from ...claims import asked
 from ...claims.bootstrap import over_brackets, over_realizations
-from ...claims.claim import Claim, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.claim import Claims, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "hysteresis"
+CLAIMS = Claims(GROUP)
 #: Realizations from which on they have an interval of confidence.
 FEWEST = 3
-
-
-def _name(case: xr.Dataset) -> str:
-    return f"polydispersity {float(case['polydispersity']):g}, friction {float(case['friction']):g}"
 
 
 def over_packings(each: Sequence[Quantity]) -> Quantity:
@@ -30,6 +27,12 @@ def over_packings(each: Sequence[Quantity]) -> Quantity:
     return Quantity(middle, min(one.low for one in each), max(one.high for one in each), "range")
 
 
+@CLAIMS.add(
+    "B2",
+    "beyond the paper, I and VII",
+    "range in which loading leaves nothing behind, over the range in which the response is linear",
+    "what is nonlinear is irreversible, and what is linear elastic",
+)
 def ranges(data: Data, words: Bounds) -> Finding:
     events = data.get(GROUP, "events", "low", "high", "polydispersity", "friction")
     readings: list[Reading] = []
@@ -49,11 +52,8 @@ def ranges(data: Data, words: Bounds) -> Finding:
             continue
         found = over_packings(each)
         ends[bool(one["friction"] > 0.0)].append(found)
-        about = words["about"]
-        condition = Condition("reversible over linear range", found, 1.0 - about, 1.0 + about, ("about",))
-        readings.append(Reading(_name(one), condition))
-    if not readings:
-        raise NotMeasured("no packing leaves its linear range")
+        readings.append(Reading(asked.material(one), asked.near("reversible over linear range", found, words, "about")))
+    CLAIMS.needs(readings, "no packing leaves its linear range")
     parts = [
         f"{'with' if friction else 'without'} friction {_span(found)}" for friction, found in ends.items() if found
     ]
@@ -70,6 +70,12 @@ def _span(found: Sequence[Quantity]) -> str:
     return f"{low:.2g} to {high:.2g}" if np.isfinite(high) else f"above {low:.2g}"
 
 
+@CLAIMS.add(
+    "B3",
+    "beyond the paper, IV",
+    "what is lost and changed when the same force is applied a second time",
+    "with its contacts modified by the load, a packing is incrementally elastic",
+)
 def repeated(data: Data, words: Bounds) -> Finding:
     needed = ("force", "work", "slid_again", "crossed_again", "floor_repeated", "polydispersity", "friction")
     loops = data.get(GROUP, "loops", *needed)
@@ -84,9 +90,9 @@ def repeated(data: Data, words: Bounds) -> Finding:
         changed.append(floor.value)
         readings.append(
             Reading(
-                f"{_name(one)}, {float(one['force']):g} mg",
-                Condition("part of the work lost again", part, most=words["visible"], words=("visible",), unit="%"),
-                Condition("change of the response", floor, most=words["visible"], words=("visible",), unit="%"),
+                f"{asked.material(one)}, {float(one['force']):g} mg",
+                asked.at_most("part of the work lost again", part, words, "visible", "%"),
+                asked.at_most("change of the response", floor, words, "visible", "%"),
             )
         )
     return Finding(
@@ -102,25 +108,3 @@ def _of_realizations(values: np.ndarray) -> Quantity:
     """One packing has no interval, of several the mean has one."""
     found = values[np.isfinite(values)]
     return over_realizations(found, np.mean) if len(found) > 1 else Quantity.exact(found[0])
-
-
-CLAIMS = (
-    Claim(
-        "B2",
-        "beyond the paper, I and VII",
-        "range in which loading leaves nothing behind, over the range in which the response is linear",
-        "what is nonlinear is irreversible, and what is linear elastic",
-        ranges,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "B3",
-        "beyond the paper, IV",
-        "what is lost and changed when the same force is applied a second time",
-        "with its contacts modified by the load, a packing is incrementally elastic",
-        repeated,
-        (),
-        GROUP,
-    ),
-)

@@ -9,10 +9,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import NullFormatter
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import material, packing, titles, zero
 
 from .parameters import Parameters
 
@@ -42,34 +42,20 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     curves = datasets["curves"]
     cases, one = looped(curves["polydispersity"].values, curves["friction"].values)
     lattices = [parameters.cases[case] for case in cases]
-    most = max(case.realizations + case.surveyed for case in parameters.cases)
     further = max(case.surveyed for case in parameters.cases)
-    survey = f", {further} of which the survey has simulated" if further else ""
-    part = f"{100.0 * parameters.left:g} %"
     said = of_scene(parameters.base, friction=None, polydispersity=None)
-    return {
-        "hysteresis_loops": Caption(
-            "Not in the paper: a force on the top disk grows, falls to nothing and grows again, along paths of "
-            "equilibria. (a) Force against the displacement of the loaded disk in lattices; without friction all three "
-            "ways are one curve. (b) What is added to the floor forces under the lattice with "
-            f"µ = {parameters.cases[one].friction:g}: by the force, after it, and by it again.",
-            "Force against displacement: one line without friction, narrow loops with friction. Beside it floor forces "
-            "against position: loaded and loaded again lie on each other, and unloading leaves a small remainder.",
-            said | {"friction": [case.friction for case in lattices], "force": lattices[0].forces[-1]},
-        ),
-        "hysteresis_ranges": Caption(
-            "Not in the paper: what is irreversible. (a) Largest change of a floor force that a loop to F_ext and back "
-            f"leaves, per largest change under F_ext; dashed: {part}. (b) Energy that goes into sliding, and where "
-            "dynamics crosses the end of a branch, in that first loop and in the second one, per work of the first "
-            "loading. Means over realizations of packings with friction; what is less than the axis shows is drawn on "
-            "its end. (c) Forces up to which no contact near the load opens, the response at x = 0 is linear within "
-            f"1 %, and a loop leaves less than {part} on the floor: medians and extremes over up to {most} "
-            f"realizations{survey}. Open symbols with arrows: beyond the largest force in some of them.",
-            "Two double logarithmic panels with rising curves, and a panel with a row for each packing in which three "
-            "symbols mark forces: without friction the reversible range mostly has no end.",
-            said | {"friction": sorted({case.friction for case in parameters.cases})},
-        ),
-    }
+    return of_group(
+        "hysteresis",
+        {
+            "hysteresis_loops": said
+            | {"friction": [case.friction for case in lattices], "force": lattices[0].forces[-1]},
+            "hysteresis_ranges": said | {"friction": sorted({case.friction for case in parameters.cases})},
+        },
+        friction=parameters.cases[one].friction,
+        part=f"{100.0 * parameters.left:g} %",
+        most=max(case.realizations + case.surveyed for case in parameters.cases),
+        survey=f", {further} of which the survey has simulated" if further else "",
+    )
 
 
 def looped(polydispersity: np.ndarray, friction: np.ndarray) -> tuple[list[int], int]:
@@ -80,10 +66,6 @@ def looped(polydispersity: np.ndarray, friction: np.ndarray) -> tuple[list[int],
     lattices = np.flatnonzero(polydispersity == polydispersity.min())
     rubbing = lattices[friction[lattices] > 0.0]
     return lattices.tolist(), int(rubbing[np.argmin(friction[rubbing])] if rubbing.size else lattices[0])
-
-
-def _packing(delta: float) -> str:
-    return style.equals(style.POLYDISPERSITY, delta) if delta else "lattice"
 
 
 def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
@@ -114,16 +96,15 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
         Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=2.6),
     ]
     loops.legend(handles, ["loading, unloading", "loading again"], loc="lower right")
-    style.letter(loops, "a", place="above", text="lattices")
     x, added = floor["x"].isel(case=one).values, floor["added"].isel(case=one).values
     near = np.abs(x) <= REACH
     for branch, label in enumerate(("loaded", "unloaded", "loaded again")):
         dots = {"linestyle": "none", "marker": "o", "markersize": 2.6} if branch == 2 else {}
         below.plot(x[near], added[branch, near], label=label, **style.line(branch) | dots)
-    below.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(below)
     below.set(xlabel=style.POSITION, ylabel=rf"floor force less that at rest$\,/\,{style.WEIGHT}$")
     below.legend(loc="upper right")
-    style.letter(below, "b", place="above", text=f"the floor, {style.equals(style.FRICTION, friction[one])}")
+    titles((loops, below), ("lattices", f"the floor, {style.equals(style.FRICTION, friction[one])}"))
     return figure
 
 
@@ -150,7 +131,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     left.axhline(events.attrs["left"], color=style.BLACK, linewidth=0.7, linestyle=(0, (4, 2)))
     for axes, label in ((left, "left on the floor, per change"), (lost, "lost, per work of the load")):
         axes.set(xscale="log", yscale="log", ylim=(LEAST, 1.0), xlabel=style.FORCE, ylabel=label)
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.xaxis.set_minor_formatter("")
     materials = [
         Line2D([], [], color=style.line(k)["color"], marker=style.MARKERS[k], markersize=3.0, linewidth=0.9)
         for k, mu in enumerate(frictions)
@@ -163,8 +144,6 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
         Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=3.0, markerfacecolor=fill)
         for fill in (style.MUTED, "white")
     ]
-    style.letter(left, "a", place="above", text="after unloading")
-    style.letter(lost, "b", place="above", text="energy")
     _ends(ends, events, delta, friction)
     handles = [
         Line2D([], [], color=style.COLOURS[k], marker=marker, linestyle="none", markersize=4.0)
@@ -172,9 +151,9 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
     ]
     texts = [text for text, _ in NAMES.values()]
     rubbing = [style.equals(style.FRICTION, mu) for mu in frictions if mu]
-    names = [*rubbing, *(_packing(one) for one in spreads), "first loop", "second loop", *texts]
+    names = [*rubbing, *(packing(one) for one in spreads), "first loop", "second loop", *texts]
     figure.legend([*materials, *packings, *loop, *handles], names, loc="outside lower center", ncols=5)
-    style.letter(ends, "c", place="above", text="ranges")
+    titles((left, lost, ends), ("after unloading", "energy", "ranges"))
     return figure
 
 
@@ -209,10 +188,10 @@ def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarra
                     "", (1.0, row), (middle.max(), row), xycoords=("axes fraction", "data"), textcoords="data",
                     arrowprops={"arrowstyle": "->", "color": colour, "linewidth": 0.9},
                 )  # fmt: skip
-    names = [f"{_packing(d)}, {style.equals(style.FRICTION, mu)}" for d, mu in zip(delta, friction, strict=True)]
+    names = list(map(material, delta, friction))
     axes.set(xlabel=style.FORCE, ylim=(len(names) - 0.4, -0.6))
     if last > 0.0:
         axes.set(xscale="log", xlim=(max(0.5 * first, 2e-3 * last), 3.0 * last))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.xaxis.set_minor_formatter("")
     axes.set_yticks(range(len(names)), names)
     axes.tick_params(axis="y", length=0.0, which="both")

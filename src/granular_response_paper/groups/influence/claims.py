@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...claims import asked
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.claim import Claims, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "influence"
@@ -23,29 +24,17 @@ ELASTIC = 2.0
 )
 def saint_venant(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "saint_venant", "exponent", "polydispersity", "friction")
-    most = words["quite well"]
+    what = "power of the distance with which two equivalent loads differ less"
     readings, means = [], []
     for case in range(study.sizes["case"]):
         one = study.isel(case=case, separation=0)
         each = one["exponent"].values
         each = each[np.isfinite(each[:, 0])]
-        if not len(each):
-            raise NotMeasured(f"data/{GROUP}.nc: saint_venant holds no power, no rows are fitted")
+        CLAIMS.needs(len(each), "saint_venant holds no power, no rows are fitted")
         # of a lattice there is one: the range over the rows that are fitted
         found = over_realizations(each[:, 0], np.mean) if len(each) > 1 else Quantity.range(each[0])
         means.append(found.value)
-        readings.append(
-            Reading(
-                f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}",
-                Condition(
-                    "power of the distance with which two equivalent loads differ less",
-                    found,
-                    (1.0 - most) * ELASTIC,
-                    (1.0 + most) * ELASTIC,
-                    ("quite well",),
-                ),
-            )
-        )
+        readings.append(Reading(asked.material(one), asked.near(what, found, words, "quite well", ELASTIC)))
     return Finding(
         f"the difference of a force and its two halves falls as the power {min(means):.2g} to {max(means):.2g} of the "
         "distance; 2 in an elastic body",

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, lettered, of_scene
+from granular_response_paper.captions import Caption, lettered, of_group, of_scene
+from granular_response_paper.panels import material, titles, zero
 
 from .parameters import Parameters
 
@@ -30,39 +31,19 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    most = max(case.realizations for case in parameters.cases)
     maps = [case for case in parameters.cases if case.polydispersity == parameters.cases[-1].polydispersity]
-    panels = lettered(f"δ = {case.polydispersity:g}, µ = {case.friction:g}" for case in maps)
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None)
-    low, high = parameters.fitted
-    return {
-        "influence_map": Caption(
-            "Not in the paper: how much force every disk sets in motion on the floor. A small vertical force on a disk "
-            "changes the forces on the floor; the colour is the sum of their absolute changes per force, 1 where no "
-            "floor disk is relieved. Exact in the limit of small forces, at rest under gravity, contacts at the limit "
-            "of Coulomb sticking; the walls have the friction of the disks. Disks that bear nothing are white. "
-            f"{panels}.",
-            "The same slab with and without friction, its disks coloured by the force that each sets in motion: all "
-            "alike with friction, in bright wedges without.",
-            said,
-        ),
-        "influence_saint_venant": Caption(
-            "Saint-Venant's principle, by which Sec. VI explains that superposition holds. (a) Changes of the floor "
-            "forces by a small force on a disk, and by two halves of it on its neighbours in the row: their absolute "
-            "difference summed over the floor disks, against the height of the disk over the distance of the halves; "
-            f"mean and standard deviation over {most} realizations. (b) The power with which it falls between {low:g} "
-            f"and {high:g} distances, with 95 % intervals of the mean; of a lattice the range over the rows fitted.",
-            "Falling lines in a double logarithmic panel, steepest for the lattices, flat for disorder without "
-            "friction; beside it the powers as symbols with error bars, two for the frictionless lattice.",
-            said,
-        ),
-    }
+    return of_group(
+        "influence",
+        {"influence_map": said, "influence_saint_venant": said},
+        p=parameters,
+        panels=lettered(f"δ = {case.polydispersity:g}, µ = {case.friction:g}" for case in maps),
+        most=max(case.realizations for case in parameters.cases),
+    )
 
 
 def _name(data: xr.Dataset, case: int) -> str:
-    delta = float(data["polydispersity"][case])
-    packing = f"$\\delta = {delta:g}$" if delta else "lattice"
-    return f"{packing}, $\\mu = {float(data['friction'][case]):g}$"
+    return material(float(data["polydispersity"][case]), float(data["friction"][case]))
 
 
 def compared(polydispersity: np.ndarray) -> list[int]:
@@ -76,7 +57,8 @@ def _maps(data: xr.Dataset) -> Figure:
     figure, (panels,) = style.figure(1, len(cases), width="double", height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
     largest = float(np.nanquantile(data["total"].values[cases], 0.995))
-    for panel, (case, axes) in enumerate(zip(cases, panels, strict=True)):
+    titles(panels, [_name(data, case) for case in cases])
+    for case, axes in zip(cases, panels, strict=True):
         one = data.isel(case=case)
         x, z = one["position"].values.T
         shown = np.flatnonzero(np.abs(x) <= REACH)
@@ -87,7 +69,6 @@ def _maps(data: xr.Dataset) -> Figure:
         axes.add_collection(drawn)
         axes.axhline(0.0, color=style.BLACK, linewidth=1.0)
         axes.set(xlim=(-REACH, REACH), ylim=(-1.0, z.max() + 1.5), aspect="equal", xlabel=style.POSITION)
-        style.letter(axes, "abcdefgh"[panel], place="above", text=_name(data, case))
     panels[0].set_ylabel(style.HEIGHT)
     ticks = [t for t in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if t <= largest]
     label = "absolute forces on the floor\nper unit force on the disk"
@@ -120,7 +101,6 @@ def _decay(data: xr.Dataset) -> Figure:
     style.logarithmic(falls)
     falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
     falls.legend(loc="lower left")
-    style.letter(falls, "a", place="above", text="a force and its two halves")
     for case in cases:
         each = data["exponent"].isel(case=case, separation=0).values
         each = each[np.isfinite(each[:, 0])]
@@ -134,8 +114,8 @@ def _decay(data: xr.Dataset) -> Figure:
         look = style.marked_line(case) | {"linestyle": "none", "markersize": 5}
         powers.errorbar([case], [mean], error, capsize=3, **look)
     powers.axhline(2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
-    powers.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(powers)
     powers.set_xticks(list(cases), [_name(data, case) for case in cases], rotation=30, ha="right")
     powers.set(ylabel="power of the height")
-    style.letter(powers, "b", place="above", text="how fast it falls")
+    titles((falls, powers), ("a force and its two halves", "how fast it falls"))
     return figure

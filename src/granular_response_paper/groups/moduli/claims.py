@@ -7,14 +7,13 @@ import math
 import numpy as np
 import xarray as xr
 
+from ...claims import asked
 from ...claims.bootstrap import over_realizations
-from ...claims.claim import Claim, Condition, Data, Finding, Quantity, Reading
+from ...claims.claim import Claims, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "moduli"
-
-#: "Can be described by": nearly the same.
-WORD = "nearly"
+CLAIMS = Claims(GROUP)
 
 
 def _largest(study: xr.Dataset, case: int) -> xr.Dataset:
@@ -31,10 +30,9 @@ def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
         one = _largest(study, case)
         found = over_realizations(one["difference"].sel(solid=solid).values, np.mean)
         values[bool(one["friction"] > 0.0)].append(found.value)
-        name = f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}"
         what = f"largest difference to the {of} slab per its largest pressure, mean of packings"
-        condition = Condition(what, found, most=words[WORD], words=(WORD,), unit="%")
-        readings.append(Reading(f"{name}, {float(one['layers']):g} layers", condition))
+        name = f"{asked.material(one)}, {float(one['layers']):g} layers"
+        readings.append(Reading(name, asked.at_most(what, found, words, "nearly", "%")))
     parts = [
         f"{Quantity.range(these, math.nan).text('%')} {'with' if friction else 'without'} friction"
         for friction, these in values.items()
@@ -48,31 +46,21 @@ def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
     )
 
 
+@CLAIMS.add(
+    "B4",
+    "beyond the paper, I",
+    "response of disordered packings to small loads beside the elastic slab of their own measured moduli",
+    "large systems under small forces can be described by elasticity",
+)
 def by_their_moduli(data: Data, words: Bounds) -> Finding:
     return _described(data, words, "free", "elastic")
 
 
+@CLAIMS.add(
+    "B5",
+    "beyond the paper, I",
+    "the same beside the isotropic slab nearest to these moduli",
+    "large systems under small forces can be described by isotropic elasticity",
+)
 def isotropic(data: Data, words: Bounds) -> Finding:
     return _described(data, words, "isotropic", "isotropic")
-
-
-CLAIMS = (
-    Claim(
-        "B4",
-        "beyond the paper, I",
-        "response of disordered packings to small loads beside the elastic slab of their own measured moduli",
-        "large systems under small forces can be described by elasticity",
-        by_their_moduli,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "B5",
-        "beyond the paper, I",
-        "the same beside the isotropic slab nearest to these moduli",
-        "large systems under small forces can be described by isotropic elasticity",
-        isotropic,
-        (),
-        GROUP,
-    ),
-)

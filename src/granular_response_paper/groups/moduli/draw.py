@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_scene, values
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import material, outer, titles, zero
 
 from .parameters import Parameters
 
@@ -37,65 +38,28 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     packing = f"slabs with periodic sides, {parameters.disks_per_layer} disks in a row for each layer"
     said = of_scene(parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=packing)
-    group = parameters.lattice
+    lattice = of_scene(
+        parameters.base,
+        friction=parameters.lattice.friction, wall_friction=0.0, packing=None, stiffness_ratio=None,
+    )  # fmt: skip
     most = [max(map(sum, zip(case.realizations, case.further, strict=True))) for case in parameters.cases]
     surveyed: Counter[int] = Counter()
     for case in parameters.cases:
         surveyed.update(dict(zip(case.layers, case.further, strict=True)))
     stored = [f"{count} of {layers} layers" for layers, count in sorted(surveyed.items()) if count]
-    survey = f" Packings of the survey, which the pipeline reads: {', '.join(stored)}." if stored else ""
-    edges = " Black edges: at least half of the packings are the survey's." if stored else ""
-    ensemble = f"{min(most)} to {max(most)}" if min(most) != max(most) else f"{most[0]}"
-    tolerances = values([100.0 * tolerance for tolerance in parameters.tolerances])
-    lattice = {"wall_friction": 0.0, "packing": None, "stiffness_ratio": None}
-    return {
-        "moduli_packings": Caption(
-            "Not in the paper: moduli of disordered packings over k_N, from the change of their contact forces under "
-            "uniform strain, against their contacts per disk (those of disks that bear something; the more layers, the "
-            "more contacts). (a) Bulk and (b) shear modulus of the isotropic solid nearest to them, (c) horizontal "
-            "over vertical modulus. Open symbols: every disk moves with the strain, and none turns; filled: disks move "
-            "and turn as equilibrium wants. Bars are standard deviations over realizations, up to "
-            f"{ensemble} of each size.{survey}",
-            "Three panels of symbols against the number of contacts; filled symbols lie below open ones, most of all "
-            "for the shear modulus, and the horizontal modulus below the vertical one but for large polydispersity.",
-            said,
-        ),
-        "moduli_response": Caption(
-            "Response of the floor to a small vertical force on the top, mean over all disks of the top row "
-            f"(smoothed, w = {parameters.width:g}; band: standard deviation over packings), and that of elastic slabs "
-            "with the moduli measured by straining these packings: no parameter is fitted. Exact in the limit of small "
-            "forces; contacts at the limit of Coulomb stick. (a) to (f) packings as named. The floor has the friction "
-            f"of the disks.{survey}",
-            "Six panels of single peaks; with friction the measured curve and those of the slabs lie on each other, "
-            "without friction they do not.",
-            said,
-        ),
-        "moduli_size": Caption(
-            "Largest difference of the response to the slab of the packing's own moduli, against the number of layers, "
-            "with 95 % intervals of the mean over packings: (a) of one load, smoothed over "
-            f"{parameters.wide:.3g} of the height; (b) of the mean over the loads of one packing. Grey lines: "
-            f"{tolerances} %.{edges}",
-            "Double logarithmic panels: falling lines for packings with friction, flat ones near and above 1 without.",
-            said,
-        ),
-        "moduli_lattice": Caption(
-            "Moduli a, b, c, d of eq. (6) over k_N of lattices with free rotations, measured (symbols) and in closed "
-            "form (lines): horizontal contacts (a) closed and (b) open. (c) k_T/k_N at which the response turns from "
-            "two peaks to one without horizontal contacts: by the closed form (lines), by the measured moduli (symbols "
-            "at 0) in a half plane and in a slab on a smooth floor, with rotations free and suppressed, and in "
-            "lattices under a small force (diamonds), which tend to the slab with free rotations.",
-            "Symbols on lines in two panels; in the third one four horizontal lines and diamonds that rise towards "
-            "the second lowest as the number of layers grows.",
-            of_scene(parameters.base, friction=group.friction, **lattice),
-        ),
-    }
+    return of_group(
+        "moduli",
+        {"moduli_packings": said, "moduli_response": said, "moduli_size": said, "moduli_lattice": lattice},
+        p=parameters,
+        ensemble=f"{min(most)} to {max(most)}" if min(most) != max(most) else f"{most[0]}",
+        survey=f" Packings of the survey, which the pipeline reads: {', '.join(stored)}." if stored else "",
+        edges=" Black edges: at least half of the packings are the survey's." if stored else "",
+        tolerances=[100.0 * tolerance for tolerance in parameters.tolerances],
+    )
 
 
 def _name(data: xr.Dataset, case: int) -> str:
-    return (
-        f"${style.POLYDISPERSITY} = {float(data['polydispersity'][case]):g}$, "
-        f"${style.FRICTION} = {float(data['friction'][case]):g}$"
-    )
+    return material(float(data["polydispersity"][case]), float(data["friction"][case]))
 
 
 def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
@@ -151,15 +115,12 @@ def _responses(data: xr.Dataset) -> Figure:
             ("isotropic", {"color": style.COLOURS[1], "linestyle": (0, (1.2, 1.2))}, "isotropic slab"),
         ):
             axes.plot(place, one["predicted"].sel(solid=solid).mean("realization"), label=label, **look)
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
-        layers = float(one["layers"])
-        style.letter(axes, "abcdefgh"[case], place="above", text=f"{_name(data, case)}, {layers:g} layers")
-    for axes in panels[:, 0]:
-        axes.set_ylabel(style.PRESSURE)
-    for axes in panels[-1]:
-        axes.set(xlabel=style.SCALED_POSITION, xlim=(place[0], place[-1]))
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+        zero(axes)
+        axes.set_xlim(place[0], place[-1])
+    layers = np.nanmax(data["layers"].values, axis=1)
+    titles(panels.flat, [f"{_name(data, case)}, {layers[case]:g} layers" for case in cases])
+    outer(panels, style.SCALED_POSITION, style.PRESSURE)
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -187,8 +148,7 @@ def _sizes(data: xr.Dataset) -> Figure:
         axes.minorticks_off()
     panels[0].set_ylabel("largest difference / largest pressure")
     w = [str(name) for name in data["smoothing"].values]
-    style.letter(panels[0], "a", place="above", text=f"one load, $w$ = {w[smoothing[0]]}")
-    style.letter(panels[1], "b", place="above", text=f"mean over loads, $w$ = {w[smoothing[1]]}")
+    titles(panels, (f"one load, $w$ = {w[smoothing[0]]}", f"mean over loads, $w$ = {w[smoothing[1]]}"))
     handles, labels = panels[1].get_legend_handles_labels()
     figure.legend([handle[0] for handle in handles], labels, loc="outside lower center", ncols=3)
     return figure
@@ -228,9 +188,7 @@ def _lattice(data: xr.Dataset) -> Figure:
     turn.plot(steps, ends, color=look["color"], linewidth=0.7, linestyle=(0, (1.2, 1.2)))
     turn.set(xlabel="1 / layers", ylabel=f"${style.STIFFNESS_RATIO}$ where two peaks end")
     turn.set_xlim(-0.006, None)
-    style.letter(closed, "a", place="above", text="horizontal contacts closed")
-    style.letter(opened, "b", place="above", text="open")
-    style.letter(turn, "c", place="above")
+    titles((closed, opened, turn), ("horizontal contacts closed", "open", ""))
     keys = [(key, name) for axes in (opened, turn) for key, name in zip(*axes.get_legend_handles_labels(), strict=True)]
     figure.legend(*zip(*keys, strict=True), loc="outside lower center", ncols=3)
     return figure

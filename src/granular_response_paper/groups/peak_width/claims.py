@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...claims.claim import Claim, Data, Finding, NotMeasured, Quantity, Reading, about
+from ...claims.claim import Claims, Data, Finding, Quantity, Reading, about
 from ...claims.words import Bounds
 
 GROUP = "peak_width"
+CLAIMS = Claims(GROUP)
 #: Power of depth with which the width of an elastic response grows; force that diffuses has half of it, so that
 #: "about" it, within a quarter, is nearer to it than to that.
 ELASTIC = 1.0
@@ -16,11 +17,23 @@ ELASTIC = 1.0
 WIDTHS = {"half_maximum": "half maximum", "half_force": "half of the force"}
 
 
+@CLAIMS.add(
+    "B6",
+    "beyond the paper, II",
+    "power of the depth with which the width of the response inside a slab grows, by two definitions of the width",
+    "the width is proportional to the depth, as in an elastic body, not to its root",
+)
 def inside_slabs(data: Data, words: Bounds) -> Finding:
     """On lines inside the highest slab of each case."""
     return _growth(data, "inside", words, "power of the depth")
 
 
+@CLAIMS.add(
+    "B7",
+    "beyond the paper, II.B",
+    "power of the height of a slab with which the width of the response on its floor grows",
+    "the width on the floor is proportional to the depth of the slab",
+)
 def on_floors(data: Data, words: Bounds) -> Finding:
     """On the floors of slabs of growing height."""
     return _growth(data, "floors", words, "power of the height")
@@ -57,8 +70,7 @@ def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
 def power(found: xr.Dataset) -> Quantity:
     """One power with its interval; raises NotMeasured where there is none."""
     value, (low, high) = float(found["power"].values[0]), found["interval"].values
-    if not np.isfinite([value, low, high]).all():
-        raise NotMeasured(f"data/{GROUP}.nc holds a width without a power")
+    CLAIMS.needs(np.isfinite([value, low, high]).all(), "holds a width without a power")
     realizations = int(found["realizations"]) if "realizations" in found.coords else 1
     return Quantity(value, float(low), float(high), "confidence" if realizations > 1 else "range")
 
@@ -71,25 +83,3 @@ def material(one: xr.Dataset) -> str:
         f"{f'δ = {delta:g}' if delta else 'lattice'}, friction {float(one['friction']):g}{prepared}, "
         f"{f'force of {force:g} at 20 layers' if force else 'small force'}"
     )
-
-
-CLAIMS = (
-    Claim(
-        "B6",
-        "beyond the paper, II",
-        "power of the depth with which the width of the response inside a slab grows, by two definitions of the width",
-        "the width is proportional to the depth, as in an elastic body, not to its root",
-        inside_slabs,
-        (),
-        GROUP,
-    ),
-    Claim(
-        "B7",
-        "beyond the paper, II.B",
-        "power of the height of a slab with which the width of the response on its floor grows",
-        "the width on the floor is proportional to the depth of the slab",
-        on_floors,
-        (),
-        GROUP,
-    ),
-)

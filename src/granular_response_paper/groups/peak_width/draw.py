@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
-from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_scene
+from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_group, of_scene
+from granular_response_paper.panels import material, titles
 
 from .parameters import Parameters
 
@@ -39,57 +40,37 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     counts = {case.count(h) for case in parameters.cases if case.polydispersity for h in range(len(case.heights))}
-    disorder = (
-        f"Disorder: of the mean profile of {' or '.join(map(str, sorted(counts)))} realizations. " if counts else ""
-    )
-    low, high = parameters.fitted
     said = of_scene(
         parameters.base, friction=None, wall_friction=None, polydispersity=None, packing=None, normal_stiffness=None,
         width=parameters.width,
     )  # fmt: skip
-    reference = parameters.reference_layers
     surveyed = [layers for case in parameters.cases for layers in case.surveyed]
     stored = f"packings of the survey, {min(surveyed)} to {max(surveyed)} layers" if surveyed else ""
-    edges, along = (f"Black edges: {stored}. ", f"With {stored}. ") if stored else ("", "")
     slabs = (
         f"Walls and floor have the friction of the disks; rows have {parameters.disks_per_layer} disks for each layer; "
-        f"k_N = {parameters.base.contact.normal_stiffness:g} {WEIGHT}/{RADIUS} at {reference} layers grows as their "
-        f"number. Forces F, in {WEIGHT}, are those at {reference} layers and grow as the square of the number; "
-        "without one the limit of small forces. * gravity acts on disks without friction, which rub from then on."
+        f"k_N = {parameters.base.contact.normal_stiffness:g} {WEIGHT}/{RADIUS} at {parameters.reference_layers} layers "
+        f"grows as their number. Forces F, in {WEIGHT}, are those at {parameters.reference_layers} layers and grow as "
+        "the square of the number; without one the limit of small forces. * gravity acts on disks without friction, "
+        "which rub from then on."
     )
-    return {
-        "peak_width_depth": Caption(
-            "Not in the paper: how wide the response is. Filled symbols: half width at half maximum of the vertical "
-            "stress; open symbols: half width of the strip that bears half of the force; crosses: place of one of two "
-            "peaks, where there are two. (a) to (c) on lines inside the highest slab, (d) to (f) on the floors of "
-            f"slabs of several heights. {edges}Grey lines: elastic slabs of the lattice's "
-            "moduli, for the first case of a panel. Black lines have the slopes 1 (elastic) and 1/2 (diffusion). "
-            f"{disorder}{slabs}",
-            "Six panels with double logarithmic axes: symbols along lines of slope 1 for lattices under small forces "
-            "and for disorder with friction.",
-            said,
-        ),
-        "peak_width_powers": Caption(
-            "The powers with which these widths grow: (a) inside the highest slabs, from a depth of "
-            f"{low:g} {RADIUS} to {high:g} heights, (b) on the floors. 95 % intervals of the bootstrap over "
-            "realizations; of a lattice the range over fits without the shallowest and without the deepest third. "
-            f"{along}"
-            "Ticks: elastic slabs of the same heights by the same code. Dashed 1, dotted 1/2; in the grey band a "
-            f"power is nearer to 1 than to 1/2. {slabs}",
-            "Two panels of points with error bars in a row for each packing, most of them in a band around 1.",
-            said,
-        ),
-    }
+    realizations = " or ".join(map(str, sorted(counts)))
+    return of_group(
+        "peak_width",
+        {"peak_width_depth": said, "peak_width_powers": said},
+        p=parameters,
+        disorder=f"Disorder: of the mean profile of {realizations} realizations. " if counts else "",
+        edges=f"Black edges: {stored}. " if stored else "",
+        along=f"With {stored}. " if stored else "",
+        slabs=slabs,
+    )
 
 
 def name(data: xr.Dataset, case: int) -> str:
     """A case as it stands in legends."""
     one = data.isel(case=case)
-    delta, force = float(one["polydispersity"]), float(one["force"])
-    packing = f"$\\delta = {delta:g}$" if delta else "lattice"
     prepared = "*" if str(one["gravity"].values) == "frictionless" else ""
-    load = f", $F = {force:g}$" if force else ""
-    return f"{packing}, $\\mu = {float(one['friction']):g}${prepared}{load}"
+    load = f", $F = {float(one['force']):g}$" if one["force"] else ""
+    return material(float(one["polydispersity"]), float(one["friction"])) + prepared + load
 
 
 def kinds(data: xr.Dataset) -> tuple[tuple[str, list[int]], ...]:
@@ -108,7 +89,7 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     parts = kinds(inside)
     figure, panels = style.figure(2, len(parts), width="double", height=5.2, sharex="row", sharey="row")
     for row, (data, label) in enumerate(((inside, "depth"), (floors, "height of the slab"))):
-        for (title, cases), axes in zip(parts, panels[row], strict=True):
+        for (_, cases), axes in zip(parts, panels[row], strict=True):
             for place, case in enumerate(cases):
                 _widths(axes, data, case, place)
             axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$")
@@ -116,9 +97,8 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
                 axis.set_major_locator(LogLocator(subs=TICKS))
                 axis.set_major_formatter("{x:g}")
                 axis.set_minor_formatter("")
-            letter = "abcdef"[row * len(parts) + parts.index((title, cases))]
-            style.letter(axes, letter, place="above", text=title + (", inside" if row == 0 else ", on the floor"))
         panels[row, 0].set_ylabel(rf"half width$\,/\,{style.RADIUS}$")
+    titles(panels.flat, [title + where for where in (", inside", ", on the floor") for title, _ in parts])
     for axes in panels.ravel():
         _guides(axes)
     for axes in panels[0]:
@@ -161,9 +141,8 @@ def _powers(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     """A row for each case: powers inside and on the floor, by both definitions, and of what elastic slabs have."""
     cases = [case for _, members in kinds(inside) for case in members]
     figure, (panels,) = style.figure(1, 2, width="double", height=0.6 + 0.3 * len(cases), sharey=True)
-    for axes, data, text, letter in zip(
-        panels, (inside, floors), ("inside, against the depth", "on the floor, against the height"), "ab", strict=True
-    ):
+    titles(panels, ("inside, against the depth", "on the floor, against the height"))
+    for axes, data in zip(panels, (inside, floors), strict=True):
         axes.axvspan(HALFWAY, 2.0 * ELASTIC - HALFWAY, color="#EEEEEE", linewidth=0.0, zorder=0)
         axes.axvline(ELASTIC, linestyle=DASHED, **GUIDE)
         axes.axvline(DIFFUSIVE, linestyle=DOTTED, **GUIDE)
@@ -182,7 +161,6 @@ def _powers(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
                     linestyle="none", label="elastic slab" if row == 0 and k else None,
                 )  # fmt: skip
         axes.set(xlabel="power with which the width grows")
-        style.letter(axes, letter, place="above", text=text)
     panels[0].set_yticks(range(len(cases)), [name(inside, case) for case in cases])
     panels[0].set_ylim(len(cases) - 0.4, -0.6)
     panels[1].legend(loc="upper right", fontsize=7)

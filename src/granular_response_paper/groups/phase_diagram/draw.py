@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from granular_response.plot import style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, Value
+from granular_response_paper.captions import Caption, Value, of_group
+from granular_response_paper.panels import family, outer, packing, titles
 
 from .parameters import Parameters
 
@@ -48,58 +49,34 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     crossovers = datasets["crossovers"]
-    here = crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0]
-    frictions = sorted(set(crossovers["friction"].values[here].tolist()))
-    deltas = sorted(set(crossovers["polydispersity"].values[here].tolist()))
+    usual = crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0]
+    frictions, deltas = (
+        sorted(set(crossovers[name].values[usual].tolist())) for name in ("friction", "polydispersity")
+    )
+    rubbing, disordered = [mu for mu in frictions if mu], {"polydispersity": [delta for delta in deltas if delta]}
+    realizations, rows = int(crossovers["realizations"].values[usual].max()), len(parameters.widths)
     given: dict[str, Value] = {
         "friction": frictions,
         "wall_friction": frictions,
         "polydispersity": deltas,
-        "realizations": int(crossovers["realizations"].values[here].max()),
+        "realizations": realizations,
         "width": parameters.widths,
     }
-    last, rows = "abcdefghijklmnopqrstuvwxyz"[len(deltas) * len(parameters.widths) - 1], len(parameters.widths)
-    last_of_few = "abcdefghijklmnopqrstuvwxyz"[(len(deltas) - 1) * rows - 1]
-    return {
-        "fig22_phase_diagram": Caption(
-            f"(a) to ({last}) Crossover force from one peak to two against friction, measured on up to "
-            f"{given['realizations']} slabs simulated like those of Fig. 21 and on the lattice: a column for each "
-            "polydispersity, a row for each smoothing width. Full circles: crossovers of the mean response, at a dip "
-            f"of {100 * parameters.tolerance:g} % of the largest response; open circles with an arrow: bounds, where "
-            "the smallest force has two peaks already, or the largest one still. Thick and thin bars hold 68 and 95 % "
-            f"of {parameters.draws} bootstrap draws over the realizations; an end beyond every simulated force has an "
-            "arrow head at the edge. Dark: two peaks, light: one, white: not simulated, or too few packings bear the "
-            "force. Broken line: the lattice, whose last point is a bound; crosses: where it loses its symmetry; "
-            "star: where the paper's does beside smooth walls (Fig. 16).",
-            "Eight diagrams of force against friction. The boundary between one peak below and two above rises with "
-            "friction and lies lower the larger the polydispersity.",
-            given,
-        ),
-        "five_realizations": Caption(
-            f"Not in the paper, which averages {parameters.few} realizations: (a) to ({last_of_few}) part of the "
-            f"means of {parameters.few} of all realizations, {parameters.draws} times drawn at random, that have as "
-            "many peaks as the mean of all, against the force per crossover force of Fig. 22 (vertical line), for "
-            "each polydispersity, smoothing width and coefficient of friction.",
-            "Six panels with curves near 1 far from the crossover force, which dip to between 0.3 and 0.7 at it.",
-            {**given, "friction": [mu for mu in frictions if mu], "wall_friction": [mu for mu in frictions if mu]}
-            | {"polydispersity": [delta for delta in deltas if delta]},
-        ),
-        "peak_definitions": Caption(
-            f"Not in the paper: (a) to ({last_of_few}) crossover force against friction by the dip at x = 0, per "
-            "largest response, from which on a mean response counts as having two peaks, and the median crossover of "
-            "single realizations; for each polydispersity and smoothing width. Bounds are left out.",
-            "Six panels in which the force grows with friction, on curves that lie above each other in the order of "
-            "the dip.",
-            given | {"polydispersity": [delta for delta in deltas if delta]},
-        ),
-        "starts": Caption(
-            "Not in the paper: (a) to (c) dip of the mean response under one force, smoothed with the smaller width, "
-            "and (d) to (f) contacts per disk at rest, against the lattice constant of the start. Bars hold 95 % of "
-            "the bootstrap draws over the realizations; broken lines: the largest disks touch.",
-            "Six panels: dips without friction grow with the lattice constant, contacts become fewer.",
-            {"friction": [0.0, 0.2], "polydispersity": [delta for delta in deltas if delta]},
-        ),
-    }
+    last, last_of_few = (chr(ord("a") - 1 + columns * rows) for columns in (len(deltas), len(deltas) - 1))
+    return of_group(
+        "phase_diagram",
+        {
+            "fig22_phase_diagram": given,
+            "five_realizations": given | {"friction": rubbing, "wall_friction": rubbing} | disordered,
+            "peak_definitions": given | disordered,
+            "starts": {"friction": [0.0, 0.2]} | disordered,
+        },
+        p=parameters,
+        last=last,
+        last_of_few=last_of_few,
+        realizations=realizations,
+        dip=100 * parameters.tolerance,
+    )
 
 
 def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
@@ -140,13 +117,8 @@ def _grid(
     """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels."""
     figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
     found = dict(zip(((w, d) for w in widths for d in deltas), panels.ravel(), strict=True))
-    for index, ((width, delta), axes) in enumerate(found.items()):
-        name = f"$\\delta = {delta:g}$" if delta else "lattice"
-        style.letter(axes, chr(ord("a") + index), place="above", text=f"{name}, $w = {width:g}\\,\\bar R$")
-    for axes in panels[-1]:
-        axes.set_xlabel(x)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(y)
+    titles(found.values(), [f"{packing(delta)}, $w = {width:g}\\,\\bar R$" for width, delta in found])
+    outer(panels, x, y)
     return figure, found
 
 
@@ -242,16 +214,14 @@ def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Da
     figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
     tolerances += [(float(t), others.sel({"tolerance": t})) for t in others["tolerance"].values]
-    colours = style.ordered_colours(len(tolerances))
     handles = {}
     for (width, delta), axes in panels.items():
         here = _of(crossovers, delta)
-        for k, (tolerance, data) in enumerate(sorted(tolerances, key=lambda pair: pair[0])):
+        for (tolerance, data), look in family(sorted(tolerances, key=lambda pair: pair[0])):
             one = data.sel(width=width).isel(case=here)
             found = one["kind"].values == FOUND
-            look = style.marked_line(k) | {"color": colours[k], "linewidth": 0.9, "markersize": 3.0}
             friction, force = one["friction"].values[found], one["force"].values[found]
-            (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look)
+            (handles[f"{tolerance:.3g}"],) = axes.plot(friction, force, **look | {"markersize": 3.0})
         single = realizations.sel(width=width).isel(case=here)
         friction, median = single["friction"].values, single["median"].values
         known = np.isfinite(median)

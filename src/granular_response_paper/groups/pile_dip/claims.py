@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from ...claims import asked
 from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
@@ -10,24 +12,14 @@ GROUP = "pile_dip"
 CLAIMS = Claims(GROUP)
 
 
-def _dips(data: Data, case: str) -> dict[str, float]:
+def _dips(data: Data, case: str, wanted: Callable[..., Condition], words: Bounds) -> Finding:
     """The dip under the apex per largest value, by where it is read."""
     stress, floor = data.get(GROUP, "stress", "dip", "case"), data.get(GROUP, "piles", "floor_dip", "case")
-    return {
+    dips = {
         "stress 4 radii above the floor": float(stress["dip"].sel(case=case)),
         "floor forces": float(floor["floor_dip"].sel(case=case)),
     }
-
-
-def _dip(data: Data, case: str, *, least: float = float("-inf"), most: float = float("inf")) -> Finding:
-    dips = _dips(data, case)
-    return Finding(
-        ", ".join(f"{dip:.2%} ({name})" for name, dip in dips.items()),
-        [
-            Reading(name, Condition("dip per largest value", Quantity.exact(dip), least, most, ("visible",), "%"))
-            for name, dip in dips.items()
-        ],
-    )
+    return asked.each("", dips, lambda dip: wanted("dip per largest value", dip, words, "visible", "%"), form=".2%")
 
 
 @CLAIMS.add(
@@ -37,12 +29,12 @@ def _dip(data: Data, case: str, *, least: float = float("-inf"), most: float = f
     "a dip under the apex",
 )
 def dip_without_friction(data: Data, words: Bounds) -> Finding:
-    return _dip(data, "frictionless", least=words["visible"])
+    return _dips(data, "frictionless", asked.at_least, words)
 
 
 @CLAIMS.add("P2", "V.F, Fig. 17", "the same with friction 0.94, walls 0.35, k_T/k_N = 0.5", "no dip")
 def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
-    return _dip(data, "frictional", most=words["visible"])
+    return _dips(data, "frictional", asked.at_most, words)
 
 
 @CLAIMS.add(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -16,7 +15,8 @@ from scipy.spatial import ConvexHull
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
 from granular_response.state import Box
-from granular_response_paper.captions import RADIUS, Caption, letters, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import titles
 
 from .parameters import Parameters
 
@@ -36,30 +36,8 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    given = of_scene(parameters.scene)
-    return {
-        "fig17_pile": Caption(
-            "Piles of equal disks under gravity, without friction on the left and with it on the right. (a), (b) "
-            "Contact forces; lengths and widths of the lines are proportional to the force, but none is thinner than "
-            "a hairline. (c), (d) Vertical stress, coarse-grained with a Gaussian; the contours are the white lines "
-            "of the colour scale, and the broken line is the hull of the disks. Hatched: the layer of one width w at "
-            "the floor, in which part of the Gaussian lies outside the pile, so that the stress falls short. (e), "
-            "(f) Contacts: lines join the centres of disks that touch. Floor and side walls are grey. The parameters "
-            "are those with friction; without it all others are the same.",
-            "Two piles beside each other, three pictures of each. Without friction the stress has two maxima beside "
-            "the middle and the lowest row pushes against the side walls; with friction it has one maximum in the "
-            "middle.",
-            {**given, "width": parameters.stress_width},
-        ),
-        "fig17_pile_profiles": Caption(
-            f"Not in the paper. (g) Vertical stress at the height {parameters.dip_height:g} {RADIUS}, (h) forces of "
-            "single disks on the floor. Without friction there are two minima of the energy, mirror images of each "
-            "other.",
-            "Two plots against the horizontal position. Without friction stress and floor force dip in the middle, "
-            "with friction they are largest there.",
-            {**given, "width": parameters.stress_width},
-        ),
-    }
+    said = {**of_scene(parameters.scene), "width": parameters.stress_width}
+    return of_group("pile_dip", {"fig17_pile": said, "fig17_pile_profiles": said}, p=parameters)
 
 
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
@@ -71,26 +49,24 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     levels = np.asarray(MaxNLocator(8).tick_values(0.0, largest))[1:-1]  # without zero and what is above all
     width = float(piles["width"])
     top = float(piles["position"].values[..., 1].max()) + 1.0
-    for column, (case, name) in enumerate(DRAWN.items()):
+    for column, case in enumerate(DRAWN):
         forces, map_axes, contacts = panels[:, column]
         one = piles.sel(case=case)
         _forces(forces, one, scale)
-        style.letter(forces, "ab"[column], place="above", text=f"forces, {name}")
         field = fields.sel(case=case)
         image = draw_field(map_axes, stress["x"], stress["z"], field, norm=Normalize(0.0, largest), levels=levels)
         _outline(map_axes, one)
         near = float(stress["stress_width"])
         map_axes.axhspan(0.0, near, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
         map_axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT if column == 0 else "")
-        style.letter(map_axes, "cd"[column], place="above", text="$\\sigma_{zz}$")
         _network(contacts, one)
-        style.letter(contacts, "ef"[column], place="above", text="contacts")
         for axes in (forces, contacts):
             network.draw_box(axes, Box(width), 2.0)
             style.no_axes(axes)
             axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
         network.draw_force_key(forces, (0.8 * width, 0.9 * top), KEY, **scale)
+    titles(panels.flat, [*(f"forces, {name}" for name in DRAWN.values()), *2 * ["$\\sigma_{zz}$"], *2 * ["contacts"]])
     bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
     bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
     bar.set_label(style.STRESS_OF_GRAVITY)
@@ -142,11 +118,10 @@ def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     line.set(xlabel=style.POSITION, ylabel=style.STRESS_OF_GRAVITY)
     line.set_ylim(0.0, 1.32 * float(stress["profile_zz"].max()))
     line.legend(loc="upper right", borderaxespad=0.3)
-    first, second = itertools.islice(letters("fig17_pile_profiles"), 2)
-    style.letter(line, first, text=style.equals("z", float(stress["dip_height"]), style.RADIUS))
+    height = style.equals("z", float(stress["dip_height"]), style.RADIUS)
+    titles((line, floor), (height, ""), stem="fig17_pile_profiles", place="inside")
     floor.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$")
     floor.set_ylim(0.0, 1.15 * float(piles["floor_force"].max()))
-    style.letter(floor, second)
     half = 0.5 * float(piles["width"])
     for axes in (line, floor):
         axes.set_xlim(-half, half)

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
-from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import family, material, packing, titles, zero
 
 from .parameters import Parameters
 
@@ -48,29 +49,14 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     disordered = sorted({case.polydispersity for case in parameters.columns if case.polydispersity})
     frictions = sorted({case.friction for case in parameters.columns})
     forces = sorted({force for case in parameters.columns for force in case.forces})
-    last = "abcdefghijklmnopqrstuvwxyz"[len(disordered) * len(frictions) - 1]
-    at_rest, added = KEYS
     ensemble = of_scene(scene, frictions=frictions, polydispersity=disordered, realizations=parameters.realizations)
-    return {
-        "fig02_polydisperse_forces": Caption(
-            "Contact forces in a disordered packing: (a) at rest under gravity, (b) what a vertical force on top "
-            "adds, the forces of (a) subtracted as vectors. Lengths and widths of the lines are proportional to the "
-            f"force, but none is thinner than a hairline; the line of the key stands for {at_rest:g} {WEIGHT} in (a) "
-            f"and for {added:g} {WEIGHT} in (b). Marks on the disks were vertical in the lattice of the start: they "
-            "show how far the disks have turned. Circle and arrow: the loaded disk and the force. Floor and walls "
-            "are grey.",
-            "Two pictures of a packing with its contact forces as lines. Gravity makes branching chains that thicken "
-            "towards the floor; the load adds a few chains that spread below it.",
-            of_scene(scene, force=picture.force, frictions=picture.friction, polydispersity=picture.polydispersity),
-        ),
-        "fig19_disordered_response": Caption(
-            "Smoothed floor response of slightly disordered slabs, (a), (c) without and (b), (d) with friction: "
-            "single realizations thin, their mean thick, in a band of its standard error. In (a), (b) the largest "
-            "disks touch at the start, which gives the paper's peaks; in (c), (d) the start is the lattice that its "
-            "text names. Their numbers of realizations stand over the panels.",
-            "Four panels on one scale. Without friction thin curves scatter widely about a mean with two peaks if the "
-            "largest disks touch at the start, and with one peak otherwise; with friction they scatter little.",
-            of_scene(
+    return of_group(
+        "polydisperse_averages",
+        {
+            "fig02_polydisperse_forces": of_scene(
+                scene, force=picture.force, frictions=picture.friction, polydispersity=picture.polydispersity
+            ),
+            "fig19_disordered_response": of_scene(
                 scene,
                 force=single.force,
                 frictions=single.frictions,
@@ -78,17 +64,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
                 realizations=single.realizations,
                 width=single.width,
             ),
-        ),
-        "fig20_disordered_linear_range": Caption(
-            "Smoothed floor response at x = 0 per force, against the force, for several coefficients of friction: "
-            "(a) of one disordered slab with smooth walls, as in the paper, (b) mean of the realizations of Fig. 21, "
-            "whose walls have the friction of the disks, with standard errors, (c) of the lattice with smooth walls. "
-            "(d) Where the linear ranges of (a) and (c) end: between the last force at which the response has "
-            f"changed by at most {100.0 * float(datasets['linear_range'].attrs['tolerance']):g} % and the next. Of "
-            "one slab they say little: (b) shows how far packings differ.",
-            "Three plots of level curves that fall beyond some force, the later the larger the friction. Without "
-            "friction the one slab lies far above the mean.",
-            of_scene(
+            "fig20_disordered_linear_range": of_scene(
                 scene,
                 force=linear.forces,
                 friction=linear.frictions,
@@ -97,27 +73,18 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
                 realizations=parameters.realizations,
                 width=linear.width,
             ),
-        ),
-        "fig21_disordered_forces": Caption(
-            f"(a) to ({last}) Mean smoothed floor response of disordered slabs with bands of one standard error, all "
-            "on one scale, for several polydispersities, coefficients of friction and forces. Over each panel its "
-            f"forces in {WEIGHT}; a number in brackets is that of the slabs at rest, where some collapsed.",
-            "A table of panels. Without friction two peaks at every force; with friction one peak at the smallest "
-            "force, which becomes two as the force grows, at smaller forces the larger the polydispersity.",
-            {**ensemble, "force": forces, "width": float(averages["width"].values[smoothed_by(averages)])},
-        ),
-        "packings": Caption(
-            "Not in the paper: the packings at rest. (a) Directions of their contacts without friction, for every "
-            f"polydispersity, and at the smallest for the start with lattice constant 2 {RADIUS} (full line). (b) "
-            "Contacts of a disk away from the boundaries, with standard deviations over the realizations, mostly "
-            f"smaller than the symbols; dotted: {PAPER_CONTACTS:g}, the paper's at the smallest polydispersity "
-            "without friction. (c) Part of the packings that does not collapse under a force, with its binomial "
-            "standard error; cases in which all stay at rest are not drawn.",
-            "Three plots: contact directions with peaks at 0, 60 and 120 degrees, which widen with polydispersity; "
-            "contacts per disk, which fall with friction; parts at rest, which fall beyond some force.",
-            ensemble,
-        ),
-    }
+            "fig21_disordered_forces": {
+                **ensemble,
+                "force": forces,
+                "width": float(averages["width"].values[smoothed_by(averages)]),
+            },
+            "packings": ensemble,
+        },
+        keys=KEYS,
+        tolerance=100.0 * float(datasets["linear_range"].attrs["tolerance"]),
+        last=chr(ord("a") - 1 + len(disordered) * len(frictions)),
+        contacts=PAPER_CONTACTS,
+    )
 
 
 def _forces(data: xr.Dataset) -> Figure:
@@ -187,7 +154,7 @@ def _response(data: xr.Dataset) -> Figure:
             axes.plot(x, rows.T, color="#BDBDBD", linewidth=0.5, linestyle="-")
             axes.plot(x, mean, color=style.BLACK, linewidth=1.4, linestyle="-", zorder=3)
             axes.fill_between(x, mean - error, mean + error, color=style.VERMILION, linewidth=0.0, zorder=2.5)
-            axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+            zero(axes)
             name = f"$\\mu = {friction:g}$, {START_NAMES[start]}, {len(rows)} realizations"
             style.letter(axes, "abcdefgh"[len(frictions) * row + column], place="above", text=name)
         panels[row, 0].set_ylabel(style.FLOOR_STRESS)
@@ -209,22 +176,15 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 20: one packing, the means of all, the lattice, smoothed alike, and the ends of the linear ranges."""
     deltas = sorted(set(data["polydispersity"].values.tolist()), reverse=True)
     frictions = sorted(set(data["friction"].values.tolist()))
-    looks = {
-        friction: {**style.marked_line(k), "color": colour, "markersize": 3.0}
-        for k, (friction, colour) in enumerate(zip(frictions, style.ordered_colours(len(frictions)), strict=True))
-    }
+    looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions)}
     figure, panels = style.figure(1, len(deltas) + 2, width="double", height=3.0)
     one, means, *others = panels[0]
     responses = [one, *others[:-1]]
     for axes, delta in zip(responses, deltas, strict=True):
         for friction in frictions:
             path = int(np.flatnonzero((data["polydispersity"] == delta) & (data["friction"] == friction))[0])
-            axes.plot(
-                data["force"],
-                data["response_at_centre"].values[path],
-                **looks[friction],
-                label=f"$\\mu = {friction:g}$",
-            )
+            response = data["response_at_centre"].values[path]
+            axes.plot(data["force"], response, **looks[friction], label=f"$\\mu = {friction:g}$")
     _central_means(means, averages, deltas[0], float(data.attrs["width"]), looks)
     largest = 1.05 * max(line.get_ydata().max() for axes in (*responses, means) for line in axes.get_lines())
     for axes in (*responses, means):
@@ -232,10 +192,8 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     for axes in (means, *others[:-1]):
         axes.tick_params(labelleft=False)
     one.set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
-    names = [f"$\\delta = {delta:g}$" if delta else "lattice" for delta in deltas]
-    titles = [f"{names[0]}, one packing", f"{names[0]}, means", *names[1:], ""]
-    for axes, letter, title in zip(panels[0], "abcdefgh", titles, strict=False):
-        style.letter(axes, letter, place="above", text=title)
+    names = list(map(packing, deltas))
+    titles(panels[0], [f"{names[0]}, one packing", f"{names[0]}, means", *names[1:], ""])
     ends = others[-1]
     for index, (delta, name) in enumerate(zip(deltas, names, strict=True)):
         here = data["polydispersity"].values == delta
@@ -308,8 +266,8 @@ def _averages(data: xr.Dataset) -> Figure:
                 axes.set_axis_off()
                 continue
             _family(axes, data.isel(case=case, width=w), x)
-            name = f"$\\delta = {delta:g}$, $\\mu = {friction:g}$"
-            style.letter(axes, chr(ord("a") + row * len(deltas) + column), text=name)
+            letter = chr(ord("a") + row * len(deltas) + column)
+            style.letter(axes, letter, text=material(delta, friction))
         panels[row, 0].set_ylabel(style.FLOOR_STRESS)
     for axes in panels[-1]:
         axes.set(xlabel=style.POSITION, xlim=(-45.0, 45.0))
@@ -325,13 +283,13 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     if not usable.size:
         return
     total = int(_realizations(one)[usable[0]])
-    for k, (step, colour) in enumerate(zip(steps, style.ordered_colours(len(steps)), strict=True)):
+    for step, look in family(steps, marked=False, dashed=True):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
-        axes.fill_between(x, mean - error, mean + error, color=colour, alpha=0.25, linewidth=0.0)
-        axes.plot(x, mean, color=colour, linestyle=style.LINE_STYLES[k], linewidth=1.1, label=label)
-    axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        axes.fill_between(x, mean - error, mean + error, color=look["color"], alpha=0.25, linewidth=0.0)
+        axes.plot(x, mean, **look, linewidth=1.1, label=label)
+    zero(axes)
     axes.legend(
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
@@ -366,7 +324,7 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
             continue
         density = np.nanmean(data["contact_angle_density"].values[case], axis=0)
         look = style.line(deltas.index(delta)) if start == usual else {"color": style.BLACK, "linestyle": "-"}
-        name = f"$\\delta = {delta:g}$" + ("" if start == usual else ", start $2\\bar R$")
+        name = packing(delta) + ("" if start == usual else ", start $2\\bar R$")
         directions.plot(angle, density, **{**look, "linewidth": 1.0}, label=name)
     directions.set(
         xlabel="angle to the horizontal (degrees)",
@@ -378,13 +336,12 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     for index, delta in enumerate(deltas):
         here = np.flatnonzero((data["polydispersity"].values == delta) & (starts == usual))
         here = here[np.argsort(data["friction"].values[here])]
-        name = f"$\\delta = {delta:g}$" if delta else "lattice"
         look = style.marked_line(index)
         here = here[np.isfinite(data["coordination_number_bulk"].values[here]).any(axis=1)]
         numbers = data["coordination_number_bulk"].values[here]
         mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
         look |= {"markersize": 3.5, "elinewidth": 0.8, "capsize": 2.0}
-        coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=name)
+        coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=packing(delta))
     coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="contacts per disk in the bulk")
     paper = rf"paper: {PAPER_CONTACTS:g} at $\delta = 0.01$, $\mu = 0$"
     style.paper_value(coordination, PAPER_CONTACTS, paper, along="y")
@@ -392,8 +349,7 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), deltas)
     bearing.set(xlabel=style.FORCE, ylabel="part of the packings at rest", xscale="log", ylim=(0.0, 1.05))
     bearing.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
-    for axes, name in zip(panels[0], "abc", strict=True):
-        style.letter(axes, name, place="above")
+    style.letters(panels, place="above")
     return figure
 
 
@@ -412,7 +368,5 @@ def _bearing(axes: Axes, averages: xr.Dataset, deltas: list[float]) -> None:
         look |= {"markeredgewidth": 0.8, "markerfacecolor": "white", "elinewidth": 0.8, "capsize": 1.5}
         part = at_rest / total
         error = np.sqrt(part * (1.0 - part) / total)
-        axes.errorbar(
-            one["force"].values[used], part, error, **look, label=f"$\\delta = {delta:g}$, $\\mu = {friction:g}$"
-        )
+        axes.errorbar(one["force"].values[used], part, error, **look, label=material(delta, friction))
         number += 1

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import outer, titles
 
 from .parameters import Parameters
 
@@ -35,40 +35,25 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     slabs = sorted(set(zip(events["wall_friction"].values.tolist(), events["friction"].values.tolist(), strict=True)))
     ways = list(dict.fromkeys(events["way"].values.tolist()))
     figure, axes = style.figure(2, 3, width="double", height=4.6, sharex=True, sharey=True)
-    for index, (panel, (name, title)) in enumerate(zip(axes.flat, PANELS.items(), strict=True)):
+    titles(axes.flat, PANELS.values())
+    for panel, name in zip(axes.flat, PANELS, strict=True):
         _event(panel, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs, ways)
-        style.letter(panel, "abcdef"[index], place="above", text=title)
         panel.set_yscale("log")
-        panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        panel.yaxis.set_major_formatter("{x:g}")
         panel.set_xlim(-0.6, len(slabs) - 0.4)
     for panel in axes[-1]:
         panel.set_xticks(range(len(slabs)), [f"{mu:g}\nrough" if wall else f"{mu:g}" for wall, mu in slabs])
         panel.tick_params(axis="x", which="both", length=0)
-        panel.set_xlabel("friction")
-    for row in axes:
-        row[0].set_ylabel(style.FORCE)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)))
+    outer(axes, "friction", style.FORCE)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=min(4, len(ways)))
     return {"preparation": figure}
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    return {
-        "preparation": Caption(
-            "Not in the paper: the same slab prepared in several ways. (a) to (f) Forces between which each event "
-            "comes, against friction, a symbol for each way; an arrow: not up to there. Rough: the walls have the "
-            "friction of the disks; all others are smooth.",
-            "Six panels on one scale, an event in each, with the forces at which it comes side by side for every "
-            "preparation.",
-            of_scene(
-                parameters.scene,
-                force=parameters.forces,
-                friction=sorted({part.friction for part in parameters.parts}),
-                wall_friction=None,
-            ),
-        )
-    }
+    frictions = sorted({part.friction for part in parameters.parts})
+    said = of_scene(parameters.scene, force=parameters.forces, friction=frictions, wall_friction=None)
+    return of_group("preparation", {"preparation": said})
 
 
 def _event(panel: Axes, events: xr.Dataset, slabs: list[tuple[float, float]], ways: list[str]) -> None:

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
 
 from .parameters import Parameters
 
@@ -36,11 +36,5 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    return {
-        "sensitivity": Caption(
-            "How much each reading of the paper changes the floor response, one changed at a time: largest difference "
-            "from the reference per applied force. The table of readings has the numbers.",
-            "Two marks for each reading on a logarithmic axis, over several powers of ten.",
-            of_scene(parameters.scene, force=parameters.force, friction=parameters.friction),
-        )
-    }
+    said = of_scene(parameters.scene, force=parameters.force, friction=parameters.friction)
+    return of_group("sensitivity", {"sensitivity": said})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims import asked
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "slab_comparison"
@@ -21,16 +21,14 @@ CLAIMS = Claims(GROUP)
 )
 def large_systems(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "slabs", "distance", "layers", "friction", "floor", "gravity", "disks_per_layer")
-    cases = list(
-        zip(*(study[n].values.tolist() for n in ("friction", "floor", "gravity", "disks_per_layer")), strict=True)
-    )
+    columns = (study[name].values.tolist() for name in ("friction", "floor", "gravity", "disks_per_layer"))
+    cases = list(zip(*columns, strict=True))
     layers, distance = study["layers"].values, study["distance"].values
     readings = []
     for case in dict.fromkeys(cases):
         here = np.array([one == case for one in cases])
         order = np.argsort(layers[here])
-        if order.size < 2:
-            raise NotMeasured(f"data/{GROUP}.nc: slabs holds one depth of a case")
+        CLAIMS.needs(order.size > 1, "slabs holds one depth of a case")
         thin, deep = distance[here][order[0]], distance[here][order[-1]]
         mu, floor, gravity, wide = case
         readings.append(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, letters, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -30,11 +30,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``fig01b_slab_comparison`` from the dataset ``slabs`` of the study of the same name."""
     data = datasets["slabs"]
     figure, ((profiles, distances),) = style.figure(1, 2, width="double", height=3.5)
-    first, second = islice(letters(STEM), 2)
     _profiles(profiles, data)
-    style.letter(profiles, first, place="above", text="response and elastic slab")
     _distances(distances, data)
-    style.letter(distances, second, place="above", text="distance")
+    titles((profiles, distances), ("response and elastic slab", "distance"), stem=STEM)
     return {STEM: figure}
 
 
@@ -42,27 +40,15 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     cases = parameters.cases
     layers = sorted({n for case in cases for n in case.layers})
-    return {
-        "fig01b_slab_comparison": Caption(
-            "Not in the paper: simulated slabs beside the elastic slab with their moduli and floor. (c) Floor "
-            "pressure of a thin slab (open symbols) and of a deep one (small ones), each with its elastic slab. (d) "
-            "Largest distance of the two, per largest response, as the number of layers grows; 8 wide: eight disks "
-            "of a row for each layer; rough: as much friction on floor and walls as between disks; slow: gravity "
-            "grows slowly. Two things keep packings from the elastic slab: beside smooth walls gravity opens "
-            "contacts, which is felt in a narrow slab of any depth, and a sudden fall on a rough floor can open a "
-            "row in the middle, as with 15 layers.",
-            "(c) Symbols on two bell-shaped curves, the smooth floor's higher. (d) Distances that fall with the "
-            "number of layers on logarithmic axes, but for one outlier at 15 layers.",
-            of_scene(
-                parameters.scene,
-                force=parameters.force,
-                friction=sorted({case.friction for case in cases}),
-                wall_friction=sorted({case.friction if case.floor == "rough" else 0.0 for case in cases}),
-                stiffness_ratio=parameters.scene.contact.stiffness_ratio,
-                packing=f"slabs of {layers[0]} to {layers[-1]} layers",
-            ),
-        )
-    }
+    said = of_scene(
+        parameters.scene,
+        force=parameters.force,
+        friction=sorted({case.friction for case in cases}),
+        wall_friction=sorted({case.friction if case.floor == "rough" else 0.0 for case in cases}),
+        stiffness_ratio=parameters.scene.contact.stiffness_ratio,
+        packing=f"slabs of {layers[0]} to {layers[-1]} layers",
+    )
+    return of_group("slab_comparison", {STEM: said})
 
 
 def _cases(data: xr.Dataset) -> list[tuple[tuple, np.ndarray]]:
@@ -96,7 +82,7 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
             axes.plot(x[near], pressure[near], **look, label=name)
         elastic = 0.5 * height * data["elastic"].values[k]
         axes.plot(x[near], elastic[near], **style.line(index), label=f"elastic slab, {floor}")
-    axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(axes)
     axes.set(xlabel=style.SCALED_POSITION, ylabel=style.PRESSURE, xlim=(-2.0, 2.0))
     axes.legend(**_BELOW)
 

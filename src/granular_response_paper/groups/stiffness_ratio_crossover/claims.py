@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims import asked
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading, about
+from ...claims.claim import Claims, Data, Finding, Quantity, Reading, about
 from ...claims.words import Bounds
 
 GROUP = "stiffness_ratio_crossover"
@@ -20,8 +20,7 @@ def _ends(data: Data) -> dict[str, Quantity]:
     study = data.get(GROUP, "response", "double_peaked", "stiffness_ratio").sortby("stiffness_ratio")
     ratio, double = study["stiffness_ratio"].values, study["double_peaked"].values > 0
     last = np.flatnonzero(double)
-    if not last.size or last[-1] + 1 == len(ratio):
-        raise NotMeasured(f"data/{GROUP}.nc: response holds no end of two peaks")
+    CLAIMS.needs(last.size and last[-1] + 1 < len(ratio), "response holds no end of two peaks")
     return {
         "two peaks end, going up": data.event(GROUP, "two_peaks_end"),
         "they end for good": Quantity.bracket(ratio[last[-1]], ratio[last[-1] + 1]),
@@ -53,23 +52,18 @@ def independent(data: Data, words: Bounds) -> Finding:
     response = study["floor_response"].transpose("stiffness_ratio", "floor_disk").values
     usual = int(np.argmin(np.abs(ratio - 0.8)))
     change = np.abs(response - response[usual]).max(axis=1) / response[usual].max()
-    readings = []
+    found = {}
     for start in (0.4, 0.5):
         above = (ratio >= start - 1e-9) & (ratio <= LARGEST)
-        if above.sum() < 3:
-            raise NotMeasured(f"data/{GROUP}.nc: response holds too few ratios from {start:g} to {LARGEST:g}")
-        largest = Quantity.exact(change[above].max())
-        readings.append(
-            Reading(
-                f"from {start:g} on",
-                asked.at_most("change from the response at 0.8, per its largest value", largest, words, "nearly", "%"),
-            )
-        )
-    return Finding(
-        "largest change from the response at a ratio of 0.8: "
-        + ", ".join(f"{r.conditions[0].found.value:.1%} ({r.name})" for r in readings),
-        readings,
-        "The paper does not say from which ratio on",
+        CLAIMS.needs(above.sum() > 2, f"response holds too few ratios from {start:g} to {LARGEST:g}")
+        found[f"from {start:g} on"] = change[above].max()
+    what = "change from the response at 0.8, per its largest value"
+    return asked.each(
+        "largest change from the response at a ratio of 0.8: ",
+        found,
+        lambda largest: asked.at_most(what, largest, words, "nearly", "%"),
+        remark="The paper does not say from which ratio on",
+        form=".1%",
     )
 
 
@@ -80,7 +74,7 @@ def no_sliding(data: Data, words: Bounds) -> Finding:
     return asked.one_reading(
         f"at most {sliding.max():.0f} contacts of disks at the Coulomb limit, at all ratios above 0",
         "at rest under 15 mg",
-        Condition("sliding contacts", Quantity.exact(sliding.max()), most=0.0),
+        asked.none_of("sliding contacts", sliding.max()),
     )
 
 

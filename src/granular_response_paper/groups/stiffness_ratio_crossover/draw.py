@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from granular_response.plot import style
-from granular_response_paper.captions import Caption, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.groups.stiffness_ratio_crossover.spring_model import draw_spring_model
+from granular_response_paper.panels import among, family, titles, zero
 
 from .parameters import Parameters
 
@@ -35,38 +36,31 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     response, elastic, events = datasets["response"], datasets["elastic"], datasets["events"]
     figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=3.1)
     force = float(response["force"])
-    available = response["stiffness_ratio"].values
-    shown = _among(available, DRAWN)
-    colours = style.ordered_colours(len(shown))
-    look: dict[float, dict[str, Any]] = {
-        ratio: {"color": colour, "linestyle": dashes, "linewidth": 1.1}
-        for ratio, colour, dashes in zip(shown, colours, style.LINE_STYLES, strict=False)
-    }
+    shown = among(response["stiffness_ratio"], DRAWN)
+    looks = {ratio: look | {"linewidth": 1.1} for ratio, look in family(shown, marked=False, dashed=True)}
     for ratio in shown:
         one = response["floor_response"].sel(stiffness_ratio=ratio)
-        simulated.plot(response["x"], one, **look[ratio], label=f"{ratio:g}")
-    style.letter(simulated, "a", place="above", text=f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}")
+        simulated.plot(response["x"], one, **looks[ratio], label=f"{ratio:g}")
 
     profile = elastic["profile"].sel(rotations="free")
     marks: dict[str, dict[str, Any]] = {
         "slab": {},
         "half plane": {"marker": "o", "markerfacecolor": "white", "markersize": 3.0, "markevery": 3},
     }
-    for ratio in _among(np.array(shown), ELASTIC):
+    for ratio in among(shown, ELASTIC):
         for name, body in (("slab", "smooth floor"), ("half plane", "half plane")):
             one = profile.sel(body=body).sel(stiffness_ratio=ratio, method="nearest")
-            bodies.plot(elastic["x"], one, **look[ratio], **marks[name])
+            bodies.plot(elastic["x"], one, **looks[ratio], **marks[name])
     keys = [Line2D([], [], color=style.MUTED, linestyle="-", **marks[name]) for name in marks]
     bodies.legend(keys, list(marks), loc="upper right", borderaxespad=0.3)
-    style.letter(bodies, "b", place="above", text="elastic, no horizontal springs")
-
     _draw_dips(dips, response, elastic, events)
-    style.letter(dips, "c", place="above", text="depth of the dip")
+    load = f"simulation, {style.equals(style.F_EXT, force, style.WEIGHT)}"
+    titles((simulated, bodies, dips), (load, "elastic, no horizontal springs", "depth of the dip"))
 
     reach = min(40.0, float(np.abs(response["x"]).max()))
     top = 1.08 * float(response["floor_response"].max())
     for axes in (simulated, bodies):
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        zero(axes)
         axes.set(xlabel=style.POSITION, xlim=(-reach, reach), ylim=(-0.012 * top / 0.11, top))
     simulated.set_ylabel(style.RESPONSE)
     figure.legend(
@@ -81,27 +75,13 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     events = datasets["events"]
-    bracket = f"{float(events['low'].min()):.3g} to {float(events['high'].max()):.3g}"
-    half_plane, simulated = PAPER
-    return {
-        "fig10_stiffness_ratio": Caption(
-            "Ordered slabs with large friction. (a) Floor response for several k_T/k_N: two peaks at small ones. (b) "
-            "The same of elastic bodies without horizontal springs, of the same colours and dashes: slab on a smooth "
-            "floor and, with symbols, the same depth in a half plane. (c) Depth of the dip at x = 0 per largest "
-            f"response. Grey: {bracket}, where the simulated response changes from two peaks over a plateau to one; "
-            f"the inset enlarges it. Dotted: the crossover of the paper's half plane "
-            f"({half_plane:g}) and of its simulations ({simulated:g}).",
-            "Responses that go from two high peaks to one as the ratio grows, in simulation, elastic slab and "
-            "elastic half plane, and the depth of the dip, which vanishes near 0.3 in all three.",
-            of_scene(parameters.scene, force=parameters.force, stiffness_ratio=parameters.ratios),
-        ),
-        "fig11_spring_model": Caption(
-            "The spring model behind Fig. 10: a triangular lattice whose bonds have a normal spring k_n along the "
-            "line of centres and a tangential spring k_t across it, with index 1 for horizontal and 2 for oblique "
-            "bonds. Drawn, not computed: disks are smaller than they are, so that the springs are seen.",
-            "Drawing of three disks joined by coils along their bonds and, on rigid arms, across them.",
-        ),
-    }
+    said = of_scene(parameters.scene, force=parameters.force, stiffness_ratio=parameters.ratios)
+    return of_group(
+        "stiffness_ratio_crossover",
+        {"fig10_stiffness_ratio": said, "fig11_spring_model": {}},
+        bracket=f"{float(events['low'].min()):.3g} to {float(events['high'].max()):.3g}",
+        paper=PAPER,
+    )
 
 
 def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr.Dataset) -> None:
@@ -112,7 +92,7 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
     dip = elastic["central_dip"].sel(rotations="free")
     simulated = {**style.marked_line(0), "color": style.BLACK}
     for panel in (axes, inset):
-        panel.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        zero(panel)
         if np.isfinite(high):
             panel.axvspan(low, high, color=style.FAINT, linewidth=0.0, zorder=0)
         panel.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")
@@ -126,9 +106,3 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
         style.paper_value(inset, value)
         place: dict[str, Any] = {"ha": side, "textcoords": "offset points"}
         inset.annotate(f"{value:g}", (value, inset.get_ylim()[1]), (0.0, 2.0), **place, fontsize=7, color=style.PAPER)
-
-
-def _among(available: np.ndarray, wanted: tuple[float, ...]) -> list[float]:
-    """Those of ``wanted`` that the dataset has; all that it has if it has none of them."""
-    found = [ratio for ratio in wanted if np.any(np.isclose(available, ratio))]
-    return found or available.tolist()

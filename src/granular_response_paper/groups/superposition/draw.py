@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, lettered, letters, of_scene
+from granular_response_paper.captions import Caption, Value, lettered, of_group, of_scene
+from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
@@ -39,40 +40,27 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     given = of_scene(parameters.scene)
     diameters = [2 * offset for offset in parameters.offsets]
+    distances = [2.0 * d for d in diameters]
     panels = lettered(f"d = {d:g} diameters" for d in diameters)
-    compared = (
-        "Forces of single disks on the floor, not smoothed, per force of one load, in one realization of the "
-        "disorder. Left, Right: the response to a load to the left or right of the middle of the top, (Left+Right): "
-        "to both at once, (Left)+(Right): the sum of the two single ones. Arrows: the loads, their distance d being "
-        f"{panels}. Figs. 23 and 24 share realization and scale."
-    )
-    found = {
-        stem: Caption(
-            compared,
-            f"Four panels for growing distances under loads of {force:g}. Circles of the sum {how} the line of both "
-            "loads; far apart the response has two peaks.",
-            {**given, "force": force, "distance": [2.0 * d for d in diameters]},
-        )
-        for (stem, force), how in zip(FORCES.items(), ("lie on", "nearly lie on"), strict=True)
-    }
-    linear = datasets["linear_range"].sizes["realization"]
-    found["fig24b_superposition_error"] = Caption(
-        "Not in the paper: how far both loads at once are from the sum of each alone, root mean square relative to "
-        "both, against the force for (e) the floor forces and (f) all contact forces, and (g) against the depth, for "
-        "contacts between neighbouring rows. Means of the realizations with bands of one standard error. Black dots: "
-        "change of the contact forces per force under a single load, relative to the smallest one. Grey band: where "
-        f"the linear range of the middle half of {linear} realizations ends (response at x = 0, smoothed with w = "
-        f"{parameters.width:g}, changed by {100.0 * parameters.tolerance:g} %), broken line: the median; dotted: "
-        f"{LINEAR_UNTIL:g}, up to which the paper finds this system linear.",
-        "Three plots on one logarithmic scale. The difference grows with the force and is the smaller the farther "
-        "apart the loads are.",
+    realizations = parameters.pair_realizations
+    found = of_group(
+        "superposition",
         {
-            **given,
-            "force": parameters.forces,
-            "distance": [2.0 * d for d in diameters],
-            "realizations": parameters.pair_realizations,
+            "fig24b_superposition_error": {
+                **given,
+                "force": parameters.forces,
+                "distance": distances,
+                "realizations": realizations,
+            }
         },
+        p=parameters,
+        linear=datasets["linear_range"].sizes["realization"],
+        tolerance=100.0 * parameters.tolerance,
+        until=LINEAR_UNTIL,
     )
+    for (stem, force), how in zip(FORCES.items(), ("lie on", "nearly lie on"), strict=True):
+        said: dict[str, Value] = {**given, "force": force, "distance": distances}
+        found |= of_group("superposition", {stem: said}, panels=panels, force=force, how=how)
     return found
 
 
@@ -88,10 +76,9 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     high, low = float(drawn.max()), float(min(0.0, drawn.min()))  # of both figures, which share their scale
     for axes in panels.ravel()[len(distances) :]:
         axes.set_axis_off()
-    for k, distance in enumerate(distances):
-        axes = panels.ravel()[k]
+    for k, axes in enumerate(panels.flat[: len(distances)]):
         left, right, both = responses[k]
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+        zero(axes)
         axes.plot(x, left, **{**style.line(0), "linestyle": (0, (5, 1.6)), "linewidth": 0.9}, label="Left")
         axes.plot(x, right, **{**style.line(2), "linewidth": 1.1}, label="Right")
         axes.plot(x, both, color=style.BLACK, linestyle="-", linewidth=0.9, label="(Left+Right)")
@@ -114,12 +101,12 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
                 arrowprops={"arrowstyle": "-|>", "linewidth": 0.8, "color": style.MUTED, "shrinkA": 0, "shrinkB": 0},
             )
         axes.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(1.2 * low if low < 0.0 else -0.03 * high, 1.36 * high))
-        style.letter(axes, chr(ord("a") + k), place="above", text=f"$d = {distance:g}$ diameters")
         if k % 2 == 0:
             axes.set_ylabel(style.RESPONSE)
         if k + 2 >= len(distances):
             axes.set_xlabel(style.POSITION)
             axes.tick_params(labelbottom=True)
+    titles(panels.flat, [f"$d = {distance:g}$ diameters" for distance in distances])
     panels[0, 1].legend(loc="upper right", fontsize=7.5)
     return figure
 
@@ -130,15 +117,14 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     floor, contacts, deep = panels[0]
     errors, linear = datasets["errors"], datasets["linear_range"]
     force, distances = errors["force"].values, errors["distance"].values
-    colours = style.ordered_colours(len(distances))
     ends = 0.5 * (linear["linear_until"].values + linear["nonlinear_from"].fillna(np.inf).values)
     quarter, middle, three_quarters = np.quantile(ends, [0.25, 0.5, 0.75], method="closest_observation")
     for axes, name in ((floor, "floor_error"), (contacts, "contact_error")):
         axes.axvspan(quarter, min(three_quarters, force[-1]), color=style.FAINT, alpha=0.35, linewidth=0.0, zorder=0)
         if np.isfinite(middle):
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
-        for k, distance in enumerate(distances):
-            _mean_with_error(axes, force, errors[name].values[:, k], k, colours[k], f"{distance:g}")
+        for k, look in family(range(len(distances))):
+            _mean_with_error(axes, force, errors[name].values[:, k], look, f"{distances[k]:g}")
         style.paper_value(axes, LINEAR_UNTIL, f"paper: {LINEAR_UNTIL:g}", at=0.2)
         axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
     change = linear["contact_change"].values.mean(axis=0)[1:]  # zero at the first force, by definition
@@ -146,8 +132,8 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     floor.set_ylabel("difference of both and sum, relative")
     last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
-    for k in range(len(distances)):
-        _mean_with_error(deep, errors["gap"].values, profiles[:, k], k, colours[k], "")
+    for k, look in family(range(len(distances))):
+        _mean_with_error(deep, errors["gap"].values, profiles[:, k], look, "")
     deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel=rf"depth below the loads$\,/\,{style.RADIUS}$", xlim=(0.0, None))
     handles, names = floor.get_legend_handles_labels()
     deep.legend(
@@ -159,17 +145,18 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
         ncols=2,
         columnspacing=0.8,
     )
-    first, second, third = itertools.islice(letters("fig24b_superposition_error"), 3)
-    style.letter(floor, first, text="floor forces")
-    style.letter(contacts, second, text="all contact forces")
-    style.letter(deep, third, text=f"contacts between rows, {style.equals(style.F_EXT, last, style.WEIGHT)}")
+    rows = f"contacts between rows, {style.equals(style.F_EXT, last, style.WEIGHT)}"
+    texts = ("floor forces", "all contact forces", rows)
+    titles(panels[0], texts, stem="fig24b_superposition_error", place="inside")
     return figure
 
 
-def _mean_with_error(axes: Axes, at: FloatArray, values: FloatArray, index: int, colour: str, label: str) -> None:
+def _mean_with_error(axes: Axes, at: FloatArray, values: FloatArray, look: dict[str, Any], label: str) -> None:
     """Mean over realizations (first axis) with a band of its standard error, if there are several."""
     mean = values.mean(axis=0)
     if len(values) > 1:
         error = values.std(axis=0, ddof=1) / np.sqrt(len(values))
-        axes.fill_between(at, np.maximum(mean - error, 1e-9), mean + error, color=colour, alpha=0.18, linewidth=0.0)
-    axes.plot(at, mean, **style.marked_line(index, colour=colour), label=label)
+        axes.fill_between(
+            at, np.maximum(mean - error, 1e-9), mean + error, color=look["color"], alpha=0.18, linewidth=0.0
+        )
+    axes.plot(at, mean, **look, label=label)

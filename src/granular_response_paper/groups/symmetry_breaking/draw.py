@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
-from granular_response_paper.captions import RADIUS, WEIGHT, Caption, letters, of_scene, values
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import titles, zero
 
 from .parameters import Parameters
 
@@ -41,53 +42,38 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     with_states = states.sizes["state"] == 3
     rows = 2 if with_states else 1
     figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
-    names = letters("fig16s_symmetry_breaking")
     _protocols(axes[0, 0], datasets["runs"], datasets["held"])
-    style.letter(axes[0, 0], next(names), place="above", text="after loading to one force")
     _copies(axes[0, 1], copies)
-    force = float(copies["force"])
-    style.letter(axes[0, 1], next(names), place="above", text=f"copies, {_load(force)}")
+    loads = ["after loading to one force", f"copies, {_load(float(copies['force']))}"]
     handles: dict[str, Any] = {}
     if with_states:
-        for index in (0, 1):
-            panel, loaded = axes[1, index], states.isel(state=index + 1)
-            _network(panel, states.isel(state=0), loaded, handles)
-            force = float(loaded["force"])
-            style.letter(panel, next(names), place="above", text=_load(force))
+        for panel, state in zip(axes[1], (1, 2), strict=True):
+            _network(panel, states.isel(state=0), states.isel(state=state), handles)
+            loads.append(_load(float(states["force"][state])))
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
+    titles(axes.flat, loads, stem="fig16s_symmetry_breaking")
     return {"fig16s_symmetry_breaking": figure}
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    copies, held = parameters.copies, parameters.held
-    ramps = sorted({protocol.ramp_time for protocol in parameters.protocols})
-    steps = sorted({step for protocol in parameters.protocols for step in protocol.time_steps}, reverse=True)
-    forces = sorted({float(force) for force in datasets["runs"]["force"].values})
-    text = (
-        "Not in the paper: the loss of symmetry of Fig. 16 at large friction, where it begins and to which side. (c) "
-        "Asymmetry of the floor response against the force of one load each, by dynamics with ramps that last "
-        f"{values(ramps)} sqrt(R/g), full symbols with the time step {steps[0]:g}, hollow ones with {steps[-1]:g}; "
-        f"crosses: states of the quasi-static path, displaced at random by {held.displacement:g} {RADIUS} and "
-        f"settled again. Dotted: {PAPER:g} {WEIGHT}, from which the paper sees asymmetric responses. (d) Floor "
-        f"response under {copies.force:g} {WEIGHT} of copies of the packing that differ by the numbers of the disks "
-        f"or by random displacements of {copies.displacement:g} {RADIUS}: rounding decides the side."
+    steps = {step for protocol in parameters.protocols for step in protocol.time_steps}
+    contacts = (
+        " (e), (f) Contacts in the central third of the slab at the last symmetric and the first asymmetric force of "
+        f"the ramp that lasts {parameters.protocols[0].ramp_time:g}: thin lines are unchanged, thick ones opened, and "
+        "the marked ones are near the Coulomb limit. Arrow and circle: the force and its disk; the line below is the "
+        "floor."
     )
-    if datasets["states"].sizes["state"] == 3:
-        text += (
-            " (e), (f) Contacts in the central third of the slab at the last symmetric and the first asymmetric "
-            f"force of the ramp that lasts {parameters.protocols[0].ramp_time:g}: thin lines are unchanged, thick "
-            "ones opened, and the marked ones are near the Coulomb limit. Arrow and circle: the force and its disk; "
-            "the line below is the floor."
-        )
-    return {
-        "fig16s_symmetry_breaking": Caption(
-            text,
-            "The asymmetry jumps by orders of magnitude, at a smaller force for the slower ramp. Responses of copies "
-            "are mirror images of each other. Contacts that open, first symmetric, then not.",
-            of_scene(parameters.scene, force=forces),
-        ),
-    }
+    forces = sorted(set(datasets["runs"]["force"].values.tolist()))
+    return of_group(
+        "symmetry_breaking",
+        {"fig16s_symmetry_breaking": of_scene(parameters.scene, force=forces)},
+        p=parameters,
+        ramps=sorted({protocol.ramp_time for protocol in parameters.protocols}),
+        steps=(max(steps), min(steps)),
+        paper=PAPER,
+        contacts=contacts if datasets["states"].sizes["state"] == 3 else "",
+    )
 
 
 def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
@@ -136,7 +122,7 @@ def _copies(panel: Axes, copies: xr.Dataset) -> None:
         look |= {"markersize": 2.6} if index < 2 else {"markersize": 5.0, "markerfacecolor": "none"}
         look["markeredgewidth"] = 0.0 if index < 2 else 0.8
         panel.plot(copies["x"], copies["floor_response"].isel(copy=k), label=names[k], **look)
-    panel.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+    zero(panel)
     panel.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(-REACH, REACH))
     panel.legend(**OVER)
 

@@ -8,7 +8,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
-from granular_response_paper.captions import RADIUS, Caption, values
+from granular_response_paper.captions import Caption, of_group
+from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
@@ -23,17 +24,13 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     elliptic.plot(x, data["slab_rough"], **style.line(0), label="slab, rough floor")
     elliptic.plot(x, data["slab_smooth"], **style.line(1), label="slab, smooth floor")
     elliptic.plot(x, data["half_plane"], **style.line(2), label="half plane")
-    style.letter(elliptic, "a", text="elliptic")
 
     depths = data["depth"].values
-    colours = style.ordered_colours(len(depths))
-    for index, (depth, colour) in enumerate(zip(depths, colours, strict=True)):
-        look = {"color": colour, "linestyle": style.LINE_STYLES[index % len(style.LINE_STYLES)]}
+    for depth, look in family(depths, marked=False, dashed=True):
         hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=style.equals("h", depth, style.RADIUS))
-    style.letter(hyperbolic, "b", text="hyperbolic")
-
+    titles((elliptic, hyperbolic), ("elliptic", "hyperbolic"), place="inside")
     for axes in (elliptic, hyperbolic):
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, zorder=0)
+        zero(axes)
         axes.set(xlabel=style.SCALED_POSITION, xlim=(x[0], x[-1]))
         axes.margins(y=0.08)
         axes.legend(loc="upper right")
@@ -44,16 +41,4 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     poisson = float(datasets["predictions"]["poisson_ratio"])
-    return {
-        "fig01_predictions": Caption(
-            "Predictions for the pressure on the floor under a vertical force on top of a slab of height h, times h "
-            "over the force. (a) Elliptic: isotropic elasticity, a slab on a rough or a smooth rigid floor, and a "
-            f"half plane at the same depth; Poisson's ratio {poisson:.3f}, that of the lattice at k_T/k_N = "
-            f"{parameters.stiffness_ratio:g}. (b) Hyperbolic: two rays at {parameters.ray_angle:g}° to the vertical, "
-            "that of the lattice, which spread diffusively, the square of their width the depth times "
-            f"{parameters.diffusion_length:g} {RADIUS}; h = {values(parameters.depths)} {RADIUS}.",
-            "Two plots against x/h on one scale. (a) One broad peak in the middle for each of three bodies, highest "
-            "for the smooth floor, lowest for the half plane. (b) Two narrow peaks, narrower and higher for the "
-            "deeper slab.",
-        )
-    }
+    return of_group("theory", {"fig01_predictions": {}}, p=parameters, poisson=poisson)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims import asked
-from ...claims.claim import Claims, Data, Finding, NotMeasured, Reading
+from ...claims.claim import Claims, Data, Finding
 from ...claims.words import Bounds
 
 GROUP = "torque"
@@ -25,8 +25,7 @@ NEAR, FAR = 6.0, 9.0
 def chains(data: Data, words: Bounds) -> Finding:
     rings = data.get(GROUP, "reach", "force_change", "ring_outer", "torque").sortby("torque").isel(torque=-1)
     near = rings["ring_outer"].values <= NEAR
-    if not near.any():
-        raise NotMeasured(f"data/{GROUP}.nc: reach holds no ring within {NEAR:g} radii")
+    CLAIMS.needs(near.any(), f"reach holds no ring within {NEAR:g} radii")
     change = float(rings["force_change"].values[near].mean())
     torque = float(rings["torque"])
     return asked.one_reading(
@@ -65,8 +64,8 @@ def near_the_load(data: Data, words: Bounds) -> Finding:
     near, far = rings["ring_outer"].values <= NEAR, rings["ring_inner"].values >= FAR
     fields = _fields(data)
     within, beyond = fields["distance"] < NEAR, fields["distance"] > FAR
-    if not (near.any() and far.any() and within.any() and beyond.any()):
-        raise NotMeasured(f"data/{GROUP}.nc: holds nothing within {NEAR:g} or beyond {FAR:g} radii of the load")
+    there = near.any() and far.any() and within.any() and beyond.any()
+    CLAIMS.needs(there, f"holds nothing within {NEAR:g} or beyond {FAR:g} radii of the load")
 
     def ring(name: str) -> float:
         return float(rings[name].values[far].mean() / rings[name].values[near].mean())
@@ -74,18 +73,15 @@ def near_the_load(data: Data, words: Bounds) -> Finding:
     def area(name: str) -> float:
         return float(fields[name][beyond].mean() / fields[name][within].mean())
 
-    ratios = {
-        "antisymmetric part, mean over the area": area("antisymmetric"),
-        "whole stress, mean over the area": area("whole"),
-        "antisymmetric part, per stress of the ring": ring("antisymmetric_change"),
-        "whole stress, per stress of the ring": ring("stress_change"),
-    }
-    return Finding(
-        f"change beyond {FAR:g} radii per that within {NEAR:g}: "
-        + ", ".join(f"{ratio:.3f} ({name})" for name, ratio in ratios.items()),
-        [
-            Reading(name, asked.at_most("change far from the load per that near it", ratio, words, "small"))
-            for name, ratio in ratios.items()
-        ],
-        "The stress of the force alone falls with the distance too, so that its relative change reaches farther",
+    return asked.each(
+        f"change beyond {FAR:g} radii per that within {NEAR:g}: ",
+        {
+            "antisymmetric part, mean over the area": area("antisymmetric"),
+            "whole stress, mean over the area": area("whole"),
+            "antisymmetric part, per stress of the ring": ring("antisymmetric_change"),
+            "whole stress, per stress of the ring": ring("stress_change"),
+        },
+        lambda ratio: asked.at_most("change far from the load per that near it", ratio, words, "small"),
+        remark="The stress of the force alone falls with the distance too, so that its relative change reaches farther",
+        form=".3f",
     )

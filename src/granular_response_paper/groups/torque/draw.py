@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
-from granular_response_paper.captions import Caption, letters, of_scene
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import family, titles
 
 from .parameters import Parameters
 
@@ -26,28 +27,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     given = of_scene(parameters.scene, force=parameters.force, angle=parameters.angle, torque=parameters.torques)
-    last = "abcdefgh"[len(parameters.torques) - 1]
-    return {
-        "fig18_torque": Caption(
-            f"(a) to ({last}) Contact forces that an oblique force on one disk of a slightly polydisperse slab adds, "
-            "for several clockwise torques on the same disk of the same packing. The effect of gravity is subtracted "
-            "as a vector. The central third of the upper half of the slab is shown. Lengths and widths of the lines "
-            "are proportional to the force, the same in all panels, as the key in each says, but none is thinner "
-            "than a hairline. Circle and straight arrow: the disk and the force, bent arrow: the torque.",
-            "Six pictures of disks with force chains that lead obliquely down from a disk on top. The torque gathers "
-            "two chains in one along the force.",
-            given,
-        ),
-        "fig18_torque_reach": Caption(
-            "Not in the paper: how far the torque reaches. Change by the torque of (g) the contact forces, (h) the "
-            "coarse-grained stress tensor and (i) its antisymmetric part, in rings around the loaded disk: the sum "
-            "of the magnitudes per sum of those that the force adds without torque, against the mean distance of the "
-            "ring.",
-            "Three plots on one logarithmic scale. Curves for growing torques lie above each other and fall with the "
-            "distance, the antisymmetric stress by far the fastest.",
-            {**given, "torque": parameters.torques[1:], "width": parameters.stress_width},
-        ),
-    }
+    reach = {**given, "torque": parameters.torques[1:], "width": parameters.stress_width}
+    last = chr(ord("a") - 1 + len(parameters.torques))
+    return of_group("torque", {"fig18_torque": given, "fig18_torque_reach": reach}, last=last)
 
 
 def _chains(data: xr.Dataset) -> Figure:
@@ -79,7 +61,7 @@ def _chains(data: xr.Dataset) -> Figure:
         network.draw_torque(axes, position[disk], -float(torques[index]))
         network.draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
         axes.set(**limits)
-        style.letter(axes, chr(ord("a") + index), place="above", text=_torque(float(torques[index])))
+    titles(panels.flat, map(_torque, torques.tolist()))
     return figure
 
 
@@ -88,7 +70,6 @@ def _reach(data: xr.Dataset) -> Figure:
     figure, panels = style.figure(1, 3, width="double", height=2.7, sharex=True, sharey=True)
     torques = data["torque"].values
     turned = np.flatnonzero(torques)
-    colours = style.ordered_colours(max(1, len(turned)))
     panel_of = {
         "force_change": "contact forces",
         "stress_change": "stress tensor",
@@ -96,15 +77,13 @@ def _reach(data: xr.Dataset) -> Figure:
     }
     changes = np.concatenate([data[name].values[turned].ravel() for name in panel_of])
     changes = changes[changes > 0.0]  # none without a torque, or where the rings lie beyond the slab
-    named = zip(panels[0], letters("fig18_torque_reach"), panel_of.items(), strict=False)
-    for axes, letter, (name, text) in named:
-        for number, k in enumerate(turned):
-            look = {**style.marked_line(number), "color": colours[number]}
+    titles(panels[0], panel_of.values(), stem="fig18_torque_reach")
+    for axes, name in zip(panels[0], panel_of, strict=True):
+        for k, look in family(turned):
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
         axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None))
         if changes.size:
             axes.set(yscale="log", ylim=(0.6 * float(changes.min()), 1.6 * float(changes.max())))
-        style.letter(axes, letter, place="above", text=text)
     panels[0, 0].set_ylabel("relative change by the torque")
     if len(turned):
         panels[0, 2].legend(title=rf"torque$\,/\,{style.TORQUE_UNIT}$", loc="upper right")

@@ -1,0 +1,61 @@
+"""What figures of several groups repeat: which values are drawn, and how; titles of panels; names of packings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from granular_response.plot import style
+
+from .captions import letters
+
+
+def among(stored: ArrayLike, wanted: Iterable[float]) -> list[float]:
+    """The wanted values as far as they are stored; all that are stored if none is."""
+    there = np.asarray(stored, dtype=float).tolist()
+    return [value for value in wanted if value in there] or there
+
+
+def family(
+    values: Sequence[Any] | np.ndarray, *, marked: bool = True, dashed: bool = False
+) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Each of some ordered values with the look of its curve: dark to light, with markers, dashes, or both."""
+    for k, (value, colour) in enumerate(zip(values, style.ordered_colours(max(1, len(values))), strict=False)):
+        look = style.marked_line(k) if marked else {}
+        yield value, look | (style.line(k) if dashed else {}) | {"color": colour}
+
+
+def titles(
+    axes: Iterable[Axes], texts: Iterable[str], *, stem: str = "", place: Literal["inside", "above"] = "above"
+) -> None:
+    """A letter and a text for each of ``axes``; letters are those of the picture ``stem``, by default from (a) on."""
+    for panel, name, text in zip(axes, letters(stem), texts, strict=False):
+        style.letter(panel, name, place=place, text=text)
+
+
+def outer(grid: np.ndarray, x: str, y: str) -> None:
+    """Labels below and to the left of a (rows, columns) grid of axes."""
+    for axes in grid[-1]:
+        axes.set_xlabel(x)
+    for axes in grid[:, 0]:
+        axes.set_ylabel(y)
+
+
+def packing(polydispersity: float) -> str:
+    """A name for titles and legends."""
+    return style.equals(style.POLYDISPERSITY, polydispersity) if polydispersity else "lattice"
+
+
+def material(polydispersity: float, friction: float) -> str:
+    """A name for titles and legends."""
+    return f"{packing(polydispersity)}, {style.equals(style.FRICTION, friction)}"
+
+
+def zero(*panels: Axes) -> None:
+    """A faint line where there is no response, below everything."""
+    for axes in panels:
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
