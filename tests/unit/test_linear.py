@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 from granular_response.solve.linear.band import Band
-from granular_response.solve.linear.band_rows import PADDING, rounded
+from granular_response.solve.linear.band_lu import rounded
 from granular_response.solve.linear.ordering import node_order
 
 
@@ -51,18 +51,6 @@ def test_rows_hold_the_factors_and_zeros_beyond_the_band(n, b):
             outside[i, wide + j - i] = 0.0
     assert lower @ upper == pytest.approx(dense, rel=1e-13, abs=1e-13 * b)
     assert not outside.any()
-
-
-@pytest.mark.parametrize(("n", "b"), SIZES)
-def test_rows_of_a_symmetric_matrix_hold_its_factors_and_zeros_where_they_are_read(n, b):
-    dense = banded(n, b, 6, symmetric=True)
-    matrix = stored(dense, b)
-    rows = Band(matrix.indptr, matrix.indices).definite_factor(matrix)._rows
-    upper = np.zeros((n, n))
-    for i in range(n):
-        upper[i, i : i + b + 1] = rows[i, : min(b + 1, n - i)]
-    assert upper.T @ (upper / np.diag(upper)[:, None]) == pytest.approx(dense, rel=1e-13, abs=1e-13 * b)
-    assert not rows[:, b + 1 : rounded(b) + 1 + PADDING].any()
 
 
 def test_zero_pivot_falls_back_to_row_exchanges():
