@@ -18,6 +18,7 @@ from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
 from ..state import Contacts, FloatArray, State
 from ..state.box import WALL_MEANINGS
+from .choice import Plan, plan
 from .held import NOTHING, Held
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
@@ -179,6 +180,11 @@ class Problem:
     def freedoms(self) -> int:
         """Degrees of freedom of one disk: 3 with rotations, else 2."""
         return 3 if self.rotations else 2
+
+    @cached_property
+    def plan(self) -> Plan:
+        """How it is solved; raises ``SceneError`` when the scene asks for a method that it does not have."""
+        return plan(self)
 
     @cached_property
     def weight(self) -> FloatArray:
