@@ -25,7 +25,7 @@ from timing import interleaved, write  # noqa: E402
 from granular_response.scene import Scene  # noqa: E402
 from granular_response.solve import Problem, rest_state  # noqa: E402
 from granular_response.solve.linear import Storage, ordering  # noqa: E402
-from granular_response.solve.system import REGULARISATION, StaticSystem  # noqa: E402
+from granular_response.solve.system import OPTIONS, StaticSystem  # noqa: E402
 
 try:
     from pypardiso import PyPardisoSolver
@@ -59,7 +59,7 @@ def systems(layers: int, per_row: int, friction: float) -> list[tuple[sp.csc_arr
     for ordering.WIDEST_BAND in (10**9, 0):
         system = StaticSystem(problem, state)
         known = system.start(state)
-        found.append((system.tangent(system.trial(known, known.q), REGULARISATION * stiffness), system.storage))
+        found.append((system.tangent(system.trial(known, known.q), OPTIONS.regularisation * stiffness), system.storage))
     ordering.WIDEST_BAND = widest
     return found
 

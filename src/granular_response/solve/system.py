@@ -20,25 +20,29 @@ from ..kernels import events, statics
 from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .linear import REMEMBERED, Eliminated, Factor, Sequence, elimination
-from .linear.band import Band
 from .linear.updated import Updated
 from .pattern import pattern
 from .problem import Problem
 
-#: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
-REGULARISATION = 1e-10
 
-#: Part of the force out of balance that a step by the factorisation of another tangent leaves (2-norms).
-LEFT_OVER = 1e-6
+@dataclass(frozen=True)
+class SystemOptions:
+    """Numbers by which the static equations are solved."""
 
-#: Difference of two shifts, in units of the normal stiffness, that solutions by the factorisation with one of them make
-#: up for with little effort: below the softest modes of a packing of some hundred layers.
-SAME_SHIFT = 1e-7
+    #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
+    regularisation: float = 1e-10
+    #: Part of the force out of balance that a step by the factorisation of another tangent leaves (2-norms).
+    left_over: float = 1e-6
+    #: Difference of two shifts, in units of the normal stiffness, that solutions by the factorisation with one of them
+    #: make up for with little effort: below the softest modes of a packing of some hundred layers.
+    same_shift: float = 1e-7
+    #: Stiffnesses that may have changed since a factorisation: with more, solutions cost more than another one.
+    most_changed: int = 40
+    #: Part of a distance by which rounding may part two disks that touch.
+    touching: float = 1e-12
 
-#: Stiffnesses that may have changed since a factorisation: with more, solutions cost more than another one.
-MOST_CHANGED = 40
-#: Part of a distance by which rounding may part two disks that touch.
-TOUCHING = 1e-12
+
+OPTIONS = SystemOptions()
 
 
 @dataclass(frozen=True)
@@ -112,14 +116,12 @@ class StaticSystem:
         self._kept: tuple[np.ndarray, Factor] | None = None
         self._updated: tuple[Updated, np.ndarray] | None = None
         self.renewals = 0  #: factorisations made by :meth:`renewed_factor`
-        same = SAME_SHIFT * problem.stiffness
-        self._steps = Sequence(self.storage, definite=False, same=same)
-        self._definite_steps = Sequence(self.storage, definite=True, same=same)
+        self._steps = Sequence(self.storage, same=OPTIONS.same_shift * problem.stiffness)
 
     @property
     def dissected(self) -> bool:
         """Whether the packing is too large for a banded factorisation."""
-        return not isinstance(self.storage, Band)
+        return self.pattern.dissected
 
     @property
     def dof(self) -> int:
@@ -196,14 +198,6 @@ class StaticSystem:
         tangents = np.empty((0, 3, 3)) if local is None else local
         return Trial(Configuration(q, spring, overlap), force, normal, tangential, out.status, tangents)
 
-    def normal_forces(self, q: FloatArray) -> FloatArray:
-        """(dof,) forces of contacts without friction at ``q``: those of a trial up to rounding, and no tangents."""
-        force = np.zeros(self.dof)
-        pairs, walls = self.pairs, self.walls
-        statics.normal_forces(q, self.problem.n, pairs, pairs.shape, walls, walls.shape, force)
-        force[self.held] = 0.0
-        return force
-
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
 
@@ -259,7 +253,7 @@ class StaticSystem:
 
     def _regularised(self, trial: Trial, shift: float | FloatArray) -> sp.csc_array:
         """The tangent with ``shift`` and a tiny regularisation."""
-        return self.tangent(trial, np.asarray(shift) + REGULARISATION * self.problem.stiffness)
+        return self.tangent(trial, np.asarray(shift) + OPTIONS.regularisation * self.problem.stiffness)
 
     def _factorise(self, trial: Trial, shift: float | FloatArray, matrix: sp.csc_array) -> Eliminated:
         self.forget()
@@ -271,7 +265,6 @@ class StaticSystem:
         """Let all factorisations go before one is made: two need not be in memory."""
         self._kept = None
         self._steps.forget()
-        self._definite_steps.forget()
 
     def _keep(self, trial: Trial, factor: Factor, shift: float | FloatArray) -> None:
         """Keep the factorisation of a tangent for trials with the same statuses, unless it has a shift."""
@@ -286,7 +279,7 @@ class StaticSystem:
         right = self.interleave(force)
         matrix = self._regularised(trial, shift)
         self._kept = None
-        found = self._steps.solve(matrix, right, LEFT_OVER, shift)
+        found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)
         if found is None:
             return self.deinterleave(self._factorise(trial, shift, matrix).solve(right))
         if self._steps.factor is not None:
@@ -313,7 +306,7 @@ class StaticSystem:
                     left[held], right[held] = 0.0, 0.0
                 return places[:count], left[:count], right[:count]
 
-            if len(wanted) <= MOST_CHANGED and updated.update(wanted, change) and updated.accurate:
+            if len(wanted) <= OPTIONS.most_changed and updated.update(wanted, change) and updated.accurate:
                 return updated
         return self.renewed_factor(known, sense)
 
@@ -321,15 +314,29 @@ class StaticSystem:
         """The same, made anew."""
         self._updated = None
         self.renewals += 1
-        updated = Updated(self.factorise(self.trial(known, known.q, fixed=sense)), self.dof, MOST_CHANGED, 6)
+        updated = Updated(self.factorise(self.trial(known, known.q, fixed=sense)), self.dof, OPTIONS.most_changed, 6)
         self._updated = updated, sense
         return updated
 
-    def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
-        """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
-        regularised = self.tangent(trial, REGULARISATION * self.problem.stiffness)
-        factor = self.storage.factor(self.pattern.transposed(regularised))
-        return factor, self.pattern.transposed(self.tangent(trial))
+    def answers(self, trial: Trial, *, transposed: bool = False) -> Callable[[FloatArray], FloatArray]:
+        """What gives the (dof,) displacements that take small forces (dof,) up, to the last digits.
+
+        Nothing pushes what is held. Or, ``transposed``, the influence of every unknown on what a row (dof,) measures.
+        """
+        tangent, regularised = self.tangent(trial), self._regularised(trial, 0.0)
+        if transposed:
+            tangent, regularised = self.pattern.transposed(tangent), self.pattern.transposed(regularised)
+        factor = self.storage.factor(regularised)
+
+        def answer(force: FloatArray) -> FloatArray:
+            free = force.copy()
+            free[self.held] = 0.0
+            right = self.interleave(free)
+            found = factor.solve(right)
+            found += factor.solve(right - tangent @ found)  # the tangent was held by a tiny stiffness
+            return self.deinterleave(found)
+
+        return answer
 
     def kept_factor(self, trial: Trial) -> Factor | None:
         """The last factorisation of a tangent, when every contact has the same status (and direction of sliding)."""
@@ -375,11 +382,6 @@ class StaticSystem:
         total[2] = -radius * turning
         return total[: self.problem.freedoms].ravel()
 
-    def symmetric_factor(self, trial: Trial, shift: float) -> tuple[Factor, int]:
-        """Factorisation of the symmetric part of the tangent and its number of negative eigenvalues."""
-        matrix = self.tangent(trial, shift)
-        return self.storage.symmetric_factor(self.pattern.symmetric_part(matrix))
-
     def without_prestress(self, trial: Trial) -> Trial:
         """The trial with the stiffness of its springs alone: what the turn of contacts adds is left out.
 
@@ -403,27 +405,13 @@ class StaticSystem:
             g[:, :2, 2], g[:, 2, :2], g[:, 2, 2] = along, -along, stiff
         return replace(trial, tangent=tangent_of)
 
-    def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
-        """Factorisation of the symmetric part of the tangent; None when it is not positive definite."""
-        self._definite_steps.forget()
-        return self.storage.definite_factor(self.pattern.symmetric_part(self.tangent(trial, shift)))
-
     def definite_step(self, trial: Trial, force: FloatArray, shift: float) -> FloatArray | None:
         """(dof,) displacements that take ``force`` up, by the symmetric part of the tangent with ``shift`` added.
 
-        None when it is not positive definite. In a large packing by iteration, with a rough factorisation that may be
-        brought up to date for what has changed since: a tangent that is not positive definite where nothing has is not
-        seen then, unless the step would lead uphill.
+        None when it is not positive definite.
         """
-        matrix = self.pattern.symmetric_part(self.tangent(trial, shift))
-        right = self.interleave(force)
-        found = self._definite_steps.solve(matrix, right, LEFT_OVER, shift)
-        if found is None:
-            factor = self.storage.definite_factor(matrix)
-            if factor is None:
-                return None
-            found = factor.solve(right)
-        return self.deinterleave(found)
+        factor = self.storage.definite_factor(self.pattern.symmetric_part(self.tangent(trial, shift)))
+        return None if factor is None else self.deinterleave(factor.solve(self.interleave(force)))
 
     def meets_unlisted(self, q: FloatArray) -> bool:
         """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""
@@ -434,7 +422,7 @@ class StaticSystem:
         if box.periodic:  # a listed pair may have met on its other side
             d = position[self.first] - position[self.second] - self.reference[self.first] + self.reference[self.second]
             apart = np.hypot(d[:, 0] + self.dx0, d[:, 1] + self.dz0)
-            listed = listed[apart < (radius[self.first] + radius[self.second]) * (1.0 + TOUCHING)]
+            listed = listed[apart < (radius[self.first] + radius[self.second]) * (1.0 + OPTIONS.touching)]
         if np.isin(first.astype(np.int64) * n + second, listed, invert=True).any():
             return True
         disk, wall = box.near_walls(position, radius, 0.0)

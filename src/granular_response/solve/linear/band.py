@@ -54,7 +54,7 @@ class Band:
         factor = self.factor(matrix)
         return factor if (factor.pivots > 0.0).all() else None
 
-    def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> None:
+    def rough_factor(self, matrix: sp.csc_array) -> None:
         """None: an exact one is as cheap."""
         return None
 

@@ -1,8 +1,8 @@
 """Nested dissection of a packing: the order of elimination that keeps the fronts of a plane network small.
 
 The disks are cut in two along the longer side of their box, and again, down to small groups; the disks along a
-cut come after both halves. In the plane this makes the factors of n unknowns grow like n log n and their cost like
-n^1.5.
+cut come after both halves (A. George, SIAM J. Numer. Anal. 10, 345, 1973). In the plane this makes the factors of n
+unknowns grow like n log n and their cost like n^1.5.
 """
 
 from __future__ import annotations

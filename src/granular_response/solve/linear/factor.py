@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
 
 from ...state import FloatArray
-
-if TYPE_CHECKING:
-    from .multifrontal import Multifactor
 
 
 class Factor(Protocol):
@@ -27,6 +24,23 @@ class Eliminated(Factor, Protocol):
     @property
     def negative_pivots(self) -> int:
         """Of U: where their number changes a real eigenvalue may have passed zero."""
+        ...
+
+
+class Renewable(Factor, Protocol):
+    """A factorised matrix that can be brought up to date in parts."""
+
+    @property
+    def price(self) -> float:
+        """About how many solutions cost as much as it."""
+        ...
+
+    def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
+        """Factorise anew where entries have changed by more than ``change``; everywhere else it stays as it was.
+
+        False, and nothing is done, where that would take more than the part ``most`` of the work of all. RuntimeError
+        where it is exactly singular; the factorisation is lost then.
+        """
         ...
 
 
@@ -52,8 +66,8 @@ class Storage(Protocol):
         """Factorisation of a symmetric matrix; None when it is not positive definite."""
         ...
 
-    def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> Multifactor | None:
-        """One that takes half the time, for solutions by iteration; None where there is none (see :mod:`.nearby`)."""
+    def rough_factor(self, matrix: sp.csc_array) -> Renewable | None:
+        """LU that takes half the time, for solutions by iteration; None where there is none (see :mod:`.nearby`)."""
         ...
 
     def across(self, matrix: sp.csc_array) -> np.ndarray:
