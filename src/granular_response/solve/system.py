@@ -17,8 +17,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ..kernels import events, statics
-from ..kernels.neighbours import close_pairs
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
+from .close_pairs import close_pairs
 from .linear import REMEMBERED, Eliminated, Factor, Sequence, elimination
 from .linear.updated import Updated
 from .pattern import pattern
