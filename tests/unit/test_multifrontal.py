@@ -77,7 +77,7 @@ def test_lu_solves_what_a_general_solver_does(freedoms):
 
 
 @pytest.mark.parametrize("shift", [60.0, 2.0])
-def test_symmetric_factors_solve_and_count_negative_eigenvalues(shift):
+def test_symmetric_matrices_are_solved_where_definite_and_their_negative_eigenvalues_counted(shift):
     position, first, second = lattice(15, 20)
     dissection = Dissection(position, first, second)
     matrix = pattern(dissection, first, second, 2)
@@ -85,9 +85,10 @@ def test_symmetric_factors_solve_and_count_negative_eigenvalues(shift):
     expected = int((np.linalg.eigvalsh(matrix.toarray()) < 0).sum())
     assert (expected > 0) == (shift < 10.0)
     fronts = Multifrontal(dissection, 2)
-    factor, negative = fronts.symmetric_factor(matrix)
-    assert negative == fronts.negative_eigenvalues(matrix) == expected
-    assert (fronts.definite_factor(matrix) is None) == (expected > 0)
+    assert fronts.negative_eigenvalues(matrix) == expected
+    factor = fronts.definite_factor(matrix)
+    assert (factor is None) == (expected > 0)
+    factor = fronts.factor(matrix) if factor is None else factor
     right = np.random.default_rng(2).normal(size=matrix.shape[0])
     assert factor.solve(right) == pytest.approx(np.linalg.solve(matrix.toarray(), right), rel=1e-7, abs=1e-10)
 
@@ -117,15 +118,12 @@ def test_the_bits_are_those_of_one_thread(monkeypatch, kind):
         assert len(fronts.ranges) > 10 and len(fronts.above) > 5
         with threads.using(count):
             if kind == "unsymmetric":
-                factor = fronts.factor(matrix)
-            else:
-                factor, negative = fronts.symmetric_factor(matrix)
-                negatives.append(negative)
-                assert negative == fronts.negative_eigenvalues(matrix)
-                assert (fronts.definite_factor(matrix) is None) == (kind == "indefinite")
-            solutions.append(factor.solve(right))
-            if kind == "unsymmetric":
                 rough.append(fronts.rough_factor(matrix).solve(right))
+            else:
+                negatives.append(fronts.negative_eigenvalues(matrix))
+                assert (fronts.definite_factor(matrix) is None) == (kind == "indefinite")
+            factor = fronts.definite_factor(matrix) if kind == "definite" else fronts.factor(matrix)
+            solutions.append(factor.solve(right))
     assert all(solution.tobytes() == solutions[0].tobytes() for solution in solutions[1:])
     assert solutions[0] == pytest.approx(spsolve(matrix, right), rel=1e-6, abs=1e-9)
     if kind == "unsymmetric":

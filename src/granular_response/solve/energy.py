@@ -218,7 +218,7 @@ class _Descent:
 
 def _down_from_saddle(system: StaticSystem, known, external, q, trial: Trial) -> tuple[FloatArray, Trial]:
     """Go from near a saddle along its unstable direction, in doubled lengths as long as energy falls."""
-    direction = unstable_direction(system, trial, rough=True)
+    direction = unstable_direction(system, trial)
     best = (q, trial)
     for sense in (1.0, -1.0):
         length = OPTIONS.shortest_escape / system.problem.stiffness * sense

@@ -40,10 +40,6 @@ class StabilityOptions:
     neutral: float = 1e-6
     #: Part of the normal stiffness that rounding makes of a stiffness of 0; softer disks than that cannot be judged.
     rounding: float = 1e-14
-    #: Relative accuracy of an eigenvalue of which only the direction is asked, to go downhill along it, and vectors
-    #: among which it is looked for.
-    rough: float = 1e-3
-    few: int = 6
     #: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that
     #: is known roughly.
     sought: int = 4
@@ -109,11 +105,10 @@ def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
         return None
 
 
-def unstable_direction(system: StaticSystem, trial: Trial, *, rough: bool = False) -> FloatArray:
+def unstable_direction(system: StaticSystem, trial: Trial) -> FloatArray:
     """(dof,) direction of the lowest eigenvalue with the statuses of a trial, of largest component 1 or -1.
 
     It leads to the right as far as it leads to a side, so that of two mirror images one is chosen by rule.
-    ``rough`` : as accurate as a few solutions make it, which is enough to go downhill along it, without friction.
     """
     matrix, scale = _scaled(system, trial)
     symmetric = system.pattern.symmetric_part(matrix)
@@ -131,11 +126,10 @@ def unstable_direction(system: StaticSystem, trial: Trial, *, rough: bool = Fals
             if factor is not None:
                 break
         else:
-            factor, _ = system.storage.symmetric_factor(system.pattern.with_shift(symmetric, origin))
+            factor = system.storage.factor(system.pattern.with_shift(symmetric, origin))
         _, vectors = eigsh(
             symmetric, k=1, sigma=-origin, which="LM", v0=start,
             OPinv=LinearOperator((system.dof, system.dof), factor.solve, dtype=float),
-            **({"tol": OPTIONS.rough, "ncv": OPTIONS.few} if rough else {}),
         )  # fmt: skip
         vector = vectors[:, 0]
     direction = system.deinterleave(scale * vector)

@@ -40,13 +40,8 @@ class Band:
         band_lu.eliminate(rows.ravel(), self.n, self._b)
         return BandLU(matrix, rows, self._b)
 
-    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
-        """Factorisation and the number of negative eigenvalues."""
-        factor = self.factor(matrix)
-        return factor, factor.negative_pivots
-
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
-        """The number of negative eigenvalues of a symmetric matrix alone."""
+        """The number of negative eigenvalues of a symmetric matrix."""
         return self.factor(matrix).negative_pivots
 
     def definite_factor(self, matrix: sp.csc_array) -> Factor | None:

@@ -54,12 +54,8 @@ class Storage(Protocol):
         """LU of a matrix close to a symmetric one; RuntimeError where it is exactly singular and that is seen."""
         ...
 
-    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
-        """Factorisation of a symmetric matrix and its number of negative eigenvalues (Sylvester's law of inertia)."""
-        ...
-
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
-        """The number of negative eigenvalues of a symmetric matrix alone: no factorisation is kept."""
+        """The number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia)."""
         ...
 
     def definite_factor(self, matrix: sp.csc_array) -> Factor | None:

@@ -172,16 +172,11 @@ class Multifrontal:
         """LU with row exchanges inside the fronts."""
         return LU(self, self._factorised(matrix, whole=True))
 
-    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Symmetric, int]:
-        """Cholesky factorisation, and L D L^T in fronts that are not positive definite.
-
-        Also returns the number of negative eigenvalues (Sylvester's law of inertia).
-        """
-        fronts = self._factorised(matrix)
-        return Symmetric(self, fronts), fronts.negative
-
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
-        """Their number alone: the factorisation is not kept."""
+        """The number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia).
+
+        Cholesky factorisation, and L D L^T in fronts that are not positive definite; nothing of it is kept.
+        """
         return self._factorised(matrix, keep=False).negative
 
     def definite_factor(self, matrix: sp.csc_array) -> Symmetric | None:
@@ -227,7 +222,6 @@ class Multifrontal:
             at=at[:-1] if keep else np.zeros(len(self.own), np.int64),
             values=np.empty(int(at[-1] if keep else 0), kind),
             pivots=np.zeros(self.unknowns, np.int32),
-            exchanged=np.zeros(len(self.own), np.bool_),
             definite=definite,
         )
         _Elimination(self, matrix, fronts, whole=whole, keep=keep, left=left).run(self.ranges, self.above)
@@ -243,7 +237,6 @@ class _Fronts:
     at: np.ndarray
     values: FloatArray
     pivots: np.ndarray
-    exchanged: np.ndarray  #: (f,) fronts that are L D L^T
     definite: bool  #: whether a front that is not positive definite is a failure
     failed: bool = False
     negative: int = 0
@@ -321,20 +314,14 @@ class _Elimination:
         pattern = self.pattern
         own, outer = int(pattern.own[front]), int(pattern.outer[front])
         at = int(self.fronts.at[front])
-        start = pattern.tree.start[front]
-        f11 = _by_columns(values, at, own, own)
-        lower, pivot, info = lapack.dsytrf(f11, lower=1, overwrite_a=1)
-        f11[...] = lower
+        lower, pivot, info = lapack.dsytrf(_by_columns(values, at, own, own), lower=1)
         if info > 0:
             self.fronts.failed = True
-        self.fronts.pivots[start : start + own] = pivot
-        self.fronts.exchanged[front] = True
         if outer:
             f21 = _by_columns(values, at + own * own, outer, own)
             solved, _ = lapack.dsytrs(lower, pivot, np.asfortranarray(f21.T), lower=1)
             update = _by_columns(updates, f22, outer, outer)
             update -= f21 @ solved
-            f21[...] = solved.T
         return _negative_blocks(lower, pivot)
 
     def _above(self, front: int, spread: threads.Map) -> None:
@@ -395,15 +382,15 @@ class Multifactor:
         def down(first: int, last: int, below: int, outside: np.ndarray) -> FloatArray:
             gathered = np.zeros(len(outside), kind)
             frontal.forward(
-                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
+                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, self.whole,
                 x, below, outside, gathered, np.empty(room, kind),
             )  # fmt: skip
             return gathered
 
         def up(first: int, last: int) -> None:
             frontal.backward(
-                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
-                x, np.empty(room, kind), np.empty(int(pattern.own.max()), kind), np.zeros(1, np.int32),
+                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, self.whole,
+                x, np.empty(room, kind), np.empty(int(pattern.own.max()), kind),
             )  # fmt: skip
 
         with threads.mapping(pattern.large) as spread:
