@@ -80,7 +80,7 @@ class BandLU:
         """(n,) the solution; by a factorisation with row exchanges where that without them is no good."""
         if not self._tried:
             self._tried = True
-            # of all unknowns, also of disks that no other right-hand side reaches
+            # of all unknowns, also of nodes that no other right-hand side reaches
             probe = np.where(np.arange(len(right)) % 2, 1.0, -1.0)
             error = np.abs(self._matrix @ self._solve(probe) - probe).max()
             if not error <= ACCEPTED:

@@ -1,15 +1,15 @@
-"""Sparse factorisation for large packings: multifrontal, in the order of a nested dissection.
+"""Sparse factorisation of large matrices: multifrontal, in the order of a nested dissection.
 
-Each group of disks, or cut between two, is eliminated as one dense front by LAPACK, so nearly all work is matrix
+Each group of nodes, or cut between two, is eliminated as one dense front by LAPACK, so nearly all work is matrix
 products (I. S. Duff and J. K. Reid, ACM Trans. Math. Softw. 9, 302, 1983). What a front leaves for its boundary is
 added to its parent. Results do not depend on what other libraries are installed, and every front counts its negative
 eigenvalues.
 
-The fronts of a large packing are split into subtrees, on which several threads work side by side, and the few fronts
+The fronts of a large matrix are split into subtrees, on which several threads work side by side, and the few fronts
 above them, whose matrix products are split into blocks of columns. Neither split looks at the number of threads, and
 what subtrees leave is added in the order of the tree: the bits are those of a single thread.
 
-Besides exact factorisations there are rough ones of large packings, for solutions by iteration: in single precision,
+Besides exact factorisations there are rough ones of large matrices, for solutions by iteration: in single precision,
 which takes half the time and memory, and with what subtrees leave, so that for a matrix which differs in few places
 only the subtrees that have them are eliminated anew, and the fronts above those.
 """
@@ -67,7 +67,7 @@ class _Range:
 
 
 class Multifrontal:
-    """Fronts of all matrices with the pattern of a packing's tangent; ``freedoms`` unknowns for each disk."""
+    """Fronts of all matrices with the pattern of a dissected network; ``freedoms`` unknowns for each node."""
 
     def __init__(self, dissection: Dissection, freedoms: int):
         sizes = np.array([len(b) for b in dissection.boundary], np.int64) * freedoms
@@ -185,7 +185,7 @@ class Multifrontal:
         return None if fronts.failed else Symmetric(self, fronts)
 
     def rough_factor(self, matrix: sp.csc_array) -> LU | None:
-        """LU in single precision that can be renewed; None of a small packing, or exactly singular to that precision.
+        """LU in single precision that can be renewed; None of a small matrix, or exactly singular to that precision.
 
         On the path of a large packing this saves two fifths of the time. A minimisation, whose Cholesky factorisations
         take half of that, gains nothing by it.
