@@ -86,8 +86,8 @@ TEXTS = {
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
-        "With friction L U of three unknowns a disk; without, two, symmetric and positive for all but SuperLU, "
-        "whose time has its ordering. One thread each.",
+        "With friction L U of three unknowns a disk; without, two, symmetric and positive for LAPACK, fronts and "
+        "PARDISO; the time of SuperLU has its ordering. One thread each.",
     ),
     "skipping": (
         "Cost of work that is skipped",

@@ -192,13 +192,13 @@ def factorisations(layers: int, per_row: int, friction: float) -> list[dict[str,
     sizes = front_sizes(fronts)
     left = np.minimum(width, banded.shape[0] - 1 - np.arange(banded.shape[0])).astype(float)
     operations = {
-        "band": float(((1.0 if symmetric else 2.0) * left * left + left).sum()),
+        "band": float((2.0 * left * left + left).sum()),
         "fronts": sum(dense(own, outer, symmetric) for own, outer in sizes),
     }
     one = np.random.default_rng(0).uniform(size=(PRODUCT, PRODUCT))
     actions: dict[str, Callable[[], object]] = {"product": lambda: one @ one}
     if width <= linear.WIDEST:
-        actions["band"] = lambda: (band.definite_factor if symmetric else band.factor)(banded)
+        actions["band"] = lambda: band.factor(banded)
     actions["fronts"] = lambda: (fronts.definite_factor if symmetric else fronts.factor)(dissected)
     for action in actions.values():
         action()

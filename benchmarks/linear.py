@@ -1,7 +1,7 @@
 """Factorisations of the tangent stiffness of slabs at rest: ours, LAPACK's banded ones, SuperLU and PARDISO, in turns.
 
 `python benchmarks/linear.py OUTPUT.json [MOST_UNKNOWNS]`. With friction the tangent has three unknowns a disk and is
-factorised as L U; without, two, and all but SuperLU take it as symmetric and positive. Times are of the
+factorised as L U; without, two, and LAPACK, the fronts and PARDISO take it as symmetric and positive. Times are of the
 numeric phase: orderings and patterns, which a run makes once, are left out, but for SuperLU, of which scipy makes them
 each time. Slabs of more than MOST_UNKNOWNS are left out. PARDISO is skipped by name where `pypardiso` is not there
 (`pip install pypardiso`; it finds MKL by itself or by `PYPARDISO_MKL_RT`).
@@ -25,7 +25,7 @@ from timing import interleaved, write  # noqa: E402
 from granular_response.scene import Scene  # noqa: E402
 from granular_response.solve import Problem, rest_state  # noqa: E402
 from granular_response.solve.linear import Storage, ordering  # noqa: E402
-from granular_response.solve.system import REGULARISATION, StaticSystem  # noqa: E402
+from granular_response.solve.system import OPTIONS, StaticSystem  # noqa: E402
 
 try:
     from pypardiso import PyPardisoSolver
@@ -59,7 +59,7 @@ def systems(layers: int, per_row: int, friction: float) -> list[tuple[sp.csc_arr
     for ordering.WIDEST_BAND in (10**9, 0):
         system = StaticSystem(problem, state)
         known = system.start(state)
-        found.append((system.tangent(system.trial(known, known.q), REGULARISATION * stiffness), system.storage))
+        found.append((system.tangent(system.trial(known, known.q), OPTIONS.regularisation * stiffness), system.storage))
     ordering.WIDEST_BAND = widest
     return found
 
@@ -135,7 +135,7 @@ def methods(layers: int, per_row: int, friction: float) -> dict[str, tuple[sp.cs
     (banded, band), (dissected, fronts) = systems(layers, per_row, friction)
     found: dict[str, tuple[sp.csc_array, Factorise]] = {}
     if band_places(banded)[0] <= WIDEST:
-        found["band, ours"] = banded, lambda: (band.factor if friction else band.definite_factor)(banded).solve
+        found["band, ours"] = banded, lambda: band.factor(banded).solve
         found["band, LAPACK"] = banded, (lapack_lu if friction else lapack_cholesky)(banded)
     found["fronts, ours"] = (
         dissected,

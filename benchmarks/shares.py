@@ -21,7 +21,7 @@ from granular_response.solve import Problem, loaded_states, rest_state
 #: What a function's file has in its name, by part of the code, the first that fits; kernels count as those files.
 PARTS = (
     ("factorisations", ("solve/linear/", "scipy/linalg")),
-    ("forces and tangents", ("kernels/statics", "kernels/events", "solve/rates", "solve/relaxation")),
+    ("forces and tangents", ("kernels/statics", "kernels/events", "solve/rates")),
     ("dynamics", ("kernels/", "solve/dynamics")),
     ("matrices and arrays", ("scipy/sparse", "numpy", "~", "solve/system")),
 )

@@ -23,7 +23,6 @@ from granular_response.observe.floor import floor_disks, floor_response, interio
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.scene import Packing, Scene
 from granular_response.solve import Problem, follow, loaded_states
-from granular_response.solve.choice import load_method
 from granular_response.state import OPEN, STICKING, FloatArray, State
 from granular_response.state import Event as PathEvent
 from granular_response.store.result import (
@@ -113,7 +112,7 @@ class LoadPath:
         """
         forces = [float(force) for force in forces]
         wanted = [force for force in forces if force not in self.known]
-        self.method = load_method(self.problem).method
+        self.method = self.problem.plan.load.method
         literal = self.method == "dynamics"
         while wanted:
             below = max((f for f in self.known if f < wanted[0] and not literal), default=0.0)

@@ -6,7 +6,6 @@ from small_scenes import free_disks, scene
 
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, Relaxation, Stop, solve_scene
-from granular_response.solve.choice import stop_energy
 from granular_response.solve.timestep import resolve_time_step
 
 
@@ -41,7 +40,7 @@ def test_a_packing_in_free_fall_is_not_at_rest(changes):
     gaps = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching-largest", "contact__friction": 0.0}
     problem = Problem.from_scene(scene(3, 5, **(gaps | changes)))
     dynamics = Dynamics(problem, problem.bare_state(), time_step=resolve_time_step(problem))
-    run = Relaxation(dynamics, Stop(stop_energy(problem)))
+    run = Relaxation(dynamics, Stop(problem.plan.stop_energy))
     while dynamics.in_flight(dynamics.touching()):
         assert not run.ended
         dynamics.advance(100)

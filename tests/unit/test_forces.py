@@ -12,6 +12,7 @@ from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
 from granular_response.kernels.model import Pairs, Walls
 from granular_response.scene import SlabPacking
+from granular_response.solve.close_pairs import close_pairs
 
 
 def run_kernel(position, velocity, spin, radius, first, second, springs, material, dt, rule=CUT, **runs_options):
@@ -126,7 +127,7 @@ def random_packing(rng):
             keep.append(k)
     position = position[keep]
     radius = rng.uniform(0.5, 1.2, len(keep))
-    return position, radius, *neighbours.close_pairs(position, radius, 0.6)
+    return position, radius, *close_pairs(position, radius, 0.6)
 
 
 PACKINGS = {"lattice": lattice, "random": random_packing}

@@ -20,7 +20,7 @@ from granular_response.solve import (
 )
 from granular_response.solve import solution as solving
 from granular_response.solve.problem import Problem
-from granular_response.solve.stability import DENSE, negative_modes, unstable_direction
+from granular_response.solve.stability import OPTIONS, negative_modes, unstable_direction
 from granular_response.solve.system import StaticSystem
 
 DOWN = [{"disk": "top-centre", "force": [0.0, -1.0]}]
@@ -48,7 +48,7 @@ def test_a_disk_that_slides_alone_has_no_unstable_direction():
     problem, state = free_disks([[10.0, 1.0 - 1e-3]], contact__friction=0.2, wall__friction=0.2)
     state = problem.with_static_forces(state)
     system = StaticSystem(problem, state)
-    assert system.dof <= DENSE
+    assert system.dof <= OPTIONS.dense
     known = system.start(state)
     pushed = known.q + np.array([1e-2, 0.0, 0.0])
     trial = system.trial(known, pushed)

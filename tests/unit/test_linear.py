@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 from granular_response.solve.linear.band import Band
-from granular_response.solve.linear.band_rows import PADDING, rounded
+from granular_response.solve.linear.band_lu import rounded
 from granular_response.solve.linear.ordering import node_order
 
 
@@ -53,18 +53,6 @@ def test_rows_hold_the_factors_and_zeros_beyond_the_band(n, b):
     assert not outside.any()
 
 
-@pytest.mark.parametrize(("n", "b"), SIZES)
-def test_rows_of_a_symmetric_matrix_hold_its_factors_and_zeros_where_they_are_read(n, b):
-    dense = banded(n, b, 6, symmetric=True)
-    matrix = stored(dense, b)
-    rows = Band(matrix.indptr, matrix.indices).definite_factor(matrix)._rows
-    upper = np.zeros((n, n))
-    for i in range(n):
-        upper[i, i : i + b + 1] = rows[i, : min(b + 1, n - i)]
-    assert upper.T @ (upper / np.diag(upper)[:, None]) == pytest.approx(dense, rel=1e-13, abs=1e-13 * b)
-    assert not rows[:, b + 1 : rounded(b) + 1 + PADDING].any()
-
-
 def test_zero_pivot_falls_back_to_row_exchanges():
     dense = banded(30, 3, 1)
     dense[0, 0] = 0.0
@@ -82,9 +70,7 @@ def test_zero_pivot_of_a_symmetric_matrix_does_not_pass_for_positive():
     storage = Band(matrix.indptr, matrix.indices)
     assert storage.definite_factor(matrix) is None
     assert storage.negative_eigenvalues(matrix) == 1
-    assert storage.symmetric_factor(matrix)[0].solve(np.ones(30)) == pytest.approx(
-        np.linalg.solve(dense, np.ones(30)), rel=1e-9
-    )
+    assert storage.factor(matrix).solve(np.ones(30)) == pytest.approx(np.linalg.solve(dense, np.ones(30)), rel=1e-9)
 
 
 @pytest.mark.parametrize("negative", [0, 1, 4])
@@ -95,9 +81,8 @@ def test_number_of_negative_eigenvalues(negative):
     assert (np.linalg.eigvalsh(dense) < 0).sum() == negative
     matrix = sp.csc_array(dense)
     storage = Band(matrix.indptr, matrix.indices)
-    factor, found = storage.symmetric_factor(matrix)
-    assert found == storage.negative_eigenvalues(matrix) == negative
-    assert factor.solve(np.ones(40)) == pytest.approx(np.linalg.solve(dense, np.ones(40)), rel=1e-8)
+    assert storage.negative_eigenvalues(matrix) == negative
+    assert storage.factor(matrix).solve(np.ones(40)) == pytest.approx(np.linalg.solve(dense, np.ones(40)), rel=1e-8)
 
 
 @pytest.mark.parametrize(("n", "b"), [*SIZES, (300, 70)])
@@ -110,7 +95,7 @@ def test_definite_factor_solves_and_refuses_what_is_not_definite(n, b):
     assert right[-1] == n, "the right-hand side is the caller's"
     matrix.data[matrix.indptr[-1] - 1] -= 2.0 * dense[-1, -1]
     assert storage.definite_factor(matrix) is None
-    assert storage.symmetric_factor(matrix)[1] == 1
+    assert storage.negative_eigenvalues(matrix) == 1
 
 
 def test_node_order_is_a_permutation_that_keeps_neighbours_close():

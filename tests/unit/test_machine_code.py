@@ -90,21 +90,20 @@ def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):
         machine_code.cache_folder.cache_clear()
 
 
-#: Solutions with symmetric matrices up to a wide band, in hexadecimal: sums over lanes, and fused products.
+#: Solutions with matrices up to a wide band, in hexadecimal: sums over lanes, and fused products.
 SUMS = """
 import numpy as np
-from granular_response.solve.linear.band_ldl import factorise, solve, stride
-from granular_response.solve.linear.band_rows import padded
+from granular_response.solve.linear.band_lu import eliminate, padded, solve, stride
 found = []
 for b in range(8, 129, 8):
     n = 2 * b + 3
-    upper = np.triu(np.random.default_rng(b).standard_normal((n, n))) + 4.0 * b * np.eye(n)
+    matrix = np.random.default_rng(b).standard_normal((n, n)) + 4.0 * b * np.eye(n)
     rows = np.zeros((n, stride(b)))
     for i in range(n):
-        last = min(n, i + b + 1)
-        rows[i, : last - i] = upper[i, i:last]
+        first, last = max(0, i - b), min(n, i + b + 1)
+        rows[i, b + first - i : b + last - i] = matrix[i, first:last]
     x = padded(np.ones(n), b)
-    assert factorise(rows.ravel(), n, b, True)
+    eliminate(rows.ravel(), n, b)
     solve(rows.ravel(), n, b, x)
     found += [*x[b : b + n]]
 print(*(float(value).hex() for value in found))
@@ -135,6 +134,6 @@ def test_sums_are_the_same_compiled_for_processors_with_wide_and_with_narrow_reg
     exact = []
     for b in range(8, 129, 8):
         n = 2 * b + 3
-        upper = np.tril(np.triu(np.random.default_rng(b).standard_normal((n, n))), b) + 4.0 * b * np.eye(n)
-        exact.append(np.linalg.solve(upper + np.triu(upper, 1).T, np.ones(n)))
+        matrix = np.random.default_rng(b).standard_normal((n, n)) + 4.0 * b * np.eye(n)
+        exact.append(np.linalg.solve(np.tril(np.triu(matrix, -b), b), np.ones(n)))
     np.testing.assert_allclose(values, np.concatenate(exact), rtol=1e-13)

@@ -1,6 +1,7 @@
 """Multifrontal factorisation against dense and general sparse ones."""
 
 import weakref
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -76,7 +77,7 @@ def test_lu_solves_what_a_general_solver_does(freedoms):
 
 
 @pytest.mark.parametrize("shift", [60.0, 2.0])
-def test_symmetric_factors_solve_and_count_negative_eigenvalues(shift):
+def test_symmetric_matrices_are_solved_where_definite_and_their_negative_eigenvalues_counted(shift):
     position, first, second = lattice(15, 20)
     dissection = Dissection(position, first, second)
     matrix = pattern(dissection, first, second, 2)
@@ -84,9 +85,10 @@ def test_symmetric_factors_solve_and_count_negative_eigenvalues(shift):
     expected = int((np.linalg.eigvalsh(matrix.toarray()) < 0).sum())
     assert (expected > 0) == (shift < 10.0)
     fronts = Multifrontal(dissection, 2)
-    factor, negative = fronts.symmetric_factor(matrix)
-    assert negative == fronts.negative_eigenvalues(matrix) == expected
-    assert (fronts.definite_factor(matrix) is None) == (expected > 0)
+    assert fronts.negative_eigenvalues(matrix) == expected
+    factor = fronts.definite_factor(matrix)
+    assert (factor is None) == (expected > 0)
+    factor = fronts.factor(matrix) if factor is None else factor
     right = np.random.default_rng(2).normal(size=matrix.shape[0])
     assert factor.solve(right) == pytest.approx(np.linalg.solve(matrix.toarray(), right), rel=1e-7, abs=1e-10)
 
@@ -99,8 +101,7 @@ def test_singular_matrix_is_an_error():
 
 
 def split(monkeypatch):
-    monkeypatch.setattr(multifrontal, "LARGE", 100)
-    monkeypatch.setattr(multifrontal, "BLOCK", 10)
+    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=100, block=10))
 
 
 @pytest.mark.parametrize("kind", ["unsymmetric", "definite", "indefinite"])
@@ -117,18 +118,15 @@ def test_the_bits_are_those_of_one_thread(monkeypatch, kind):
         assert len(fronts.ranges) > 10 and len(fronts.above) > 5
         with threads.using(count):
             if kind == "unsymmetric":
-                factor = fronts.factor(matrix)
+                rough.append(fronts.rough_factor(matrix).solve(right))
             else:
-                factor, negative = fronts.symmetric_factor(matrix)
-                negatives.append(negative)
-                assert negative == fronts.negative_eigenvalues(matrix)
+                negatives.append(fronts.negative_eigenvalues(matrix))
                 assert (fronts.definite_factor(matrix) is None) == (kind == "indefinite")
+            factor = fronts.definite_factor(matrix) if kind == "definite" else fronts.factor(matrix)
             solutions.append(factor.solve(right))
-            if kind != "indefinite":
-                rough.append(fronts.rough_factor(matrix, definite=kind == "definite").solve(right))
     assert all(solution.tobytes() == solutions[0].tobytes() for solution in solutions[1:])
     assert solutions[0] == pytest.approx(spsolve(matrix, right), rel=1e-6, abs=1e-9)
-    if kind != "indefinite":
+    if kind == "unsymmetric":
         assert all(solution.tobytes() == rough[0].tobytes() for solution in rough[1:])
         left = np.abs(matrix @ rough[0] - right).max()
         sizes = np.abs(matrix).sum(axis=1).max() * np.abs(rough[0]).max() + np.abs(right).max()
@@ -170,7 +168,7 @@ def test_a_packing_is_solved_alike_by_band_and_fronts(monkeypatch):
 @pytest.fixture
 def factorised(monkeypatch):
     """A pattern that is split into subtrees, a matrix of it with its rough LU, and a copy with changes in one place."""
-    monkeypatch.setattr(multifrontal, "LARGE", 0)
+    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     position, first, second = lattice(23, 31)
     dissection = Dissection(position, first, second)
     matrix = shifted(pattern(dissection, first, second, 3), 12.0)
@@ -178,7 +176,7 @@ def factorised(monkeypatch):
     assert len(fronts.ranges) > 8 and len(fronts.above) > 4
     changed = matrix.copy()
     changed.data[500:504] += 3.0
-    return fronts, matrix, fronts.rough_factor(matrix, definite=False), changed
+    return fronts, matrix, fronts.rough_factor(matrix), changed
 
 
 RIGHT = np.random.default_rng(2).normal(size=23 * 31 * 3)
@@ -195,13 +193,13 @@ def test_an_lu_is_renewed_where_entries_have_changed_to_the_bits_of_a_new_one(fa
         eliminated.clear()
         assert factor.renew(now, 1e-9, 0.9)
         assert 0 < len(eliminated) < 3
-        assert np.array_equal(factor.solve(RIGHT), fronts.rough_factor(now, definite=False).solve(RIGHT))
+        assert np.array_equal(factor.solve(RIGHT), fronts.rough_factor(now).solve(RIGHT))
     # entries across the border of a subtree belong to it from both sides
     for entry in range(0, len(matrix.data), 97):
         now = changed.copy()
         now.data[entry] += 1.0
         assert factor.renew(now, 1e-9, 1.0)
-        assert np.array_equal(factor.solve(RIGHT), fronts.rough_factor(now, definite=False).solve(RIGHT))
+        assert np.array_equal(factor.solve(RIGHT), fronts.rough_factor(now).solve(RIGHT))
 
 
 def test_an_lu_is_left_where_little_or_too_much_has_changed(factorised):
@@ -220,60 +218,33 @@ def test_an_lu_is_left_where_little_or_too_much_has_changed(factorised):
         factor.renew(empty, 1e-9, 1.0)
 
 
-def test_a_cholesky_factor_is_renewed_to_the_bits_of_a_new_one_or_seen_not_to_be_definite(factorised):
-    fronts, matrix, _, changed = factorised
-    matrix, changed = (shifted(0.5 * (each + each.T), 40.0) for each in (matrix, changed))
-    factor = fronts.rough_factor(matrix, definite=True)
-    for now in (changed, matrix, changed):
-        assert factor.renew(now, 1e-9, 0.9)
-        assert np.array_equal(factor.solve(RIGHT), fronts.rough_factor(now, definite=True).solve(RIGHT))
-    negative = changed.copy()
-    negative.data[negative.indptr[30] : negative.indptr[31]] *= np.where(
-        negative.indices[negative.indptr[30] : negative.indptr[31]] == 30, -1.0, 1.0
-    )
-    assert fronts.definite_factor(negative) is None
-    assert fronts.rough_factor(negative, definite=True) is None
-    with pytest.raises(RuntimeError, match="not positive definite"):
-        factor.renew(negative, 1e-9, 1.0)
-
-
 def test_a_small_packing_has_no_rough_factor_nor_has_a_singular_matrix(monkeypatch):
     position, first, second = lattice(23, 31)
     dissection = Dissection(position, first, second)
     matrix = shifted(pattern(dissection, first, second, 3), 12.0)
-    assert Multifrontal(dissection, 3).rough_factor(matrix, definite=False) is None
-    monkeypatch.setattr(multifrontal, "LARGE", 0)
-    assert Multifrontal(dissection, 3).rough_factor(0.0 * matrix, definite=False) is None
+    assert Multifrontal(dissection, 3).rough_factor(matrix) is None
+    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
+    assert Multifrontal(dissection, 3).rough_factor(0.0 * matrix) is None
 
 
-def test_a_definite_step_by_a_renewed_factor_is_that_of_a_new_one(monkeypatch):
+def test_a_definite_step_solves_with_the_shift_or_sees_that_the_tangent_is_not_definite(monkeypatch):
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
-    monkeypatch.setattr(multifrontal, "LARGE", 0)
     problem = Problem.from_scene(scene(9, 19, contact__friction=0.0))
     state = rest_state(problem)
     system = StaticSystem(problem, state)
-    known = system.start(state)
-    trial = system.trial(known, known.q)
-    moved = system.trial(known, known.q + np.random.default_rng(3).normal(0.0, 1e-8, system.dof))
+    trial = system.trial(known := system.start(state), known.q)
     force = np.random.default_rng(5).normal(size=system.dof)
-    k = problem.stiffness
-    made = counted(monkeypatch, Multifrontal, "rough_factor")
-    system.definite_step(trial, force, 0.0)
-    step = system.definite_step(moved, force, 1e-8 * k)
-    assert len(made) == 1
-    system.definite_step(trial, force, 1e-3 * k)  # too far away
-    assert len(made) == 2
-    exact = StaticSystem(problem, state).definite_step(moved, force, 1e-8 * k)
-    assert len(made) == 3
-    assert np.linalg.norm(step - exact) < 1e-3 * np.linalg.norm(exact)
-    assert system.definite_step(moved, force, -k) is None  # not positive definite
+    step = system.definite_step(trial, force, 1e-3 * problem.stiffness)
+    left = system.tangent(trial, 1e-3 * problem.stiffness) @ system.interleave(step) - system.interleave(force)
+    assert np.abs(left).max() < 1e-9
+    assert system.definite_step(trial, force, -problem.stiffness) is None
 
 
 def test_a_factor_serves_matrices_nearby_as_long_as_it_pays(factorised, monkeypatch):
     fronts, matrix, factor, changed = factorised
     near = Nearby(factor)
     largest = np.abs(matrix.data).max()
-    for size in (0.9 * nearby.CHANGE * largest, 3.0):  # by GMRES alone, and where an entry's subtree is renewed
+    for size in (0.9 * nearby.OPTIONS.change * largest, 3.0):  # by GMRES alone, and where an entry's subtree is renewed
         now = changed.copy()
         now.data[:200] += size
         found = near.solve(now, RIGHT, 1e-9)
@@ -281,11 +252,11 @@ def test_a_factor_serves_matrices_nearby_as_long_as_it_pays(factorised, monkeypa
         assert np.linalg.norm(fronts.factor(matrix).solve(RIGHT) - found) > 1e-4 * np.linalg.norm(found)
     assert near.solve(changed, np.zeros_like(RIGHT), 1e-9) == pytest.approx(np.zeros_like(RIGHT), abs=0.0)
     assert near.solve(shifted(matrix, -30.0), RIGHT, 1e-9) is None  # all has changed
-    monkeypatch.setattr(multifrontal, "MULTIPLICATIONS", 1e9)
-    dear = Nearby(fronts.rough_factor(matrix, definite=False))
+    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, multiplications=1e9))
+    dear = Nearby(fronts.rough_factor(matrix))
     assert dear.solve(matrix, RIGHT, 1e-9) is not None
     now = matrix.copy()
-    now.data[:200] += 0.9 * nearby.CHANGE * largest
+    now.data[:200] += 0.9 * nearby.OPTIONS.change * largest
     assert dear.solve(now, RIGHT, 1e-9) is not None
     assert dear.solve(now, RIGHT, 1e-9) is None  # a new one is cheaper
 
@@ -293,21 +264,15 @@ def test_a_factor_serves_matrices_nearby_as_long_as_it_pays(factorised, monkeypa
 def test_a_sequence_of_solutions_renews_what_serves_and_leaves_the_rest_to_exact_factors(factorised, monkeypatch):
     fronts, matrix, _, changed = factorised
     made = counted(monkeypatch, Multifrontal, "rough_factor")
-    steps = Sequence(fronts, definite=False, same=1e-6)
+    steps = Sequence(fronts, same=1e-6)
     for now, shift, factorisations in ((matrix, 0.0, 1), (changed, 1e-7, 1), (matrix, 1.0, 2)):
         found = steps.solve(now, RIGHT, 1e-9, shift)
         assert np.linalg.norm(now @ found - RIGHT) <= 1.1e-9 * np.linalg.norm(RIGHT)
         assert len(made) == factorisations and steps.factor is not None
     assert steps.solve(0.0 * matrix, RIGHT, 1e-9, 1.0) is None  # singular
     assert steps.factor is None
-    monkeypatch.setattr(nearby, "MOST", 1)
+    monkeypatch.setattr(nearby, "OPTIONS", replace(nearby.OPTIONS, most=1))
     assert steps.solve(matrix, RIGHT, 1e-14, 0.0) is None  # one product of single precision is not enough
-    symmetric = 0.5 * (matrix + matrix.T)
-    steps = Sequence(fronts, definite=True, same=1e-6)
-    monkeypatch.undo()
-    monkeypatch.setattr(multifrontal, "LARGE", 0)
-    assert steps.solve(shifted(symmetric, 40.0), RIGHT, 1e-9, 0.0) is not None
-    assert steps.solve(shifted(symmetric, -40.0), RIGHT, 1e-9, 0.0) is None
 
 
 def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
@@ -318,7 +283,7 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
     roughly = counted(monkeypatch, Multifrontal, "rough_factor")
     alone = follow(problem, rest, [1.0])[0]
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
-    monkeypatch.setattr(multifrontal, "LARGE", 0)
+    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     kept = follow(problem, rest, [1.0])[0]
     assert 0 < len(roughly) < 0.5 * kept.reached.increments
     # what increments leave out of events
@@ -328,7 +293,7 @@ def test_a_path_with_renewed_factors_is_the_path(monkeypatch):
 
 def test_a_renewed_factor_is_kept_for_its_statuses_unless_it_has_a_shift(monkeypatch):
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
-    monkeypatch.setattr(multifrontal, "LARGE", 0)
+    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     problem = Problem.from_scene(scene(9, 19, contact__friction=0.2, preparation__gravity="frictionless"))
     state = rest_state(problem)
     system = StaticSystem(problem, state)
@@ -346,13 +311,13 @@ def test_a_renewed_factor_is_kept_for_its_statuses_unless_it_has_a_shift(monkeyp
 def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(monkeypatch):
     """A million disks with friction had two: 17 GiB."""
     monkeypatch.setattr(ordering, "WIDEST_BAND", 0)
-    monkeypatch.setattr(multifrontal, "LARGE", 0)
+    monkeypatch.setattr(multifrontal, "OPTIONS", replace(multifrontal.OPTIONS, large=0))
     loads = [{"disk": "top-centre", "force": [0.0, -28.0]}]
     problem = Problem.from_scene(scene(4, 9, contact__friction=1.0, preparation__gravity="frictionless", loads=loads))
     rest = rest_state(problem)
     state = follow(problem.with_loads(rest.position), rest, [1.0])[0]
     system = StaticSystem(problem, state)
-    trial = system.trial(known := system.start(state), known.q)
+    trial = system.at(state)
     force = np.ones(system.dof)
     alive = weakref.WeakSet()
     most = []
@@ -369,7 +334,7 @@ def test_no_other_factorisation_is_in_memory_when_eigenvalues_are_looked_for(mon
         monkeypatch.setattr(Multifrontal, name, counting)
     system.step(trial, force)
     system.definite_step(trial, force, 4.0 * problem.stiffness)
-    assert len(alive) == 2  # solvers take turns with these at most
+    assert len(alive) == 1  # that of the step
     before = len(most)
     assert negative_modes(system, trial) == 0
     assert len(most) > before + 1  # it was a suspicion

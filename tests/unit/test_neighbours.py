@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from granular_response.kernels.neighbours import close_pairs, make_runs, run_pairs
+from granular_response.kernels.neighbours import make_runs, run_pairs
 from granular_response.scene import SlabPacking
+from granular_response.solve.close_pairs import close_pairs
 
 
 def brute_force(position, radius, skin):
@@ -24,7 +25,7 @@ def brute_force(position, radius, skin):
 def test_close_pairs(seed, skin):
     rng = np.random.default_rng(seed)
     n = 150
-    # negative coordinates, a far outlier and crowded spots: more pairs than there is room for at first
+    # negative coordinates, a far outlier and crowded spots
     position = np.concatenate([rng.normal(0, 1.5, (n // 2, 2)), rng.uniform(-20, 20, (n // 2 - 1, 2)), [[300.0, 90.0]]])
     radius = rng.uniform(0.3, 1.3, len(position))
     first, second = close_pairs(position, radius, skin)

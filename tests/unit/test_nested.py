@@ -46,7 +46,7 @@ def test_a_field_that_vanishes_at_the_side_walls_is_carried_over_to_second_order
 def test_the_same_minimum_in_fewer_iterations(monkeypatch):
     problem = slab(24, 97)
     alone = minimise(problem, problem.bare_state())
-    monkeypatch.setattr(nested, "LARGE", 300)
+    monkeypatch.setattr(nested, "OPTIONS", replace(nested.OPTIONS, large=300))
     found = rest_state(problem)
     assert found.position == pytest.approx(alone.position, abs=1e-9)
     assert found.reached.newton_iterations < 0.7 * alone.reached.newton_iterations
@@ -63,7 +63,7 @@ def test_the_same_minimum_in_fewer_iterations(monkeypatch):
     ],
 )
 def test_other_packings_start_as_built(monkeypatch, changes):
-    monkeypatch.setattr(nested, "LARGE", 20 if changes else 10_000)
+    monkeypatch.setattr(nested, "OPTIONS", replace(nested.OPTIONS, large=20 if changes else 10_000))
     if changes.get("packing__kind") == "pile":
         problem = Problem.from_scene(Scene.from_dict({"packing": {"kind": "pile"}, "contact": {"friction": 0.0}}))
     else:
@@ -79,7 +79,7 @@ def test_a_saddle_is_left_for_a_minimum(monkeypatch, large):
     mirror = mirror_disks(problem.packing.position, 0.5 * problem.packing.width)
     reflected = rest.position[mirror] * [-1.0, 1.0] + [problem.packing.width, 0.0]
     half_way = problem.with_static_forces(replace(rest, position=0.5 * (rest.position + reflected)))
-    monkeypatch.setattr(energy, "LARGE", large)
+    monkeypatch.setattr(energy, "OPTIONS", replace(energy.OPTIONS, large=large))
     found = minimise(problem, half_way)
     assert large or found.reached.escapes == 1
     assert found.certificate.negative_modes == 0

@@ -13,7 +13,7 @@ from granular_response.contact import LAWS
 from granular_response.kernels.statics import SMALL_TURN, _angle
 from granular_response.solve import Dynamics, Problem, solve_scene, stability
 from granular_response.solve.pattern import Pattern
-from granular_response.solve.stability import DENSE, LEFT_OF_ALL, negative_modes, unstable_direction
+from granular_response.solve.stability import OPTIONS, negative_modes, unstable_direction
 from granular_response.solve.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
@@ -211,7 +211,7 @@ def test_an_instability_is_found_beside_disks_that_roll_freely(rollers):
     q = known.q.copy()
     q[problem.n : problem.n + 2] -= np.array([1.0, 2.0]) * force / problem.stiffness
     trial = system.trial(replace(known, spring=np.concatenate([np.zeros(len(system.first)), slides])), q)
-    assert SLIDING in system.split(trial.status)[1] and (system.dof <= DENSE) == (rollers == 0)
+    assert SLIDING in system.split(trial.status)[1] and (system.dof <= OPTIONS.dense) == (rollers == 0)
     mass = system.interleave(1.0 / problem.inverse_mass)
     values, vectors = np.linalg.eig(system.tangent(trial, 1e-6).toarray() / mass[:, None])
     every = values.real
@@ -253,11 +253,11 @@ def test_an_eigenvalue_is_found_as_accurately_as_its_sign_asks(sliding, monkeypa
 
     monkeypatch.setattr(stability, "eigs", counted)
     assert negative_modes(system, trial) == 0
-    assert asked == [stability.ACCURACIES[0]]
+    assert asked == [OPTIONS.accuracies[0]]
     at_first = solutions[0]
-    monkeypatch.setattr(stability, "CERTAIN", 1e5)  # not certain at first
+    monkeypatch.setattr(stability, "OPTIONS", replace(OPTIONS, certain=1e5))  # not certain at first
     assert negative_modes(system, trial) == 0
-    assert asked[1:-1] == list(stability.ACCURACIES) and asked[-1] < 1e-10  # where none of them is enough
+    assert asked[1:-1] == list(OPTIONS.accuracies) and asked[-1] < 1e-10  # where none of them is enough
     assert max(solutions[2:]) < at_first  # from the vector that is known by then, not from nothing
 
 
@@ -266,7 +266,7 @@ def test_a_point_left_of_all_eigenvalues_is_the_nearest_of_those_tried(sliding):
     matrix, _ = stability._scaled(system, trial)
     found = stability._left_of_all(system, matrix)
     lowest = np.linalg.eigvalsh(system.pattern.symmetric_part(matrix).toarray()).min()
-    origins = [-origin * system.problem.stiffness for origin in LEFT_OF_ALL]
+    origins = [-origin * system.problem.stiffness for origin in OPTIONS.left_of_all]
     assert found == max(origin for origin in origins if origin < lowest)
     assert origins[-1] < found < origins[0]  # neither end of the list
 
@@ -305,7 +305,7 @@ def test_disks_that_slide_alone_call_for_no_eigenvalues(monkeypatch):
     system = StaticSystem(problem, state)
     known = system.start(state)
     trial = system.trial(replace(known, spring=np.ones(len(known.spring))), known.q)
-    assert (trial.status == SLIDING).sum() == 7 and system.dof > DENSE
+    assert (trial.status == SLIDING).sum() == 7 and system.dof > OPTIONS.dense
 
     def none_asked(*_, **__):
         raise AssertionError("eigenvalues were asked for")

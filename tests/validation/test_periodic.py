@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from granular_response.kernels.neighbours import close_pairs
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.observe.profile import force_profile
 from granular_response.observe.stress import (
@@ -17,6 +16,7 @@ from granular_response.observe.stress import (
 from granular_response.observe.teardrop import teardrop
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import Problem, solve_scene
+from granular_response.solve.close_pairs import close_pairs
 from granular_response.store.result import to_labelled
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs

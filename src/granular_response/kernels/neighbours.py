@@ -1,4 +1,4 @@
-"""Candidate contacts: pairs close enough to touch before the list is made again, stored as runs."""
+"""Candidate contacts, stored as runs, and which of them are closed."""
 
 from __future__ import annotations
 
@@ -9,88 +9,8 @@ from ..state import FLOOR
 
 #: Runs with fewer pairs than this are not worth a vector loop of their own.
 SHORTEST_RUN = 24
-#: Close pairs per disk for which room is made at first.
-USUAL_PAIRS = 6
-#: Cells per disk, and cells in a row or column, before cells are made larger than the reach of a disk.
-MOST_CELLS, MOST_IN_A_ROW = 64, 100_000
 #: Missing pairs bridged to keep a run together; they cost less than a new run.
 LONGEST_GAP = 3
-
-
-@kernel
-def _grid_pairs(x, z, radius, skin, column, row, columns, rows, order, start, first, second):
-    """Fill ``first`` and ``second`` as far as they reach; returns how many pairs there are."""
-    count = 0
-    for i in range(x.size):
-        for c in range(max(column[i] - 1, 0), min(column[i] + 2, columns)):
-            for r in range(max(row[i] - 1, 0), min(row[i] + 2, rows)):
-                home = c * rows + r
-                for k in range(start[home], start[home + 1]):
-                    j = order[k]
-                    if j <= i:
-                        continue
-                    dx = x[i] - x[j]
-                    dz = z[i] - z[j]
-                    reach = radius[i] + radius[j] + skin
-                    if dx * dx + dz * dz < reach * reach:
-                        if count < first.size:
-                            first[count] = i
-                            second[count] = j
-                        count += 1
-    return count
-
-
-def close_pairs(position, radius, skin, period=None):
-    """All pairs of disks whose gap is less than ``skin``.
-
-    Parameters
-    ----------
-    position : (n, 2) disk centres; ``radius`` : (n,); ``skin`` : largest gap listed; ``period`` : of x, if any, wide
-        enough for no two disks to meet on both sides.
-
-    Returns
-    -------
-    first, second : (m,) int32 with ``first < second``, sorted by ``(first, second)``.
-    """
-    if period is not None:
-        return _periodic_pairs(position, radius, skin, period)
-    x = np.ascontiguousarray(position[:, 0])
-    z = np.ascontiguousarray(position[:, 1])
-    cell = 2.0 * float(radius.max()) + skin
-    cells = float(np.ptp(x) / cell + 1.0) * float(np.ptp(z) / cell + 1.0)
-    cell *= max(1.0, (cells / (MOST_CELLS * len(radius))) ** 0.5)  # disks far apart: fewer cells, and larger ones
-    cell = max(cell, float(np.ptp(x)) / MOST_IN_A_ROW, float(np.ptp(z)) / MOST_IN_A_ROW)
-    column = ((x - x.min()) / cell).astype(np.int64)
-    row = ((z - z.min()) / cell).astype(np.int64)
-    columns, rows = int(column.max()) + 1, int(row.max()) + 1
-    home = column * rows + row
-    order = np.argsort(home, kind="stable")
-    start = np.searchsorted(home[order], np.arange(columns * rows + 1))
-    count = USUAL_PAIRS * len(radius)
-    while True:
-        first, second = np.empty(count, np.int64), np.empty(count, np.int64)
-        room = count
-        count = _grid_pairs(x, z, radius, skin, column, row, columns, rows, order, start, first, second)
-        if count <= room:
-            break
-    first, second = first[:count], second[:count]
-    by = np.argsort(first * len(radius) + second)
-    return first[by].astype(np.int32), second[by].astype(np.int32)
-
-
-def _periodic_pairs(position, radius, skin, period):
-    """The same, with copies of the disks near one side beyond the other."""
-    n = len(radius)
-    x = position[:, 0] % period
-    copied = np.flatnonzero(x < 2.0 * float(radius.max()) + skin)
-    whole = np.stack([np.r_[x, x[copied] + period], np.r_[position[:, 1], position[copied, 1]]], axis=1)
-    first, second = close_pairs(whole, np.r_[radius, radius[copied]], skin)
-    kept = first < n  # two copies are near each other where the disks are
-    disk = np.r_[np.arange(n), copied]
-    pairs = np.sort(np.stack([first[kept], disk[second[kept]]], axis=1), axis=1)
-    pairs = pairs[pairs[:, 0] < pairs[:, 1]]  # a disk is no wider than the period: it never touches its own copy
-    pairs = np.unique(pairs, axis=0).astype(np.int32)
-    return np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
 
 
 def make_runs(first, second, n, longest_gap=LONGEST_GAP, shortest_run=SHORTEST_RUN, multiple=1):

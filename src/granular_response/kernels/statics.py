@@ -283,25 +283,6 @@ def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, fixe
 
 
 @kernel
-def normal_forces(q, n, pairs, pair_shape, walls, wall_shape, force):
-    """Add the normal forces of all contacts at ``q`` to ``force`` (dof,): what a trial without friction has, alone."""
-    for c in range(pairs.first.size):
-        i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
-        if xi > 0.0:
-            pull = elastic_force(pairs.law, xi, _shape_at(pair_shape, c)) / d
-            force[i] += pull * dx
-            force[n + i] += pull * dz
-            force[j] -= pull * dx
-            force[n + j] -= pull * dz
-    for c in range(walls.disk.size):
-        i, nx, nz, xi = _wall_at(q, n, walls, c)
-        if xi > 0.0:
-            fn = elastic_force(walls.law, xi, _shape_at(wall_shape, c))
-            force[i] += fn * nx
-            force[n + i] += fn * nz
-
-
-@kernel
 def spring_forces(overlap, spring, shape, law, out):
     """Fill ``out`` (:class:`Response`) with forces from overlaps and springs (m,) as they are.
 

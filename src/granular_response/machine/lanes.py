@@ -4,7 +4,8 @@ A ``Lanes`` value holds ``WIDTH`` doubles in vector registers, of consecutive co
 Arithmetic, comparison, :func:`select`, :func:`root` and :func:`magnitude` act on each lane alone, with the rounding of
 the scalar operation, so a lane's results do not depend on what the others hold; functions written with them serve
 scalars as well. Other codes leave it to the compiler whether a loop becomes vector instructions; here they are what a
-kernel asks for.
+kernel asks for. Left to the compiler, with the same bits, a step of the paper's slab takes 1.2 times as long, and the
+fall of a packing is nothing but steps; a banded LU, of which it vectorises nothing, takes seven times.
 
 :func:`take` and :func:`put` move ``array[k : k + WIDTH]``, or the scalar ``array[k]``, so that one body serves a
 vector loop and what is left at its end. With compilation off a ``Lanes`` value is a numpy array.

@@ -21,8 +21,8 @@ from numba.extending import get_cython_function_address, intrinsic
 from numpy.typing import NDArray
 
 #: Routines in the order of :func:`addresses`.
-ROUTINES = ("gemm", "gemv", "syrk", "trsm", "trsv", "getrf", "laswp", "potrf", "sytrs")
-GEMM, GEMV, SYRK, TRSM, TRSV, GETRF, LASWP, POTRF, SYTRS = range(len(ROUTINES))
+ROUTINES = ("gemm", "gemv", "syrk", "trsm", "trsv", "getrf", "laswp", "potrf")
+GEMM, GEMV, SYRK, TRSM, TRSV, GETRF, LASWP, POTRF = range(len(ROUTINES))
 
 #: First letter of their names for numbers of this type.
 PRECISIONS = {np.dtype(np.float64): "d", np.dtype(np.float32): "s"}
@@ -38,7 +38,7 @@ def addresses(kind: np.dtype) -> NDArray[np.int64]:
     """(r,) addresses of ``ROUTINES`` for numbers of a type of ``PRECISIONS``."""
     found = [
         get_cython_function_address(f"scipy.linalg.cython_{library}", PRECISIONS[kind] + name)
-        for name, library in zip(ROUTINES, ["blas"] * 5 + ["lapack"] * 4, strict=True)
+        for name, library in zip(ROUTINES, ["blas"] * 5 + ["lapack"] * 3, strict=True)
     ]
     result = np.array(found, np.int64)
     result.flags.writeable = False

@@ -24,32 +24,20 @@ if TYPE_CHECKING:
     from .timestep import UnstableTimeStep
 
 # Names are looked up on first use: whoever reads states alone does not load the solvers.
-_HOME = {
-    "Choice": "choice",
-    "Dynamics": "dynamics",
-    "DynamicsError": "dynamics",
-    "Relaxation": "dynamics",
-    "Stop": "dynamics",
-    "relax": "dynamics",
-    "EquilibriumError": "equilibrium",
-    "certify": "equilibrium",
-    "finish": "equilibrium",
-    "minimise": "energy",
-    "PathError": "path",
-    "PathRecord": "path",
-    "follow": "path",
-    "contact_answers": "small_loads",
-    "influence": "small_loads",
-    "Problem": "problem",
-    "NotSettled": "settle",
-    "Solution": "solution",
-    "continue_solution": "solution",
-    "loaded_states": "solution",
-    "rest_state": "solution",
-    "solve_scene": "solution",
-    "strained": "strain",
-    "UnstableTimeStep": "timestep",
+_PLACES = {
+    "choice": "Choice",
+    "dynamics": "Dynamics DynamicsError Relaxation Stop relax",
+    "energy": "minimise",
+    "equilibrium": "EquilibriumError certify finish",
+    "path": "PathError PathRecord follow",
+    "problem": "Problem",
+    "settle": "NotSettled",
+    "small_loads": "contact_answers influence",
+    "solution": "Solution continue_solution loaded_states rest_state solve_scene",
+    "strain": "strained",
+    "timestep": "UnstableTimeStep",
 }
+_HOME = {name: module for module, names in _PLACES.items() for name in names.split()}
 _ERRORS = ("DynamicsError", "EquilibriumError", "NotSettled", "PathError", "UnstableTimeStep")
 
 

@@ -1,47 +1,62 @@
-"""The one place that picks how a scene is solved: the cheapest method that is valid for it."""
+"""The one place that picks how a scene is solved: the cheapest method that is valid for it.
+
+A :class:`Plan` is decided once for each problem (``Problem.plan``); whoever solves, stores or reports reads it.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..contact import CUT
 from ..scene import SceneError
 from ..scene.errors import show
-from .problem import Problem
+
+if TYPE_CHECKING:
+    from .problem import Problem
 
 
 @dataclass(frozen=True)
 class Choice:
     """A method for one stage and the reason for it."""
 
-    method: str  #: dynamics, minimise or path
+    method: str  #: dynamics, minimise or path; none without loads
     reason: str
 
 
-def _of_motion(problem: Problem) -> bool:
-    """Whether the friction law is one that statics does not have: all but the cut."""
-    return problem.rotations and problem.rule != CUT
+@dataclass(frozen=True)
+class Plan:
+    """How a problem is solved."""
+
+    rest: Choice
+    load: Choice
+    static: bool  #: whether dynamics hands over to the static finish
+    stop_energy: float  #: kinetic energy per disk at which dynamics ends or hands over (Sec. III.C)
 
 
-def _why(problem: Problem) -> str:
-    return f"protocol.friction_law {problem.scene.protocol.friction_law} is a law of motion that statics does not have"
+def plan(problem: Problem) -> Plan:
+    """Decide how a problem is solved.
 
-
-def finishes_statically(problem: Problem) -> bool:
-    """Whether dynamics hands over to the static finish."""
-    return problem.scene.protocol.static_finish and not _of_motion(problem)
-
-
-def rest_method(problem: Problem) -> Choice:
-    """How to find the state at rest under gravity.
-
-    Friction and disorder make the rest state depend on the fall into it, so it is reached as the paper does, by
-    dynamics. The ordered frictionless packing has its minimum from wherever one starts.
+    Statics has the friction law ``cut`` only; with another one everything is dynamics, to the end.
 
     Raises
     ------
     SceneError
-        When ``minimise`` is asked for a scene with friction.
+        When the scene asks for a method that it does not have.
+    """
+    protocol = problem.scene.protocol
+    of_motion = f"protocol.friction_law {protocol.friction_law} is a law of motion that statics does not have"
+    only_motion = of_motion if problem.rotations and problem.rule != CUT else ""
+    static = protocol.static_finish and not only_motion
+    load = _load(problem, only_motion) if problem.scene.loads else Choice("none", "loads is empty")
+    return Plan(_rest(problem, only_motion), load, static, _stop_energy(problem, static))
+
+
+def _rest(problem: Problem, only_motion: str) -> Choice:
+    """The state at rest under gravity.
+
+    Friction and disorder make it depend on the fall into it, so it is reached as the paper does, by dynamics. The
+    ordered frictionless packing has its minimum from wherever one starts.
     """
     asked = problem.scene.protocol.method
     if asked == "minimise" and problem.rotations:
@@ -50,34 +65,26 @@ def rest_method(problem: Problem) -> Choice:
         )
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
-    if _of_motion(problem):
-        return Choice("dynamics", _why(problem))
-    if problem.rotations and problem.scene.preparation.gravity == "frictionless":
-        if problem.packing.ordered:
-            return Choice("minimise", "prepared without friction, and no disorder: rest is the minimum of the energy")
-        return Choice("dynamics", "the rest state of a disordered packing depends on the fall into it")
-    if problem.rotations:
+    if only_motion:
+        return Choice("dynamics", only_motion)
+    smooth = not problem.rotations or problem.scene.preparation.gravity == "frictionless"
+    if not smooth:
         return Choice("dynamics", "with friction the rest state depends on how gravity was applied")
     if not problem.packing.ordered:
         return Choice("dynamics", "the rest state of a disordered packing depends on the fall into it")
-    return Choice("minimise", "no friction and no disorder: rest is the minimum of the energy")
+    how = "prepared without friction, and no disorder" if problem.rotations else "no friction and no disorder"
+    return Choice("minimise", f"{how}: rest is the minimum of the energy")
 
 
-def load_method(problem: Problem) -> Choice:
-    """How to find the states under load.
-
-    Raises
-    ------
-    SceneError
-        When ``path`` is asked for a scene with a friction law that statics does not have.
-    """
+def _load(problem: Problem, only_motion: str) -> Choice:
+    """The states under load."""
     asked = problem.scene.protocol.method
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
-    if _of_motion(problem):
+    if only_motion:
         if asked == "path":
-            raise SceneError(f"protocol.method = path: must be dynamics or auto, {_why(problem)}")
-        return Choice("dynamics", _why(problem))
+            raise SceneError(f"protocol.method = path: must be dynamics or auto, {only_motion}")
+        return Choice("dynamics", only_motion)
     if asked == "path":
         return Choice("path", "protocol.method is path")
     if problem.rotations:
@@ -85,30 +92,23 @@ def load_method(problem: Problem) -> Choice:
     return Choice("minimise", "no friction: equilibrium is a minimum of the energy")
 
 
-def stop_energy(problem: Problem) -> float:
-    """Kinetic energy per disk at which dynamics hands over to the static finish (Sec. III.C).
+def _stop_energy(problem: Problem, static: bool) -> float:
+    """The paper's own: 1e-6 without friction, 1e-9 with disorder, and else what the protocol says.
 
-    The paper's own: 1e-6 without friction, 1e-9 with disorder, and else what the protocol says. With
-    ``method: dynamics``, or without a static finish, the protocol is taken at its word.
+    With ``method: dynamics``, or without a static finish, the protocol is taken at its word.
     """
     protocol = problem.scene.protocol
-    if protocol.method == "dynamics" or not finishes_statically(problem):
+    if protocol.method == "dynamics" or not static or (problem.rotations and problem.packing.ordered):
         return protocol.stop_kinetic_energy
-    if not problem.rotations:
-        return max(protocol.stop_kinetic_energy, 1e-6)
-    if not problem.packing.ordered:
-        return max(protocol.stop_kinetic_energy, 1e-9)
-    return protocol.stop_kinetic_energy
+    return max(protocol.stop_kinetic_energy, 1e-9 if problem.rotations else 1e-6)
 
 
 def idle_settings(problem: Problem) -> list[str]:
     """Settings of preparation and protocol that differ from their default and change nothing, each with the reason."""
-    scene = problem.scene
+    scene, rest, load = problem.scene, problem.plan.rest, problem.plan.load
     preparation, protocol = scene.preparation, scene.protocol
-    rest = rest_method(problem)
-    load = load_method(problem) if scene.loads else Choice("none", "loads is empty")
     slow, falls = preparation.gravity == "slow", rest.method == "dynamics"
-    hand_over = stop_energy(problem)
+    hand_over = problem.plan.stop_energy
     reasons = {
         "preparation.gravity": rest.reason if slow and not falls else "",
         "preparation.ramp_time": "" if slow and falls else rest.reason if slow else "preparation.gravity is not slow",

@@ -1,9 +1,15 @@
-"""Relaxation by explicit dynamics: the discrete element method of Sec. III.
+"""Relaxation by explicit dynamics: the discrete element method.
 
-A :class:`Dynamics` advances one packing in time. :func:`relax` runs it through a ramp of gravity or load until its
-kinetic energy is below the limit of Sec. III.C; what the other criteria named there ask for is measured on the state
-that is reached. Disks that touch nothing but the floor bear no load and may roll for ever; their rolling is left out
-of the kinetic energy that decides. A packing of which a part is in flight is not at rest, however slow it is.
+    M q'' = F(q, q', s) + gravity + loads
+
+with displacements and angles q, masses and moments of inertia M, and contact forces F by the law of Sec. III.A, of
+which the tangential springs s remember the slip (P. A. Cundall and O. D. L. Strack, Geotechnique 29, 47, 1979).
+
+A :class:`Dynamics` advances one packing by an explicit integrator (``kernels.integrators``); a :class:`Relaxation`
+starts ramps of gravity or load and looks at it until its kinetic energy is below the limit of Sec. III.C; :func:`relax`
+does both. What the other criteria named there ask for is measured on the state that is reached. Disks that touch
+nothing but the floor bear no load and may roll for ever; their rolling is left out of the kinetic energy that decides.
+A packing of which a part is in flight is not at rest, however slow it is.
 """
 
 from __future__ import annotations
@@ -27,22 +33,32 @@ from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
 from .problem import Candidates, Problem, carry_springs, spring_contacts
 
-#: Steps between two looks at the stopping criteria.
-CHECK_EVERY = 100
-#: Checks between two looks at whether some disks roll freely, and the largest part of all disks that may roll fast.
-ROLLING_CHECKS, MOST_ROLLERS = 10, 0.1
-#: Kinetic energy, times its limit, below which any number of disks may roll.
-SLOW_ROLLING = 1e3
-#: Vertical force on a part of the packing that nothing bears, below which it floats (mean disk weights).
-BALANCED = 1e-9
-#: Way of a disk between two looks at displacements at which its motion counts as blown up (mean radii).
-LONGEST_STRIDE = 5.0
-#: Gap above everything else at which a disk that its load pulls up is lost (mean radii).
-LIFTED = 5.0
-#: Time over which the envelope of the kinetic energy is taken.
-ENVELOPE_TIME = 20.0
-
 Ramp = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class RelaxationOptions:
+    """Numbers by which a relaxation is watched, and by which it is judged to be at rest or lost."""
+
+    #: Steps between two looks at the stopping criteria: a look costs as much as some steps.
+    check_every: int = 100
+    #: Looks between two at whether some disks roll freely, and the largest part of all disks that may roll fast.
+    rolling_checks: int = 10
+    most_rollers: float = 0.1
+    #: Kinetic energy, times its limit, below which any number of disks may roll.
+    slow_rolling: float = 1e3
+    #: Vertical force on a part of the packing that nothing bears, below which it floats (mean disk weights).
+    balanced: float = 1e-9
+    #: Way of a disk between two looks at displacements at which its motion counts as blown up (mean radii).
+    longest_stride: float = 5.0
+    #: Gap above everything else at which a disk that its load pulls up is lost (mean radii).
+    lifted: float = 5.0
+    #: Time over which the envelope of the kinetic energy is taken, in sqrt(R/g): some swings of the slowest modes of
+    #: the paper's slabs, at which a single reading is low long before they have died out.
+    envelope_time: float = 20.0
+
+
+OPTIONS = RelaxationOptions()
 
 
 class DynamicsError(SolveError, RuntimeError):
@@ -54,7 +70,7 @@ class Stop:
     """When a relaxation ends.
 
     ``kinetic_energy`` per disk (units of mean weight times mean radius); ``rule``: ``instantaneous`` stops at
-    the first reading below it, ``envelope`` when the largest reading of the last ``ENVELOPE_TIME`` is.
+    the first reading below it, ``envelope`` when the largest of the last ``RelaxationOptions.envelope_time`` is.
     ``least_time`` since the ramps began: what starts without motion and out of balance has no kinetic energy yet.
     """
 
@@ -182,7 +198,7 @@ class Dynamics:
         """How far the fastest disk gets until displacements are looked at again, and half as much more."""
         speed = float(np.hypot(*self.v[: 2 * self.problem.n].reshape(2, -1)).max())
         stride = 1.5 * speed * self.time_step * LOOK_EVERY
-        if not stride < LONGEST_STRIDE:
+        if not stride < OPTIONS.longest_stride:
             raise DynamicsError(self._blow_up())
         return stride
 
@@ -300,7 +316,7 @@ class Dynamics:
         force = -weight
         np.add.at(force, problem.load_disk, self._now(self.load) * problem.load[:, 1])
         borne = np.bincount(part, weight, parts)
-        return bool((np.abs(np.bincount(part, force, parts)) > BALANCED * borne)[~held].any())
+        return bool((np.abs(np.bincount(part, force, parts)) > OPTIONS.balanced * borne)[~held].any())
 
     def lifted_disk(self) -> int | None:
         """A disk that its load has torn off the packing and carries up for good; None without one."""
@@ -314,7 +330,7 @@ class Dynamics:
         z, radius = self.position[:, 1], problem.packing.radius
         rest = np.setdiff1d(np.arange(n), risen)
         top = float((z + radius)[rest].max(initial=0.0))
-        gone = risen[(z - radius)[risen] > top + LIFTED]
+        gone = risen[(z - radius)[risen] > top + OPTIONS.lifted]
         gone = gone[self.v[n + gone] > 0]
         return int(gone[0]) if len(gone) else None
 
@@ -329,7 +345,8 @@ class Dynamics:
 class Relaxation:
     """Ramps of gravity and load that start now, and the relaxation to rest after them.
 
-    It advances step by step under its owner's control: after each ``CHECK_EVERY`` time steps of ``dynamics``,
+    It advances step by step under its owner's control: after each ``RelaxationOptions.check_every`` time steps of
+    ``dynamics``,
     :meth:`look` says whether it has ended. :meth:`run` does both.
 
     Parameters
@@ -353,7 +370,7 @@ class Relaxation:
         self.progress = progress
         self.started = dynamics.steps
         self.ramp_time = max(gravity[2], load[2])
-        checks = max(1, round(ENVELOPE_TIME / (CHECK_EVERY * dynamics.time_step)))
+        checks = max(1, round(OPTIONS.envelope_time / (OPTIONS.check_every * dynamics.time_step)))
         self.envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
         self.network: NDArray[np.bool_] | None = None
         self.fixed = 0
@@ -366,7 +383,7 @@ class Relaxation:
         return self.settled or self.dynamics.steps - self.started >= self.stop.maximum_steps
 
     def look(self) -> None:
-        """Judge the state after ``CHECK_EVERY`` more steps.
+        """Judge the state after ``RelaxationOptions.check_every`` more steps.
 
         Raises
         ------
@@ -383,8 +400,8 @@ class Relaxation:
             return
         if dynamics.load[1] and (lifted := dynamics.lifted_disk()) is not None:
             raise DynamicsError(f"a load lifts disk {lifted} off the packing for good; nothing can hold it")
-        slow = energy < SLOW_ROLLING * stop.kinetic_energy
-        look_at_rolling = (dynamics.steps // CHECK_EVERY) % ROLLING_CHECKS == 0
+        slow = energy < OPTIONS.slow_rolling * stop.kinetic_energy
+        look_at_rolling = (dynamics.steps // OPTIONS.check_every) % OPTIONS.rolling_checks == 0
         if not (slow or look_at_rolling or self.rolling):  # far from rest, whatever touches
             self.envelope.append(energy)
             self.settled = False
@@ -394,13 +411,13 @@ class Relaxation:
         if look_at_rolling or (energy > stop.kinetic_energy and (slow or self.rolling)):
             rollers, of_rolling = dynamics.rolling(touching, count)
             if look_at_rolling:
-                self.rolling = 0 < rollers <= MOST_ROLLERS * dynamics.problem.n
+                self.rolling = 0 < rollers <= OPTIONS.most_rollers * dynamics.problem.n
             if slow or self.rolling:
                 energy -= of_rolling
         self.envelope.append(energy)
-        if energy < SLOW_ROLLING * stop.kinetic_energy:
+        if energy < OPTIONS.slow_rolling * stop.kinetic_energy:
             same = self.network is not None and np.array_equal(touching, self.network)
-            self.fixed = self.fixed + CHECK_EVERY if same else 0
+            self.fixed = self.fixed + OPTIONS.check_every if same else 0
             self.network = touching
         quiet = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
         self.settled = quiet and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
@@ -408,7 +425,7 @@ class Relaxation:
     def run(self) -> State:
         """Advance until it has ended; returns :meth:`state`."""
         while not self.ended:
-            self.dynamics.advance(CHECK_EVERY)
+            self.dynamics.advance(OPTIONS.check_every)
             self.look()
         return self.state()
 

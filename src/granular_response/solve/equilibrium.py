@@ -1,7 +1,12 @@
 """Static equilibrium by Newton iterations on the true contact law, and its certificate.
 
-Which contacts are open, stick or slide is decided by the return map inside each residual, so the iteration is
-a semi-smooth Newton method: near a solution it ends in a few steps with residuals at rounding.
+    F(q; s) + f = 0,    K dq = F + f
+
+with contact forces F at displacements q from a configuration with springs s, gravity and loads f, and the tangent
+K = -dF/dq. Which contacts are open, stick or slide is decided by the return map inside each residual, so the iteration
+is a semi-smooth Newton method: near a solution it ends in a few steps with residuals at rounding.
+
+:func:`newton` solves one increment; :func:`finish` brings a nearly settled motion to rest with it, and certifies.
 """
 
 from __future__ import annotations
@@ -16,20 +21,33 @@ from .problem import Problem
 from .stability import negative_modes
 from .system import Configuration, StaticSystem, Trial
 
-#: Largest force or torque left on any disk, in units of a mean disk weight.
-TOLERANCE = 1e-10
-#: Unbalanced force at which Newton's method ends without trying to do better.
-ENOUGH = 1e-3 * TOLERANCE
-#: Friction below which Newton's method may not find which contacts slide.
-LEAST_FRICTION = 1e-4
-#: Most factorisations of a Newton solution.
-NEWTON_ITERATIONS = 30
-#: Part to which the force along a step (the slope of the energy, where there is one) falls in a line search.
-FLAT = 0.1
-#: A step moves no disk farther than this (mean radii).
-LONGEST_STEP = 0.05
-#: Nor does the static finish of a motion: what is that far away is another equilibrium than the one it was ending in.
-FARTHEST = 0.1
+
+@dataclass(frozen=True)
+class NewtonOptions:
+    """Numbers by which Newton's method on the true contact law goes. Forces in mean weights, lengths in mean radii."""
+
+    #: Largest force or torque left on any disk.
+    tolerance: float = 1e-10
+    #: Unbalanced force at which it ends without trying to do better.
+    enough: float = 1e-13
+    #: Most factorisations.
+    iterations: int = 30
+    #: A step moves no disk farther than this.
+    longest_step: float = 0.05
+    #: Part to which the force along a step (the slope of the energy, where there is one) falls in a line search.
+    flat: float = 0.1
+    #: Farthest way of a disk in the static finish of a motion: what is farther is another equilibrium than the one that
+    #: the motion was ending in.
+    farthest: float = 0.1
+    #: Friction below which it may not find which contacts slide.
+    least_friction: float = 1e-4
+
+
+OPTIONS = NewtonOptions()
+
+#: For the modules that iterate likewise.
+ENOUGH, FLAT = OPTIONS.enough, OPTIONS.flat
+LONGEST_STEP, NEWTON_ITERATIONS = OPTIONS.longest_step, OPTIONS.iterations
 
 
 class EquilibriumError(SolveError, RuntimeError):
@@ -48,9 +66,9 @@ def external_force(problem: Problem, load_factor: float) -> FloatArray:
 
 
 def attainable(system: StaticSystem, q: FloatArray) -> float:
-    """Unbalanced force to reach: ``TOLERANCE``, or what the rounding of displacements leaves if that is more."""
+    """Unbalanced force to reach: the tolerance, or what the rounding of displacements leaves if that is more."""
     rounding = 4.0 * float(np.finfo(float).eps) * system.problem.stiffness
-    return max(TOLERANCE, rounding * float(np.abs(q).max(initial=0.0)))
+    return max(OPTIONS.tolerance, rounding * float(np.abs(q).max(initial=0.0)))
 
 
 @dataclass(frozen=True)
@@ -68,9 +86,9 @@ def newton(
     external: FloatArray,
     start: FloatArray | None = None,
     *,
-    tolerance: float = TOLERANCE,
-    enough: float = ENOUGH,
-    maximum_iterations: int = NEWTON_ITERATIONS,
+    tolerance: float = OPTIONS.tolerance,
+    enough: float = OPTIONS.enough,
+    maximum_iterations: int = OPTIONS.iterations,
 ) -> tuple[Trial, NewtonReport]:
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
@@ -107,7 +125,7 @@ def newton(
         if not np.isfinite(step).all():
             break
         length = float(np.abs(step[: 2 * n]).max())
-        scale = min(1.0, LONGEST_STEP / length) if length > 0 else 1.0
+        scale = min(1.0, OPTIONS.longest_step / length) if length > 0 else 1.0
         for _ in range(6):
             new = system.trial(known, q + scale * step)
             r_new = new.contact_force + external
@@ -221,15 +239,15 @@ def check_overlaps(problem: Problem, state: State) -> None:
 def _cure(problem: Problem) -> str:
     """What helps where Newton's method does not converge."""
     for name, friction in (("contact", problem.pair_law.friction), ("wall", problem.wall_law.friction)):
-        if 0.0 < friction < LEAST_FRICTION:
+        if 0.0 < friction < OPTIONS.least_friction:
             return (
                 f"{name}.friction = {friction:g} is so small that contacts slide to and fro at no force: "
-                f"take 0, or at least {LEAST_FRICTION:g}"
+                f"take 0, or at least {OPTIONS.least_friction:g}"
             )
     return "relax it further first"
 
 
-def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_ITERATIONS) -> State:
+def finish(problem: Problem, state: State, *, maximum_iterations: int = OPTIONS.iterations) -> State:
     """Bring a nearly settled state to rest by Newton iterations (Sec. III.C), with its certificate.
 
     Springs start from the state's own, so friction remembers what it went through.
@@ -251,7 +269,7 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = NEWTON_I
         )
     solved = system.state(trial, factor)
     moved = float(np.hypot(*(solved.position - state.position).T).max())
-    if moved > FARTHEST or system.meets_unlisted(trial.configuration.q):
+    if moved > OPTIONS.farthest or system.meets_unlisted(trial.configuration.q):
         raise EquilibriumError(
             f"the equilibrium that Newton's method finds is {moved:.2g} mean radii away; {_cure(problem)}"
         )

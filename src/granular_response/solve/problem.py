@@ -18,6 +18,8 @@ from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
 from ..state import Contacts, FloatArray, State
 from ..state.box import WALL_MEANINGS
+from .choice import Plan, plan
+from .close_pairs import close_pairs
 from .held import NOTHING, Held
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
@@ -76,7 +78,7 @@ def _check_period(packing: Packing) -> None:
 def _check_overlaps(packing: Packing) -> None:
     """Refuse disks that begin deep inside others or walls: what is read as radii or walls is then something else."""
     position, radius, box = packing.position, packing.radius, packing.box
-    first, second = neighbours.close_pairs(position, radius, 0.0, box.period)
+    first, second = close_pairs(position, radius, 0.0, box.period)
     apart = np.linalg.norm(box.separation(position[first], position[second]), axis=1)
     disk, wall = box.near_walls(position, radius, 0.0)
     overlap = np.r_[radius[first] + radius[second] - apart, -box.wall_gap(position[disk], radius[disk], wall)]
@@ -181,6 +183,11 @@ class Problem:
         return 3 if self.rotations else 2
 
     @cached_property
+    def plan(self) -> Plan:
+        """How it is solved; raises ``SceneError`` when the scene asks for a method that it does not have."""
+        return plan(self)
+
+    @cached_property
     def weight(self) -> FloatArray:
         """(n,) weights; their mean is 1."""
         return np.ascontiguousarray(self.packing.mass)
@@ -259,7 +266,7 @@ class Problem:
             margin = 2.0 * limit
         else:
             margin = max(SKIN, 2.0 * stride)
-            first, second = neighbours.close_pairs(position, radius, margin, packing.box.period)
+            first, second = close_pairs(position, radius, margin, packing.box.period)
             limit = 0.5 * margin
         runs, slot = neighbours.make_runs(first, second, self.n, multiple=WIDTH)
         i, j = neighbours.run_pairs(runs)

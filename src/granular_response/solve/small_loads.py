@@ -51,18 +51,14 @@ def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str
         For a state that is not certified as stable, or that has contacts at the Coulomb limit where these are refused.
     """
     system, trial = sticking(problem, state, sliding)
-    factor, transposed = system.transposed_factor(trial)
+    answer = system.answers(trial, transposed=True)
     n, freedoms = problem.n, problem.freedoms
     result = np.zeros((len(disks), n, freedoms))
-    held = np.isin(np.arange(system.dof), system.held)
     for row, disk in enumerate(disks):
         here = np.flatnonzero((system.wall_disk == disk) & (system.wall == FLOOR))
         force = np.zeros((freedoms, n))
         force[:, disk] = system.split(trial.tangent)[1][here, 1, :freedoms].sum(axis=0)
-        right = system.interleave(np.where(held, 0.0, force.ravel()))
-        y = factor.solve(right)
-        y += factor.solve(right - transposed @ y)  # the tangent was held by a tiny stiffness
-        result[row] = system.deinterleave(y).reshape(freedoms, n).T
+        result[row] = answer(force.ravel()).reshape(freedoms, n).T
     result[:, state.contact_count() < 2] = np.nan
     if problem.packing.periodic and not problem.wall_friction and not (problem.held.axis == 0).any():
         result[:, :, 0] = np.nan
@@ -89,18 +85,14 @@ def contact_answers(
     As :func:`influence`.
     """
     system, trial = sticking(problem, state, sliding)
-    factor, tangent = system.factorise(trial), system.tangent(trial)
+    answer = system.answers(trial)
     n, freedoms, radius = problem.n, problem.freedoms, problem.packing.radius
-    held = np.isin(np.arange(system.dof), system.held)
     on_pairs = np.empty((len(disks), len(system.first), 2))
     on_walls = np.empty((len(disks), len(system.wall_disk), 2))
     for row, disk in enumerate(disks):
         force = np.zeros((freedoms, n))
         force[1, disk] = -1.0
-        right = system.interleave(np.where(held, 0.0, force.ravel()))
-        y = factor.solve(right)
-        y += factor.solve(right - tangent @ y)  # the tangent was held by a tiny stiffness
-        moved = system.deinterleave(y).reshape(freedoms, n)
+        moved = answer(force.ravel()).reshape(freedoms, n)
         rim = radius * moved[2] if freedoms > 2 else np.zeros(n)
         i, j, k = system.first, system.second, system.wall_disk
         pairs = np.stack([moved[0, i] - moved[0, j], moved[1, i] - moved[1, j], rim[i] + rim[j]])

@@ -14,7 +14,7 @@ import numpy as np
 from ..contact import Linear
 from ..scene import Scene, SceneError
 from ..state import Event, FloatArray, State
-from .choice import Choice, finishes_statically, idle_settings, load_method, rest_method, stop_energy
+from .choice import Choice, idle_settings
 from .dynamics import Dynamics, DynamicsError, Stop, relax
 from .energy import minimise
 from .equilibrium import EquilibriumError, certify, check_overlaps, finish, reaction
@@ -53,8 +53,16 @@ class Solution:
     problem: Problem
     rest: State
     loaded: tuple[State, ...]
-    rest_choice: Choice
-    load_choice: Choice | None
+
+    @property
+    def rest_choice(self) -> Choice:
+        """How the rest state was found, and why so."""
+        return self.problem.plan.rest
+
+    @property
+    def load_choice(self) -> Choice | None:
+        """How the loaded states were found, and why so; None without loads."""
+        return self.problem.plan.load if self.loaded else None
 
     @property
     def load_factors(self) -> tuple[float, ...]:
@@ -138,14 +146,10 @@ def solve_scene(
     problem = checked_problem(scene)
     rest = rest_state(problem, progress=progress)
     problem = problem.with_loads(rest.position)
-    rest_choice = rest_method(problem)
-    if not scene.loads:
-        check_overlaps(problem, rest)
-        return Solution(scene, problem, rest, (), rest_choice, None)
-    choice, states = loaded_states(problem, rest, factors, progress=progress)
+    states = loaded_states(problem, rest, factors, progress=progress)[1] if scene.loads else []
     for state in (rest, *states):
         check_overlaps(problem, state)
-    return Solution(scene, problem, rest, tuple(states), rest_choice, choice)
+    return Solution(scene, problem, rest, tuple(states))
 
 
 def checked_problem(scene: Scene) -> Problem:
@@ -160,9 +164,7 @@ def checked_problem(scene: Scene) -> Problem:
     problem = Problem.from_scene(scene)
     check_memory(scene, problem.n)  # a file's disks are counted by now
     _check_loads(problem.with_loads(problem.packing.position), scene.protocol.load_factors)
-    rest_method(problem)
-    if scene.loads:
-        load_method(problem)
+    problem.plan  # noqa: B018 a method that is none for the scene
     return problem
 
 
@@ -226,12 +228,11 @@ def rest_state(problem: Problem, *, progress: Progress | None = None) -> State:
         # no tangential spring is stretched: an equilibrium with friction too
         start = problem.with_static_forces(smooth)
         found = finish(problem, start)
-        if found.certificate.stable or not finishes_statically(problem):
+        if found.certificate.stable or not problem.plan.static:
             return found
         # contacts that touch without bearing may open in the last digit, and what they held turns away
         return _relaxed(problem, start, "gravity", progress)
-    choice = rest_method(problem)
-    if choice.method == "minimise":
+    if problem.plan.rest.method == "minimise":
         return minimise(problem, rest_start(problem))
     preparation = problem.scene.preparation
     slow = preparation.gravity == "slow"
@@ -254,7 +255,7 @@ def loaded_states(
     paper does, as long as the programme has led away from the rest state's load all the time; from its first turn
     on, each ramp starts from the state before.
     """
-    choice = load_method(problem)
+    choice = problem.plan.load
     factors = [float(f) for f in load_factors]
     if choice.method == "path":
         return choice, _on_path(problem, [rest, *before][-1], factors, progress)
@@ -314,7 +315,7 @@ def _by_dynamics(problem: Problem, start: State, factor: float, progress: Progre
 def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | None, **ramps: Any) -> State:
     """Dynamics to rest as the protocol says, and the static finish; ``ramps`` of gravity and load."""
     protocol = problem.scene.protocol
-    stop = Stop(stop_energy(problem), protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
+    stop = Stop(problem.plan.stop_energy, protocol.stop_rule, protocol.maximum_steps, problem.crossing_time)
     report = None
     if progress is not None:
         highest = [stop.kinetic_energy * 10.0, 0.0]
@@ -326,7 +327,7 @@ def _relaxed(problem: Problem, start: State, stage: str, progress: Progress | No
             highest[1] = max(highest[1], float(done)) if highest[0] > energy else highest[1]
             progress(highest[1], 1.0, stage)
 
-    if finishes_statically(problem):
+    if problem.plan.static:
         return settle(problem, start, PROTOCOL, stop, what=stage, progress=report, **ramps)
     dynamics = Dynamics(problem, start, protocol.integrator, resolve_time_step(problem))
     settled = relax(dynamics, stop, progress=report, **ramps)

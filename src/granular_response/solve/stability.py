@@ -6,12 +6,17 @@ K is symmetric (up to the turn of the contacts) and the negative eigenvalues are
 inertia. With sliding contacts K is unsymmetric and belongs to these contacts sliding on, which along a direction they
 may not do: see :func:`divergence`. Complex pairs of eigenvalues, which exist wherever contacts slide, are not counted:
 they oscillate, and decay or grow (flutter) by the dashpots.
+
+That statuses which contradict a direction change until none does follows S. McNamara and H. J. Herrmann, Phys. Rev. E
+74, 061303 (2006). :func:`negative_modes` counts, :func:`unstable_direction` gives the lowest, :func:`divergence` the
+one that contacts go along with.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,32 +30,41 @@ from ..state import SLIDING, STICKING, FloatArray
 from .rates import next_changes
 from .system import StaticSystem, Trial
 
-#: Eigenvalue of M^-1 K, in g/R, above minus which nothing counts as unstable: disks that roll freely have 0, and what
-#: grows no faster than a thousandth in sqrt(R/g) does not in any time of interest.
-NEUTRAL = 1e-6
-#: Part of the normal stiffness that rounding makes of a stiffness of 0; softer disks than that cannot be judged.
-ROUNDING = 1e-14
-#: Relative accuracy of an eigenvalue of which the direction is asked, and vectors among which it is looked for.
-ROUGH, FEW = 1e-3, 6
-#: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that is
-#: known roughly.
-SOUGHT, AMONG, AMONG_FEW = 4, 14, 6
-#: How many times as many vectors are tried in turn, and the restarts with these, after which there is no answer.
-WIDER = (1, 300), (3, 30)
-#: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it is
-#: where it is so many times as far from zero as the accuracy of this distance.
-ACCURACIES, CERTAIN = (1e-3, 1e-4, 1e-5, 1e-6), 10.0
-#: Accuracy at last, in parts of ``NEUTRAL``.
-SIGN = 0.1
-#: How far to the left of zero they are looked for, in units of the normal stiffness: the first that the symmetric part
-#: allows. The nearer, the farther apart eigenvalues near zero are from there.
-LEFT_OF_ALL = (1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
-#: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
-DENSE = 12
-#: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
-LEAST_SIDEWAYS = 1e-6
-#: Times that a direction may change the contacts that slide along it before it counts as one that grows.
-ROUNDS = 12
+
+@dataclass(frozen=True)
+class StabilityOptions:
+    """Numbers by which unstable directions are looked for."""
+
+    #: Eigenvalue of M^-1 K, in g/R, above minus which nothing counts as unstable: disks that roll freely have 0, and
+    #: what grows no faster than a thousandth in sqrt(R/g) does not in any time of interest.
+    neutral: float = 1e-6
+    #: Part of the normal stiffness that rounding makes of a stiffness of 0; softer disks than that cannot be judged.
+    rounding: float = 1e-14
+    #: Eigenvalues that are looked for where one is negative, vectors among which they are, and among which one is that
+    #: is known roughly.
+    sought: int = 4
+    among: int = 14
+    among_few: int = 6
+    #: How many times as many vectors are tried in turn, and the restarts with these, after which there is no answer.
+    wider: tuple[tuple[int, int], ...] = ((1, 300), (3, 30))
+    #: Relative accuracies with which the distance of the lowest from a point is found, until its sign is certain: it
+    #: is where it is so many times as far from zero as the accuracy of this distance.
+    accuracies: tuple[float, ...] = (1e-3, 1e-4, 1e-5, 1e-6)
+    certain: float = 10.0
+    #: Accuracy at last, in parts of ``neutral``.
+    sign: float = 0.1
+    #: How far to the left of zero they are looked for, in units of the normal stiffness: the first that the symmetric
+    #: part allows. The nearer, the farther apart eigenvalues near zero are from there.
+    left_of_all: tuple[float, ...] = (1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0)
+    #: Most unknowns of a tangent whose eigenvalues are found as those of a dense matrix.
+    dense: int = 12
+    #: Sum of displacements along x below which a direction leads to neither side, its largest component being 1.
+    least_sideways: float = 1e-6
+    #: Times that a direction may change the contacts that slide along it before it counts as one that grows.
+    rounds: int = 12
+
+
+OPTIONS = StabilityOptions()
 
 
 class Clustered(SolveError, ArithmeticError):
@@ -65,7 +79,7 @@ def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
 
     With sliding contacts no eigenvalue has a smaller real part than the lowest of the symmetric part (Bendixson). Is
     that negative, the eigenvalue nearest to a point still further to the left is computed, as accurately as its sign
-    asks: from there a real negative one is nearer than all that are not. Is it negative, the ``SOUGHT`` nearest are,
+    asks: from there a real negative one is nearer than all that are not. Is it negative, the ``sought`` nearest are,
     and those with a negative real part counted.
     """
     matrix, _ = _scaled(system, trial)
@@ -74,33 +88,32 @@ def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
         return None if _too_light(system, trial) else 0
     if SLIDING not in trial.status:
         return modes
-    if system.dof <= DENSE:
+    if system.dof <= OPTIONS.dense:
         return int((np.linalg.eigvals(matrix.toarray()).real < 0).sum())
     left = _left_of_all(system, matrix)
     nearest = _nearest_to(system, left, matrix)
     known: dict[str, Any] = {}
     try:
-        for accuracy in (*ACCURACIES, SIGN * (NEUTRAL / -left)):
+        for accuracy in (*OPTIONS.accuracies, OPTIONS.sign * (OPTIONS.neutral / -left)):
             values, vectors = nearest(1, tol=accuracy, **known)
             lowest = float(values[0].real)
-            if abs(lowest) > CERTAIN * accuracy * (lowest - left):
+            if abs(lowest) > OPTIONS.certain * accuracy * (lowest - left):
                 break
-            known = {"v0": vectors[:, 0].real, "ncv": AMONG_FEW}
-        return int((nearest(SOUGHT)[0].real < 0).sum()) if lowest < 0 else 0
+            known = {"v0": vectors[:, 0].real, "ncv": OPTIONS.among_few}
+        return int((nearest(OPTIONS.sought)[0].real < 0).sum()) if lowest < 0 else 0
     except Clustered:
         return None
 
 
-def unstable_direction(system: StaticSystem, trial: Trial, *, rough: bool = False) -> FloatArray:
+def unstable_direction(system: StaticSystem, trial: Trial) -> FloatArray:
     """(dof,) direction of the lowest eigenvalue with the statuses of a trial, of largest component 1 or -1.
 
     It leads to the right as far as it leads to a side, so that of two mirror images one is chosen by rule.
-    ``rough`` : as accurate as a few solutions make it, which is enough to go downhill along it, without friction.
     """
     matrix, scale = _scaled(system, trial)
     symmetric = system.pattern.symmetric_part(matrix)
     start = np.random.default_rng(0).standard_normal(system.dof)
-    if system.dof <= DENSE:
+    if system.dof <= OPTIONS.dense:
         values, every = np.linalg.eig((matrix if SLIDING in trial.status else symmetric).toarray())
         vector = every[:, np.argmin(values.real)].real
     elif SLIDING in trial.status:
@@ -113,17 +126,16 @@ def unstable_direction(system: StaticSystem, trial: Trial, *, rough: bool = Fals
             if factor is not None:
                 break
         else:
-            factor, _ = system.storage.symmetric_factor(system.pattern.with_shift(symmetric, origin))
+            factor = system.storage.factor(system.pattern.with_shift(symmetric, origin))
         _, vectors = eigsh(
             symmetric, k=1, sigma=-origin, which="LM", v0=start,
             OPinv=LinearOperator((system.dof, system.dof), factor.solve, dtype=float),
-            **({"tol": ROUGH, "ncv": FEW} if rough else {}),
         )  # fmt: skip
         vector = vectors[:, 0]
     direction = system.deinterleave(scale * vector)
     direction /= np.abs(direction).max()
     sideways = float(direction[: system.problem.n].sum())
-    if abs(sideways) <= LEAST_SIDEWAYS:
+    if abs(sideways) <= OPTIONS.least_sideways:
         sideways = float(direction[np.argmax(np.abs(direction))])
     return -direction if sideways < 0.0 else direction
 
@@ -150,7 +162,7 @@ def _divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
     slides = trial.sense[sliding]
     for side in (1.0, -1.0):
         direction, here = side * lowest, trial
-        for _ in range(ROUNDS):
+        for _ in range(OPTIONS.rounds):
             what = next_changes(system, here, direction, here.sense, 0.0, 0.0).what[sliding]
             now = here.sense[sliding]
             after = np.where(what == STICKS, STICKING, np.where(what == np.sign(slides) * SLIDES, slides, now))
@@ -182,11 +194,11 @@ def _too_light(system: StaticSystem, trial: Trial) -> bool:
     np.maximum.at(borne, system.second, pair)
     np.maximum.at(borne, system.wall_disk, wall)
     stiffness = borne / system.problem.packing.radius
-    return bool((stiffness[borne > 0.0] < ROUNDING * system.problem.stiffness).any())
+    return bool((stiffness[borne > 0.0] < OPTIONS.rounding * system.problem.stiffness).any())
 
 
 def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArray]:
-    """``S K S`` with ``S = M^-1/2``, shifted by ``NEUTRAL``, and the diagonal of S in the order of the tangent.
+    """``S K S`` with ``S = M^-1/2``, shifted by ``OPTIONS.neutral``, and the diagonal of S in the order of the tangent.
 
     Unknowns that change no force, such as the angle of a sliding disk, are left out: each of them is an eigenvector of
     eigenvalue 0, and the rest has all other eigenvalues. Their rows, which are not zero, would make the symmetric part
@@ -200,7 +212,7 @@ def _scaled(system: StaticSystem, trial: Trial) -> tuple[sp.csc_array, FloatArra
     columns = np.repeat(np.arange(system.dof), np.diff(matrix.indptr))
     matrix.data *= scale[matrix.indices] * scale[columns]
     k = system.problem.stiffness
-    matrix.data[system.pattern.diagonal] += np.where(idle, k, np.maximum(NEUTRAL, ROUNDING * k / mass))
+    matrix.data[system.pattern.diagonal] += np.where(idle, k, np.maximum(OPTIONS.neutral, OPTIONS.rounding * k / mass))
     return matrix, scale
 
 
@@ -208,12 +220,11 @@ def _left_of_all(system: StaticSystem, matrix: sp.csc_array) -> float:
     """A number below the lowest eigenvalue of the symmetric part of a matrix, not far below."""
     system.forget()
     symmetric = system.pattern.symmetric_part(matrix)
-    for left in LEFT_OF_ALL[:-1]:
+    for left in OPTIONS.left_of_all[:-1]:
         shifted = system.pattern.with_shift(symmetric, left * system.problem.stiffness)
-        rough = system.storage.rough_factor(shifted, definite=True) is not None
-        if rough or system.storage.definite_factor(shifted) is not None:
+        if system.storage.definite_factor(shifted) is not None:
             return -left * system.problem.stiffness
-    return -LEFT_OF_ALL[-1] * system.problem.stiffness
+    return -OPTIONS.left_of_all[-1] * system.problem.stiffness
 
 
 def _nearest_to(
@@ -226,11 +237,12 @@ def _nearest_to(
     factor = system.storage.factor(system.pattern.with_shift(matrix, -left))
     inverse = LinearOperator((system.dof, system.dof), factor.solve, dtype=float)
     start = np.random.default_rng(0).standard_normal(system.dof)
+    last = OPTIONS.sign * (OPTIONS.neutral / -left)
 
     def nearest(
-        count: int, *, tol: float = SIGN * (NEUTRAL / -left), v0: FloatArray = start, ncv: int = AMONG
+        count: int, *, tol: float = last, v0: FloatArray = start, ncv: int = OPTIONS.among
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        for more, restarts in WIDER:
+        for more, restarts in OPTIONS.wider:
             among = min(more * ncv, system.dof - 1)
             with suppress(ArpackNoConvergence):
                 return eigs(matrix, k=count, sigma=left, OPinv=inverse, v0=v0, tol=tol, ncv=among, maxiter=restarts)

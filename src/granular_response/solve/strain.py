@@ -16,7 +16,7 @@ from ..state import FLOOR, FloatArray, State
 from .held import Held
 from .problem import Problem
 from .small_loads import sticking
-from .system import StaticSystem, Trial
+from .system import StaticSystem
 
 #: How displacements follow the strain.
 Following = Literal["affine", "suppressed", "free"]
@@ -83,7 +83,7 @@ def strained(
     moved = np.zeros((3, 3, n))
     if following != "affine":
         force = _on_disks(system, np.einsum("cab,kcb->kca", system.split(trial.tangent)[0], affine))
-        moved[:, : problem.freedoms] = _relaxed(system, trial, force).reshape(3, problem.freedoms, n)
+        moved[:, : problem.freedoms] = np.stack(list(map(system.answers(trial), force))).reshape(3, -1, n)
     first, second, radius = system.first, system.second, packing.radius
     relative = affine.copy()
     relative[:, :, :2] += np.swapaxes(moved[:, :2, first] - moved[:, :2, second], 1, 2)
@@ -121,19 +121,6 @@ def _on_disks(system: StaticSystem, added: FloatArray) -> FloatArray:
         for side in (system.first, system.second):
             force[k, 2] -= radius * np.bincount(side, added[k, :, 2], n)
     return force[:, : system.problem.freedoms].reshape(3, -1)
-
-
-def _relaxed(system: StaticSystem, trial: Trial, force: FloatArray) -> FloatArray:
-    """(3, dof) displacements that bring forces (3, dof) to rest."""
-    force[:, system.held] = 0.0
-    factor, tangent = system.factorise(trial), system.tangent(trial)
-    found = np.zeros_like(force)
-    for k in range(3):
-        right = system.interleave(force[k])
-        moved = factor.solve(right)
-        moved += factor.solve(right - tangent @ moved)  # the tangent was held by a tiny stiffness
-        found[k] = system.deinterleave(moved)
-    return found
 
 
 def _averaged(

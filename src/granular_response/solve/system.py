@@ -1,257 +1,55 @@
-"""The static equations of a packing: forces by the return map, tangent stiffness, factorisation.
+"""Solutions with the tangent stiffness of a packing: factorisations made, kept, updated and let go.
 
-A :class:`StaticSystem` belongs to one packing and one list of candidate contacts. Configurations are displacements
-``q`` (``[x | z | angle]``) from its reference positions together with the springs, so that overlaps keep their
-digits.
+The tangent at an equilibrium is K = -dF/dq (:mod:`.equations`); contacts that have changed since a factorisation are a
+matrix of low rank (:mod:`.linear.updated`), in large packings Newton steps are iterations (:mod:`.linear.nearby`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
-from ..kernels import events, statics
-from ..kernels.neighbours import close_pairs
-from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
-from .linear import REMEMBERED, Eliminated, Factor, Sequence, elimination
-from .linear.band import Band
+from ..kernels import events
+from ..state import FloatArray, State
+from .equations import Configuration, Equations, Trial
+from .linear import Eliminated, Factor, Sequence
 from .linear.updated import Updated
-from .pattern import pattern
 from .problem import Problem
 
-#: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
-REGULARISATION = 1e-10
-
-#: Part of the force out of balance that a step by the factorisation of another tangent leaves (2-norms).
-LEFT_OVER = 1e-6
-
-#: Difference of two shifts, in units of the normal stiffness, that solutions by the factorisation with one of them make
-#: up for with little effort: below the softest modes of a packing of some hundred layers.
-SAME_SHIFT = 1e-7
-
-#: Stiffnesses that may have changed since a factorisation: with more, solutions cost more than another one.
-MOST_CHANGED = 40
-#: Part of a distance by which rounding may part two disks that touch.
-TOUCHING = 1e-12
+__all__ = ["OPTIONS", "Configuration", "StaticSystem", "SystemOptions", "Trial"]
 
 
 @dataclass(frozen=True)
-class Configuration:
-    """A static configuration: displacements and everything the return map remembers of its m + w candidates.
+class SystemOptions:
+    """Numbers by which the static equations are solved."""
 
-    Contacts between disks come first, contacts at walls after them, here as everywhere in statics.
-    """
-
-    q: FloatArray  #: (dof,)
-    spring: FloatArray  #: (m + w,)
-    overlap: FloatArray  #: (m + w,)
-
-
-@dataclass(frozen=True)
-class Trial:
-    """Forces at a trial configuration reached in one increment from another."""
-
-    configuration: Configuration
-    contact_force: FloatArray  #: (dof,) sum of contact forces and torques on each disk, 0 where it is held
-    normal: FloatArray  #: (m + w,)
-    tangential: FloatArray  #: (m + w,)
-    status: np.ndarray  #: (m + w,)
-    tangent: FloatArray  #: (m + w, 3, 3); (0, 3, 3) where it was not asked for
-
-    @cached_property
-    def sense(self) -> np.ndarray:
-        """(m + w,) statuses, negative for contacts that slide against the tangent."""
-        return signed_status(self.status, self.tangential)
+    #: Added to the tangent's diagonal, in units of the normal stiffness: holds disks that nothing holds.
+    regularisation: float = 1e-10
+    #: Part of the force out of balance that a step by the factorisation of another tangent leaves (2-norms).
+    left_over: float = 1e-6
+    #: Difference of two shifts, in units of the normal stiffness, that solutions by the factorisation with one of them
+    #: make up for with little effort: below the softest modes of a packing of some hundred layers.
+    same_shift: float = 1e-7
+    #: Stiffnesses that may have changed since a factorisation: with more, solutions cost more than another one.
+    most_changed: int = 40
 
 
-def signed_status(status: np.ndarray, tangential: FloatArray) -> np.ndarray:
-    """Statuses with the direction of sliding: negative where the tangential force is."""
-    return np.where((status == SLIDING) & (tangential < 0.0), -status, status)
+OPTIONS = SystemOptions()
 
 
-class StaticSystem:
-    """Static equations of ``problem`` around the positions and candidate contacts of ``state``."""
+class StaticSystem(Equations):
+    """The equations, and solutions with their tangent."""
 
     def __init__(self, problem: Problem, state: State):
-        self.problem = problem
-        self.reference = state.position.copy()
-        self.angle0 = state.angle.copy()
-        self.first = state.pairs.first.astype(np.int64)
-        self.second = state.pairs.second.astype(np.int64)
-        self.wall_disk = state.walls.first.astype(np.int64)
-        self.wall = state.walls.second
-        radius = problem.packing.radius
-        box = problem.packing.box
-        d = box.separation(self.reference[self.first], self.reference[self.second])
-        self.dx0, self.dz0 = np.ascontiguousarray(d[:, 0]), np.ascontiguousarray(d[:, 1])
-        self.gap0 = np.hypot(d[:, 0], d[:, 1]) - (radius[self.first] + radius[self.second])
-        self.wall_gap0 = box.wall_gap(self.reference[self.wall_disk], radius[self.wall_disk], self.wall)
-        self.wall_normals = wall_normals(self.wall)
-        distance = np.sqrt(self.dx0 * self.dx0 + self.dz0 * self.dz0)  # rounded as that of a trial where nothing moves
-        self.pairs = statics.Pairs(
-            self.first, self.second, self.dx0, self.dz0, distance, self.gap0,
-            problem.pair_shapes(self.first, self.second), problem.pair_law,
-        )  # fmt: skip
-        self.walls = statics.Walls(
-            self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law
-        )
-        self.held = problem.held.unknowns(problem.n)
-        # one order of elimination for all states of a large lattice
-        as_built = problem.n > REMEMBERED and problem.packing.ordered
-        position = problem.packing.position if as_built else self.reference
-        chosen = elimination(position, self.first, self.second, problem.freedoms)
-        self._order = chosen.order
-        self.pattern = pattern(chosen, self.first, self.second, self.wall_disk, problem.freedoms, self.held)
+        super().__init__(problem, state)
         self.storage = self.pattern.storage
         self._kept: tuple[np.ndarray, Factor] | None = None
         self._updated: tuple[Updated, np.ndarray] | None = None
         self.renewals = 0  #: factorisations made by :meth:`renewed_factor`
-        same = SAME_SHIFT * problem.stiffness
-        self._steps = Sequence(self.storage, definite=False, same=same)
-        self._definite_steps = Sequence(self.storage, definite=True, same=same)
-
-    @property
-    def dissected(self) -> bool:
-        """Whether the packing is too large for a banded factorisation."""
-        return not isinstance(self.storage, Band)
-
-    @property
-    def dof(self) -> int:
-        return self.problem.n * self.problem.freedoms
-
-    def keys(self) -> NDArray[np.int64]:
-        """(m + w,) one number for the two bodies of each candidate."""
-        n = self.problem.n
-        return np.concatenate([self.first * n + self.second, n * n + self.wall_disk * 3 + self.wall])
-
-    def start(self, state: State) -> Configuration:
-        """The configuration of a state of the same candidates."""
-        shift = (state.position - self.reference).T.ravel()
-        q = np.concatenate([shift, state.angle - self.angle0])[: self.dof]
-        springs = np.concatenate([state.pairs.spring, state.walls.spring])
-        bare = Configuration(q, springs, np.zeros(len(springs)))
-        return replace(self.trial(bare, q).configuration, spring=springs)
-
-    def at(self, state: State) -> Trial:
-        """The state itself, with the statuses that it says its contacts have."""
-        known = self.start(state)
-        status = np.concatenate([state.pairs.status, state.walls.status])
-        tangential = np.concatenate([state.pairs.tangential_force, state.walls.tangential_force])
-        return self.trial(known, known.q, fixed=signed_status(status, tangential))
-
-    def displaced(self, q: FloatArray, load_factor: float) -> FloatArray:
-        """``q`` (dof,) with held coordinates where the load factor has them; ``q`` itself where nothing is held."""
-        if self.held.size == 0:
-            return q
-        q = q.copy()
-        q[self.held] = self.problem.held.shift(self.reference, load_factor)
-        return q
-
-    def held_as_in(self, other: FloatArray, q: FloatArray) -> FloatArray:
-        """``q`` (dof,) with held coordinates as in ``other``; ``q`` itself where nothing is held."""
-        if self.held.size == 0:
-            return q
-        q = q.copy()
-        q[self.held] = other[self.held]
-        return q
-
-    def trial(
-        self,
-        known: Configuration,
-        q: FloatArray,
-        *,
-        limits: FloatArray | None = None,
-        fixed: np.ndarray | None = None,
-        tangent: bool = True,
-    ) -> Trial:
-        """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
-
-        ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map. ``tangent`` : whether local tangents are asked for.
-        """
-        problem = self.problem
-        m, count = len(self.first), len(self.first) + len(self.wall_disk)
-        force = np.zeros(self.dof)
-        overlap, normal, tangential, spring = np.zeros((4, count))
-        out = statics.Response(overlap, normal, tangential, spring, np.zeros(count, np.int8))
-        local = np.empty((count, 3, 3)) if tangent else None
-        ways: tuple[tuple[slice, Any, bool, Callable], ...] = (
-            (slice(None, m), self.pairs, problem.pair_friction, statics.pair_statics),
-            (slice(m, None), self.walls, problem.wall_friction, statics.wall_statics),
-        )
-        for part, contacts, friction, add in ways:
-            add(
-                q, known.q, problem.n, problem.packing.radius, contacts, contacts.shape, known.overlap[part],
-                known.spring[part] if friction else None, limits[part] if friction and limits is not None else None,
-                None if fixed is None else fixed[part], statics.Response(*(array[part] for array in out)),
-                None if local is None else local[part], force,
-            )  # fmt: skip
-        force[self.held] = 0.0
-        tangents = np.empty((0, 3, 3)) if local is None else local
-        return Trial(Configuration(q, spring, overlap), force, normal, tangential, out.status, tangents)
-
-    def normal_forces(self, q: FloatArray) -> FloatArray:
-        """(dof,) forces of contacts without friction at ``q``: those of a trial up to rounding, and no tangents."""
-        force = np.zeros(self.dof)
-        pairs, walls = self.pairs, self.walls
-        statics.normal_forces(q, self.problem.n, pairs, pairs.shape, walls, walls.shape, force)
-        force[self.held] = 0.0
-        return force
-
-    def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
-        """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
-
-        ``shift`` (scalar or (dof,)) is added to the diagonal.
-        """
-        places = self.pattern
-        data = np.empty(len(places.indices))
-        statics.assemble(
-            data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius,
-            trial.tangent[: len(self.first)], places.base, places.stride,
-            self.wall_disk, trial.tangent[len(self.first) :], places.wall_base, places.wall_stride,
-        )  # fmt: skip
-        if self.held.size:
-            data[places.held_entries] = 0.0
-            data[places.held_diagonal] = self.problem.stiffness
-        data[places.diagonal] += shift
-        return places.matrix(data)
-
-    def split(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(m, ...) and (w, ...) of what all candidates have (m + w, ...)."""
-        return values[: len(self.first)], values[len(self.first) :]
-
-    def elastic_energy(self, trial: Trial) -> float:
-        """Energy of the normal springs (mean disk weight times mean radius)."""
-        total = 0.0
-        listed: tuple[Any, Any] = (self.pairs, self.walls)
-        for overlap, contacts in zip(self.split(trial.configuration.overlap), listed, strict=True):
-            energies = np.zeros(len(overlap))
-            statics.elastic_energies(overlap, contacts.shape, contacts.law, energies)
-            total += float(energies.sum())
-        return total
-
-    def interleave(self, vector: FloatArray) -> FloatArray:
-        """``[x | z | angle]`` to disk by disk, in the order of the tangent."""
-        return vector[self.pattern.interleaved]
-
-    def deinterleave(self, vector: FloatArray) -> FloatArray:
-        """Disk by disk, in the order of the tangent, to ``[x | z | angle]``.
-
-        Nothing holds a packing with periodic sides on a smooth floor along x, unless a load does: as a whole it stays
-        where it is.
-        """
-        result = np.empty(self.dof)
-        result[self.pattern.interleaved] = vector
-        if self.problem.packing.periodic and not self.problem.wall_friction and 0 not in self.problem.held.axis:
-            along = result[: self.problem.n]
-            along -= along.mean()
-        return result
+        self._steps = Sequence(self.storage, same=OPTIONS.same_shift * problem.stiffness)
 
     def factorise(self, trial: Trial, shift: float | FloatArray = 0.0) -> Eliminated:
         """LU of the tangent, a tiny regularisation included."""
@@ -259,7 +57,7 @@ class StaticSystem:
 
     def _regularised(self, trial: Trial, shift: float | FloatArray) -> sp.csc_array:
         """The tangent with ``shift`` and a tiny regularisation."""
-        return self.tangent(trial, np.asarray(shift) + REGULARISATION * self.problem.stiffness)
+        return self.tangent(trial, np.asarray(shift) + OPTIONS.regularisation * self.problem.stiffness)
 
     def _factorise(self, trial: Trial, shift: float | FloatArray, matrix: sp.csc_array) -> Eliminated:
         self.forget()
@@ -271,7 +69,6 @@ class StaticSystem:
         """Let all factorisations go before one is made: two need not be in memory."""
         self._kept = None
         self._steps.forget()
-        self._definite_steps.forget()
 
     def _keep(self, trial: Trial, factor: Factor, shift: float | FloatArray) -> None:
         """Keep the factorisation of a tangent for trials with the same statuses, unless it has a shift."""
@@ -286,7 +83,7 @@ class StaticSystem:
         right = self.interleave(force)
         matrix = self._regularised(trial, shift)
         self._kept = None
-        found = self._steps.solve(matrix, right, LEFT_OVER, shift)
+        found = self._steps.solve(matrix, right, OPTIONS.left_over, shift)
         if found is None:
             return self.deinterleave(self._factorise(trial, shift, matrix).solve(right))
         if self._steps.factor is not None:
@@ -313,7 +110,7 @@ class StaticSystem:
                     left[held], right[held] = 0.0, 0.0
                 return places[:count], left[:count], right[:count]
 
-            if len(wanted) <= MOST_CHANGED and updated.update(wanted, change) and updated.accurate:
+            if len(wanted) <= OPTIONS.most_changed and updated.update(wanted, change) and updated.accurate:
                 return updated
         return self.renewed_factor(known, sense)
 
@@ -321,15 +118,29 @@ class StaticSystem:
         """The same, made anew."""
         self._updated = None
         self.renewals += 1
-        updated = Updated(self.factorise(self.trial(known, known.q, fixed=sense)), self.dof, MOST_CHANGED, 6)
+        updated = Updated(self.factorise(self.trial(known, known.q, fixed=sense)), self.dof, OPTIONS.most_changed, 6)
         self._updated = updated, sense
         return updated
 
-    def transposed_factor(self, trial: Trial) -> tuple[Factor, sp.csc_array]:
-        """Factorisation of the transposed tangent, a tiny regularisation included, and that matrix without it."""
-        regularised = self.tangent(trial, REGULARISATION * self.problem.stiffness)
-        factor = self.storage.factor(self.pattern.transposed(regularised))
-        return factor, self.pattern.transposed(self.tangent(trial))
+    def answers(self, trial: Trial, *, transposed: bool = False) -> Callable[[FloatArray], FloatArray]:
+        """What gives the (dof,) displacements that take small forces (dof,) up, to the last digits.
+
+        Nothing pushes what is held. Or, ``transposed``, the influence of every unknown on what a row (dof,) measures.
+        """
+        tangent, regularised = self.tangent(trial), self._regularised(trial, 0.0)
+        if transposed:
+            tangent, regularised = self.pattern.transposed(tangent), self.pattern.transposed(regularised)
+        factor = self.storage.factor(regularised)
+
+        def answer(force: FloatArray) -> FloatArray:
+            free = force.copy()
+            free[self.held] = 0.0
+            right = self.interleave(free)
+            found = factor.solve(right)
+            found += factor.solve(right - tangent @ found)  # the tangent was held by a tiny stiffness
+            return self.deinterleave(found)
+
+        return answer
 
     def kept_factor(self, trial: Trial) -> Factor | None:
         """The last factorisation of a tangent, when every contact has the same status (and direction of sliding)."""
@@ -337,105 +148,10 @@ class StaticSystem:
             return None
         return self._kept[1]
 
-    def state(self, trial: Trial, load_factor: float) -> State:
-        """The state at rest of a solved trial."""
-        n = self.problem.n
-        q = trial.configuration.q
-        angle = self.angle0 + q[2 * n :] if self.problem.rotations else self.angle0
-        c = trial.configuration
-        values = (c.overlap, trial.normal, trial.tangential, c.spring, trial.status)
-        parts = zip(*map(self.split, values), strict=True)
-        first, second, disk = (index.astype(np.int32) for index in (self.first, self.second, self.wall_disk))
-        places = (first, second), (disk, self.wall)
-        pairs, walls = (Contacts(*place, *part) for place, part in zip(places, parts, strict=True))
-        return State(
-            position=self.reference + q[: 2 * n].reshape(2, n).T,
-            angle=angle.copy(),
-            velocity=np.zeros((n, 2)),
-            angular_velocity=np.zeros(n),
-            pairs=pairs,
-            walls=walls,
-            box=self.problem.packing.box,
-            load_factor=load_factor,
-        )  # fmt: skip
-
-    def force_rates(self, trial: Trial, velocity: FloatArray) -> FloatArray:
-        """(dof,) rates of the contact forces where displacements grow at the rates ``velocity`` (dof,)."""
-        n, radius = self.problem.n, self.problem.packing.radius
-        v = np.zeros((3, n))
-        v[: self.problem.freedoms] = velocity.reshape(-1, n)
-        v[2] *= radius
-        i, j, k = self.first, self.second, self.wall_disk
-        relative = np.concatenate([(v[:2, i] - v[:2, j]), (v[2, i] + v[2, j])[None]]), v[:, k]
-        total = np.zeros((3, n))
-        pair, wall = (np.einsum("cab,bc->ac", g, w) for g, w in zip(self.split(trial.tangent), relative, strict=True))
-        for axis in (0, 1):
-            total[axis] = np.bincount(i, pair[axis], n) - np.bincount(j, pair[axis], n) + np.bincount(k, wall[axis], n)
-        turning = np.bincount(i, pair[2], n) + np.bincount(j, pair[2], n) + np.bincount(k, wall[2], n)
-        total[2] = -radius * turning
-        return total[: self.problem.freedoms].ravel()
-
-    def symmetric_factor(self, trial: Trial, shift: float) -> tuple[Factor, int]:
-        """Factorisation of the symmetric part of the tangent and its number of negative eigenvalues."""
-        matrix = self.tangent(trial, shift)
-        return self.storage.symmetric_factor(self.pattern.symmetric_part(matrix))
-
-    def without_prestress(self, trial: Trial) -> Trial:
-        """The trial with the stiffness of its springs alone: what the turn of contacts adds is left out.
-
-        Without friction this tangent has no negative eigenvalue, and its Newton steps always go downhill.
-        """
-        n, q = self.problem.n, trial.configuration.q
-        dx = self.dx0 + q[self.first] - q[self.second]
-        dz = self.dz0 + q[n + self.first] - q[n + self.second]
-        normal = np.stack([dx, dz], axis=1) / np.hypot(dx, dz)[:, None]
-        stiffness = np.zeros(len(self.first))
-        statics.stiffnesses(self.split(trial.configuration.overlap)[0], self.pairs.shape, self.pairs.law, stiffness)
-        tangent_of = trial.tangent.copy()
-        g = tangent_of[: len(self.first)]
-        g[:] = 0.0
-        g[:, :2, :2] = -stiffness[:, None, None] * normal[:, :, None] * normal[:, None, :]
-        if self.problem.pair_friction:
-            tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-            stiff = np.where(self.split(trial.status)[0] == STICKING, self.pairs.law.tangential_stiffness, 0.0)
-            along = stiff[:, None] * tangent
-            g[:, :2, :2] -= along[:, :, None] * tangent[:, None, :]
-            g[:, :2, 2], g[:, 2, :2], g[:, 2, 2] = along, -along, stiff
-        return replace(trial, tangent=tangent_of)
-
-    def definite_factor(self, trial: Trial, shift: float) -> Factor | None:
-        """Factorisation of the symmetric part of the tangent; None when it is not positive definite."""
-        self._definite_steps.forget()
-        return self.storage.definite_factor(self.pattern.symmetric_part(self.tangent(trial, shift)))
-
     def definite_step(self, trial: Trial, force: FloatArray, shift: float) -> FloatArray | None:
         """(dof,) displacements that take ``force`` up, by the symmetric part of the tangent with ``shift`` added.
 
-        None when it is not positive definite. In a large packing by iteration, with a rough factorisation that may be
-        brought up to date for what has changed since: a tangent that is not positive definite where nothing has is not
-        seen then, unless the step would lead uphill.
+        None when it is not positive definite.
         """
-        matrix = self.pattern.symmetric_part(self.tangent(trial, shift))
-        right = self.interleave(force)
-        found = self._definite_steps.solve(matrix, right, LEFT_OVER, shift)
-        if found is None:
-            factor = self.storage.definite_factor(matrix)
-            if factor is None:
-                return None
-            found = factor.solve(right)
-        return self.deinterleave(found)
-
-    def meets_unlisted(self, q: FloatArray) -> bool:
-        """Whether disks overlap each other or a wall that are not among the candidates: the packing has rearranged."""
-        n, radius, box = self.problem.n, self.problem.packing.radius, self.problem.packing.box
-        position = self.reference + q[: 2 * n].reshape(2, n).T
-        first, second = close_pairs(position, radius, 0.0, box.period)
-        listed, listed_at_wall = self.split(self.keys())
-        if box.periodic:  # a listed pair may have met on its other side
-            d = position[self.first] - position[self.second] - self.reference[self.first] + self.reference[self.second]
-            apart = np.hypot(d[:, 0] + self.dx0, d[:, 1] + self.dz0)
-            listed = listed[apart < (radius[self.first] + radius[self.second]) * (1.0 + TOUCHING)]
-        if np.isin(first.astype(np.int64) * n + second, listed, invert=True).any():
-            return True
-        disk, wall = box.near_walls(position, radius, 0.0)
-        return bool(np.isin(n * n + disk * 3 + wall, listed_at_wall, invert=True).any())
+        factor = self.storage.definite_factor(self.pattern.symmetric_part(self.tangent(trial, shift)))
+        return None if factor is None else self.deinterleave(factor.solve(self.interleave(force)))

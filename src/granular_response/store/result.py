@@ -22,7 +22,6 @@ from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
 from ..scene import text as scene_text
 from ..scene.protocol import without_replaced
-from ..solve.choice import load_method, rest_method
 from ..solve.problem import Problem
 from ..solve.solution import Solution
 from ..solve.timestep import time_step_reason
@@ -535,8 +534,6 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
         problem=problem,
         rest=rest,
         loaded=tuple(loaded),
-        rest_choice=rest_method(problem),
-        load_choice=load_method(problem) if loaded else None,
     )
 
 

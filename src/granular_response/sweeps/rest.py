@@ -11,7 +11,6 @@ from __future__ import annotations
 from ..scene import Scene
 from ..solve import Problem
 from ..solve import solution as solvers
-from ..solve.choice import rest_method, stop_energy
 from ..solve.timestep import UnstableTimeStep, resolve_time_step
 from ..state import State
 from .keys import key
@@ -56,14 +55,14 @@ def _time_step(problem: Problem, *, must_be_stable: bool) -> float | str | None:
 def name(problem: Problem) -> str:
     """Equal for problems with the same rest state."""
     packing, protocol = problem.packing, problem.scene.protocol
-    method = rest_method(problem).method
+    method = problem.plan.rest.method
     numerics: tuple = ()
     # a packing prepared without friction may turn away once it has it, however it was prepared
     if method == "dynamics" or (problem.rotations and problem.scene.preparation.gravity == "frictionless"):
         numerics = (
             protocol.integrator,
             _time_step(problem, must_be_stable=method == "dynamics"),
-            stop_energy(problem),
+            problem.plan.stop_energy,
             protocol.stop_rule,
             protocol.maximum_steps,
             protocol.static_finish,

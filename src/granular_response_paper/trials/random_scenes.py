@@ -23,7 +23,6 @@ import numpy as np
 
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solve import SOLVE_ERRORS, Solution, solve_scene
-from granular_response.solve.choice import finishes_statically
 from granular_response.state import FLOOR, State
 from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.records import column, record
@@ -258,7 +257,7 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
             certificate = state.certificate
             if not certificate.stable or found.force_residual > BALANCE + rounding_of(solution):
                 outcome = "uncertified"
-        if outcome == "uncertified" and finishes_statically(solution.problem):
+        if outcome == "uncertified" and solution.problem.plan.static:
             outcome, message = "wrong", "a state that is not certified"
         if difference > TWINS:
             outcome, message = "wrong", f"the response of the twin differs by {difference:.3g} of the load"

@@ -1,15 +1,80 @@
 """LU factorisation of banded matrices without row exchanges.
 
-Row ``i`` of ``a`` holds the matrix entries ``(i, i - b) ... (i, i + b)`` and padding (see :mod:`.band_rows`), one row
-after the other. Four unknowns are eliminated at once from two rows in one pass, which spares memory traffic and keeps
-the units for fused products busy. Nothing is checked: a zero pivot leaves infinities behind, callers check residuals.
+Row ``i`` of ``a`` holds the matrix entries ``(i, i - b) ... (i, i + b)`` and padding, one row after the other. Four
+unknowns are eliminated at once from two rows in one pass, which spares memory traffic and keeps the units for fused
+products busy: LAPACK's banded LU, which exchanges rows, takes 2.5 times as long, a plain loop seven times
+(docs/benchmarks.md). Nothing is checked: a zero pivot leaves infinities behind, callers check residuals.
+
+The half-width ``b`` is rounded up (:func:`rounded`) and rows are padded with zeros, so that all rows and columns that
+four pivots reach are done alike, in whole lanes. Each row begins one column further on than the one before and is one
+number longer than a multiple of ``WIDTH``: a column has the same place in a cache line in all of them, so that AVX
+registers that begin at a multiple of four columns cross none.
+
+Right-hand sides and solutions have room for ``b`` numbers before them and ``b + PADDING`` behind (:func:`padded`).
 """
 
 from __future__ import annotations
 
-from ...machine.lanes import WIDTH, less_product, put, spread, take
+import numpy as np
+
+from ...machine.lanes import WIDTH, less_product, put, spread, take, total
 from ...machine.machine_code import kernel
-from .band_rows import PADDING, backward, four_from_two, less_four_rows, less_row
+from ...state import FloatArray
+
+#: Zeros behind the numbers of a row. Kernels read up to eight of them and three before a row, which are the last of
+#: the row before.
+PADDING = 2 * WIDTH
+
+
+def rounded(half_width: int) -> int:
+    """The half-width of the rows that hold a band."""
+    return -(-half_width // WIDTH) * WIDTH
+
+
+def padded(right: FloatArray, b: int) -> FloatArray:
+    """A copy of a right-hand side (n,) that kernels overwrite; it begins at place ``b``."""
+    x = np.zeros(len(right) + 2 * b + PADDING)
+    x[b : b + len(right)] = right
+    return x
+
+
+@kernel(forceinline=True)
+def _four_from_two(a, like, i, j, p0, p1, p2, p3, f0, f1, f2, f3, g0, g1, g2, g3):
+    """Subtract multiples of four pivot rows from two rows, which stay in registers while pivot rows pass."""
+    first, second = take(a, i, like), take(a, j, like)
+    pivot = take(a, p0, like)
+    first, second = less_product(first, f0, pivot), less_product(second, g0, pivot)
+    pivot = take(a, p1, like)
+    first, second = less_product(first, f1, pivot), less_product(second, g1, pivot)
+    pivot = take(a, p2, like)
+    first, second = less_product(first, f2, pivot), less_product(second, g2, pivot)
+    pivot = take(a, p3, like)
+    put(a, i, less_product(first, f3, pivot))
+    put(a, j, less_product(second, g3, pivot))
+
+
+@kernel(forceinline=True)
+def _less_row(value, a, row, x, at, b):
+    """``value`` less the scalar product of ``b`` numbers from ``a[row]`` and ``x[at]`` on."""
+    like = spread(0.0)
+    sums = spread(0.0)
+    for c in range(0, b, WIDTH):
+        sums = less_product(sums, take(a, row + c, like), take(x, at + c, like))
+    return value + total(sums)
+
+
+@kernel(forceinline=True)
+def _less_four_rows(a, row, step, x, at, b):
+    """Scalar products of ``b`` numbers from ``a[row]``, ``a[row + step]`` ... and ``x[at]`` on, negative."""
+    like = spread(0.0)
+    s0, s1, s2, s3 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for c in range(0, b, WIDTH):
+        v = take(x, at + c, like)
+        s0 = less_product(s0, take(a, row + c, like), v)
+        s1 = less_product(s1, take(a, row + step + c, like), v)
+        s2 = less_product(s2, take(a, row + 2 * step + c, like), v)
+        s3 = less_product(s3, take(a, row + 3 * step + c, like), v)
+    return total(s0), total(s1), total(s2), total(s3)
 
 
 @kernel(forceinline=True)
@@ -68,7 +133,7 @@ def _eliminate_four(a, n, b, k):
         f0, f1, f2, f3 = _multiples(a, x, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
         g0, g1, g2, g3 = _multiples(a, y, i0, i1, i2, i3, u01, u02, u03, u12, u13, u23)
         for c in range(0, b, WIDTH):
-            four_from_two(
+            _four_from_two(
                 a, like, x + 4 + c, y + 4 + c, p0 + c, p1 + c, p2 + c, p3 + c, f0, f1, f2, f3, g0, g1, g2, g3
             )  # fmt: skip
     if (last - k) % 2 == 0:  # a row is left
@@ -77,40 +142,40 @@ def _eliminate_four(a, n, b, k):
 
 
 @kernel
-def eliminate(a, n, b, first, stop):
-    """Eliminate the unknowns ``first ... stop`` of ``n``, four by four and what is left one by one.
-
-    Overwritten with the factors L (unit diagonal, below) and U; rows from ``stop`` on with what is left for them.
-    """
-    k = first
-    while k + 3 < stop:
+def eliminate(a, n, b):
+    """Overwrite the rows with the factors L (unit diagonal, below) and U, unknowns four by four and the last alone."""
+    whole = n - n % 4
+    for k in range(0, whole, 4):
         _eliminate_four(a, n, b, k)
-        k += 4
-    while k < stop:
+    for k in range(whole, n):
         _eliminate(a, b, k, k + 1, min(k + b, n - 1))
-        k += 1
 
 
 @kernel
-def forward(a, b, first, stop, x):
-    """Overwrite the unknowns ``first ... stop`` of ``x`` (:func:`.band_rows.padded`) with the solution y of L y = x."""
+def solve(a, n, b, x):
+    """Overwrite ``x`` (:func:`padded`) with the solution y of L U y = x."""
     step = stride(b)
-    whole = stop - (stop - first) % 4
-    for k in range(first, whole, 4):
+    whole = n - n % 4
+    for k in range(0, whole, 4):
         d0 = step * k + b
         d1, d2, d3 = d0 + step, d0 + 2 * step, d0 + 3 * step
-        s0, s1, s2, s3 = less_four_rows(a, d0 - b, step - 1, x, k, b)
+        s0, s1, s2, s3 = _less_four_rows(a, d0 - b, step - 1, x, k, b)
         x0 = x[b + k] + s0
         x1 = x[b + k + 1] + s1 - a[d1 - 1] * x0
         x2 = x[b + k + 2] + s2 - a[d2 - 2] * x0 - a[d2 - 1] * x1
         x3 = x[b + k + 3] + s3 - a[d3 - 3] * x0 - a[d3 - 2] * x1 - a[d3 - 1] * x2
         x[b + k], x[b + k + 1], x[b + k + 2], x[b + k + 3] = x0, x1, x2, x3
-    for k in range(whole, stop):
-        x[b + k] = less_row(x[b + k], a, step * k, x, k, b)
-
-
-@kernel
-def solve(a, n, b, x):
-    """Overwrite ``x`` (:func:`.band_rows.padded`) with the solution y of L U y = x."""
-    forward(a, b, 0, n, x)
-    backward(a, stride(b), b, b, n, x)
+    for k in range(whole, n):
+        x[b + k] = _less_row(x[b + k], a, step * k, x, k, b)
+    for k in range(n - 1, whole - 1, -1):
+        d = step * k + b
+        x[b + k] = _less_row(x[b + k], a, d + 1, x, b + k + 1, b) / a[d]
+    for k in range(whole - 4, -1, -4):
+        d0 = step * k + b
+        d1, d2, d3 = d0 + step, d0 + 2 * step, d0 + 3 * step
+        s0, s1, s2, s3 = _less_four_rows(a, d0 + 4, step - 1, x, b + k + 4, b)
+        x3 = (x[b + k + 3] + s3) / a[d3]
+        x2 = (x[b + k + 2] + s2 - a[d2 + 1] * x3) / a[d2]
+        x1 = (x[b + k + 1] + s1 - a[d1 + 2] * x3 - a[d1 + 1] * x2) / a[d1]
+        x0 = (x[b + k] + s0 - a[d0 + 3] * x3 - a[d0 + 2] * x2 - a[d0 + 1] * x1) / a[d0]
+        x[b + k], x[b + k + 1], x[b + k + 2], x[b + k + 3] = x0, x1, x2, x3

@@ -1,8 +1,8 @@
-"""Nested dissection of a packing: the order of elimination that keeps the fronts of a plane network small.
+"""Nested dissection: the order of elimination that keeps the fronts of a plane network small.
 
-The disks are cut in two along the longer side of their box, and again, down to small groups; the disks along a
-cut come after both halves. In the plane this makes the factors of n unknowns grow like n log n and their cost like
-n^1.5.
+The nodes are cut in two along the longer side of their box, and again, down to small groups; the nodes along a
+cut come after both halves (A. George, SIAM J. Numer. Anal. 10, 345, 1973). In the plane this makes the factors of n
+unknowns grow like n log n and their cost like n^1.5.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ import scipy.sparse as sp
 
 from ...state import FloatArray
 
-#: Groups of disks that are not cut any more.
+#: Groups of nodes that are not cut any more.
 SMALLEST_CUT = 40
 
 
 class Dissection:
-    """Order of elimination of the disks, and the fronts.
+    """Order of elimination of the nodes, and the fronts.
 
-    ``order`` : (n,) disks in their order. Front ``f`` eliminates the places ``start[f] ... start[f + 1]``;
+    ``order`` : (n,) nodes in their order. Front ``f`` eliminates the places ``start[f] ... start[f + 1]``;
     ``boundary[f]`` are the later places tied to them, ``children[f]`` the fronts that leave something for it.
     """
 

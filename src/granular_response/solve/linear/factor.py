@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
 
 from ...state import FloatArray
-
-if TYPE_CHECKING:
-    from .multifrontal import Multifactor
 
 
 class Factor(Protocol):
@@ -30,6 +27,23 @@ class Eliminated(Factor, Protocol):
         ...
 
 
+class Renewable(Factor, Protocol):
+    """A factorised matrix that can be brought up to date in parts."""
+
+    @property
+    def price(self) -> float:
+        """About how many solutions cost as much as it."""
+        ...
+
+    def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
+        """Factorise anew where entries have changed by more than ``change``; everywhere else it stays as it was.
+
+        False, and nothing is done, where that would take more than the part ``most`` of the work of all. RuntimeError
+        where it is exactly singular; the factorisation is lost then.
+        """
+        ...
+
+
 class Storage(Protocol):
     """Factorises all matrices (n, n) of one symmetric sparsity pattern, column-compressed with sorted indices.
 
@@ -40,20 +54,16 @@ class Storage(Protocol):
         """LU of a matrix close to a symmetric one; RuntimeError where it is exactly singular and that is seen."""
         ...
 
-    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Factor, int]:
-        """Factorisation of a symmetric matrix and its number of negative eigenvalues (Sylvester's law of inertia)."""
-        ...
-
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
-        """The number of negative eigenvalues of a symmetric matrix alone: no factorisation is kept."""
+        """The number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia)."""
         ...
 
     def definite_factor(self, matrix: sp.csc_array) -> Factor | None:
         """Factorisation of a symmetric matrix; None when it is not positive definite."""
         ...
 
-    def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> Multifactor | None:
-        """One that takes half the time, for solutions by iteration; None where there is none (see :mod:`.nearby`)."""
+    def rough_factor(self, matrix: sp.csc_array) -> Renewable | None:
+        """LU that takes half the time, for solutions by iteration; None where there is none (see :mod:`.nearby`)."""
         ...
 
     def across(self, matrix: sp.csc_array) -> np.ndarray:

@@ -219,11 +219,10 @@ def eliminate(lapack, tree, first, last, matrix, store, info):
 
 
 @kernel(nogil=True)
-def forward(lapack, tree, first, last, at_front, values, pivots, exchanged, whole, x, below, outside, gathered, line):
+def forward(lapack, tree, first, last, at_front, values, pivots, whole, x, below, outside, gathered, line):
     """Solve with L in the fronts ``first ... last``.
 
-    ``exchanged`` : (f,) fronts that were factorised as L D L^T; ``gathered`` : what is left for unknowns from
-    ``below`` on, which are ``outside`` (sorted); ``line`` : (b,) room.
+    ``gathered`` : what is left for unknowns from ``below`` on, which are ``outside`` (sorted); ``line`` : (b,) room.
     """
     none, one = x.dtype.type(0.0), x.dtype.type(1.0)
     for front in range(first, last):
@@ -235,7 +234,7 @@ def forward(lapack, tree, first, last, at_front, values, pivots, exchanged, whol
         if whole:
             call(lapack[la.LASWP], (1, at(x, start), own, 1, own, at(pivots, start), 1))
             call(lapack[la.TRSV], (la.LOWER, la.AS_IS, la.ONES, own, f11, own, at(x, start), 1))
-        elif not exchanged[front]:
+        else:
             call(lapack[la.TRSV], (la.LOWER, la.AS_IS, la.GIVEN, own, f11, own, at(x, start), 1))
         if outer == 0:
             continue
@@ -253,7 +252,7 @@ def forward(lapack, tree, first, last, at_front, values, pivots, exchanged, whol
 
 
 @kernel(nogil=True)
-def backward(lapack, tree, first, last, at_front, values, pivots, exchanged, whole, x, line, product, info):
+def backward(lapack, tree, first, last, at_front, values, pivots, whole, x, line, product):
     """Solve with U, or L^T, in the fronts ``first ... last``, the last one first."""
     none, one = x.dtype.type(0.0), x.dtype.type(1.0)
     for front in range(last - 1, first - 1, -1):
@@ -262,8 +261,6 @@ def backward(lapack, tree, first, last, at_front, values, pivots, exchanged, who
         begin = tree.begin[front]
         outer = tree.begin[front + 1] - begin
         f11 = at(values, at_front[front])
-        if exchanged[front]:
-            call(lapack[la.SYTRS], (la.LOWER, own, 1, f11, own, at(pivots, start), at(x, start), own, at(info, 0)))
         if outer > 0:
             for b in range(outer):
                 line[b] = x[tree.boundary[begin + b]]
@@ -281,5 +278,5 @@ def backward(lapack, tree, first, last, at_front, values, pivots, exchanged, who
                 x[start + k] -= product[k]
         if whole:
             call(lapack[la.TRSV], (la.UPPER, la.AS_IS, la.GIVEN, own, f11, own, at(x, start), 1))
-        elif not exchanged[front]:
+        else:
             call(lapack[la.TRSV], (la.LOWER, la.TRANSPOSED, la.GIVEN, own, f11, own, at(x, start), 1))

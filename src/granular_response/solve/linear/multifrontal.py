@@ -1,14 +1,15 @@
-"""Sparse factorisation for large packings: multifrontal, in the order of a nested dissection.
+"""Sparse factorisation of large matrices: multifrontal, in the order of a nested dissection.
 
-Each group of disks, or cut between two, is eliminated as one dense front by LAPACK, so nearly all work is matrix
-products. What a front leaves for its boundary is added to its parent. Results do not depend on what other libraries
-are installed, and every front counts its negative eigenvalues.
+Each group of nodes, or cut between two, is eliminated as one dense front by LAPACK, so nearly all work is matrix
+products (I. S. Duff and J. K. Reid, ACM Trans. Math. Softw. 9, 302, 1983). What a front leaves for its boundary is
+added to its parent. Results do not depend on what other libraries are installed, and every front counts its negative
+eigenvalues.
 
-The fronts of a large packing are split into subtrees, on which several threads work side by side, and the few fronts
+The fronts of a large matrix are split into subtrees, on which several threads work side by side, and the few fronts
 above them, whose matrix products are split into blocks of columns. Neither split looks at the number of threads, and
 what subtrees leave is added in the order of the tree: the bits are those of a single thread.
 
-Besides exact factorisations there are rough ones of large packings, for solutions by iteration: in single precision,
+Besides exact factorisations there are rough ones of large matrices, for solutions by iteration: in single precision,
 which takes half the time and memory, and with what subtrees leave, so that for a matrix which differs in few places
 only the subtrees that have them are eliminated anew, and the fronts above those.
 """
@@ -34,16 +35,25 @@ from .dissection import Dissection
 from .factor import AcrossDiagonal
 from .frontal import Matrix, Store, Tree
 
-#: Unknowns from which on fronts are split; below, one thread is as fast.
-LARGE = 20_000
-#: A subtree has at most one part in so many of the work.
-PARTS = 24
-#: Multiplications of a factorisation that take as long as a solution takes for each number of the factors.
-MULTIPLICATIONS = 6
-#: Columns of a block of a matrix product above the subtrees.
-BLOCK = 240
 #: Numbers of exact factorisations, and of rough ones.
 EXACT, ROUGH = np.dtype(np.float64), np.dtype(np.float32)
+
+
+@dataclass(frozen=True)
+class FrontOptions:
+    """Numbers by which fronts are shared out among threads."""
+
+    #: Unknowns from which on fronts are split; below, one thread is as fast.
+    large: int = 20_000
+    #: A subtree has at most one part in so many of the work.
+    parts: int = 24
+    #: Columns of a block of a matrix product above the subtrees.
+    block: int = 240
+    #: Multiplications of a factorisation that take as long as a solution takes for each number of the factors.
+    multiplications: float = 6.0
+
+
+OPTIONS = FrontOptions()
 
 
 @dataclass(frozen=True)
@@ -57,7 +67,7 @@ class _Range:
 
 
 class Multifrontal:
-    """Fronts of all matrices with the pattern of a packing's tangent; ``freedoms`` unknowns for each disk."""
+    """Fronts of all matrices with the pattern of a dissected network; ``freedoms`` unknowns for each node."""
 
     def __init__(self, dissection: Dissection, freedoms: int):
         sizes = np.array([len(b) for b in dissection.boundary], np.int64) * freedoms
@@ -100,7 +110,7 @@ class Multifrontal:
     @property
     def large(self) -> bool:
         """Whether the fronts are split."""
-        return self.unknowns > LARGE
+        return self.unknowns > OPTIONS.large
 
     def children(self, front: int) -> list[int]:
         """Fronts that leave something for this one."""
@@ -120,7 +130,7 @@ class Multifrontal:
             if parent >= 0:
                 work[parent] += work[front]
                 first[parent] = min(first[parent], first[front])
-        most = work[self._parent < 0].sum() / PARTS
+        most = work[self._parent < 0].sum() / OPTIONS.parts
         small = work <= most
         roots = np.flatnonzero(small & ~((self._parent >= 0) & small[self._parent]))
         self.above = np.flatnonzero(~small).tolist()
@@ -162,16 +172,11 @@ class Multifrontal:
         """LU with row exchanges inside the fronts."""
         return LU(self, self._factorised(matrix, whole=True))
 
-    def symmetric_factor(self, matrix: sp.csc_array) -> tuple[Symmetric, int]:
-        """Cholesky factorisation, and L D L^T in fronts that are not positive definite.
-
-        Also returns the number of negative eigenvalues (Sylvester's law of inertia).
-        """
-        fronts = self._factorised(matrix)
-        return Symmetric(self, fronts), fronts.negative
-
     def negative_eigenvalues(self, matrix: sp.csc_array) -> int:
-        """Their number alone: the factorisation is not kept."""
+        """The number of negative eigenvalues of a symmetric matrix (Sylvester's law of inertia).
+
+        Cholesky factorisation, and L D L^T in fronts that are not positive definite; nothing of it is kept.
+        """
         return self._factorised(matrix, keep=False).negative
 
     def definite_factor(self, matrix: sp.csc_array) -> Symmetric | None:
@@ -179,18 +184,17 @@ class Multifrontal:
         fronts = self._factorised(matrix, definite=True)
         return None if fronts.failed else Symmetric(self, fronts)
 
-    def rough_factor(self, matrix: sp.csc_array, *, definite: bool) -> Multifactor | None:
-        """LU, or Cholesky if ``definite``, in single precision, that can be renewed; None of a small packing.
+    def rough_factor(self, matrix: sp.csc_array) -> LU | None:
+        """LU in single precision that can be renewed; None of a small matrix, or exactly singular to that precision.
 
-        None too where a front is not positive definite, or is exactly singular, to that precision.
+        On the path of a large packing this saves two fifths of the time. A minimisation, whose Cholesky factorisations
+        take half of that, gains nothing by it.
         """
         if not self.large:
             return None
         left: dict[int, FloatArray] = {}
-        fronts = self._factorised(matrix, whole=not definite, definite=True, kind=ROUGH, left=left)
-        if fronts.failed:
-            return None
-        return (Symmetric if definite else LU)(self, fronts, Renewal(matrix.data.copy(), left))
+        fronts = self._factorised(matrix, whole=True, definite=True, kind=ROUGH, left=left)
+        return None if fronts.failed else LU(self, fronts, Renewal(matrix.data.copy(), left))
 
     @cached_property
     def _at(self) -> dict[bool, np.ndarray]:
@@ -218,7 +222,6 @@ class Multifrontal:
             at=at[:-1] if keep else np.zeros(len(self.own), np.int64),
             values=np.empty(int(at[-1] if keep else 0), kind),
             pivots=np.zeros(self.unknowns, np.int32),
-            exchanged=np.zeros(len(self.own), np.bool_),
             definite=definite,
         )
         _Elimination(self, matrix, fronts, whole=whole, keep=keep, left=left).run(self.ranges, self.above)
@@ -234,7 +237,6 @@ class _Fronts:
     at: np.ndarray
     values: FloatArray
     pivots: np.ndarray
-    exchanged: np.ndarray  #: (f,) fronts that are L D L^T
     definite: bool  #: whether a front that is not positive definite is a failure
     failed: bool = False
     negative: int = 0
@@ -312,20 +314,14 @@ class _Elimination:
         pattern = self.pattern
         own, outer = int(pattern.own[front]), int(pattern.outer[front])
         at = int(self.fronts.at[front])
-        start = pattern.tree.start[front]
-        f11 = _by_columns(values, at, own, own)
-        lower, pivot, info = lapack.dsytrf(f11, lower=1, overwrite_a=1)
-        f11[...] = lower
+        lower, pivot, info = lapack.dsytrf(_by_columns(values, at, own, own), lower=1)
         if info > 0:
             self.fronts.failed = True
-        self.fronts.pivots[start : start + own] = pivot
-        self.fronts.exchanged[front] = True
         if outer:
             f21 = _by_columns(values, at + own * own, outer, own)
             solved, _ = lapack.dsytrs(lower, pivot, np.asfortranarray(f21.T), lower=1)
             update = _by_columns(updates, f22, outer, outer)
             update -= f21 @ solved
-            f21[...] = solved.T
         return _negative_blocks(lower, pivot)
 
     def _above(self, front: int, spread: threads.Map) -> None:
@@ -351,7 +347,7 @@ class _Elimination:
             fronts.negative += self._exchange(front, values, update, 0)
             self.left[front] = update
             return
-        blocks = list(pairwise([*range(0, outer, BLOCK), outer]))
+        blocks = list(pairwise([*range(0, outer, OPTIONS.block), outer]))
 
         def solve(block: tuple[int, int]) -> None:
             if self.whole:
@@ -366,58 +362,13 @@ class _Elimination:
         self.left[front] = update
 
 
-@dataclass
-class Renewal:
-    """What a factorisation needs to be made anew in parts."""
-
-    entries: FloatArray  #: of the matrix
-    left: dict[int, FloatArray]  #: what subtrees and fronts above them have left
-
-
 class Multifactor:
-    """Factorised fronts that solve; rough ones can be made anew in parts, with their ``renewal``."""
+    """Factorised fronts."""
 
-    whole: bool
+    whole: bool  #: whether of a matrix that is not symmetric
 
-    def __init__(self, pattern: Multifrontal, fronts: _Fronts, renewal: Renewal | None = None):
-        self._pattern, self._fronts, self._renewal = pattern, fronts, renewal
-
-    @property
-    def price(self) -> float:
-        """About how many solutions cost as much as it: by its multiplications for each number that it holds."""
-        multiplications = float(self._pattern.multiplications().sum()) * (1.0 if self.whole else 0.5)
-        return multiplications / (MULTIPLICATIONS * self._fronts.values.size)
-
-    def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
-        """Bring it up to date in the subtrees where any entry has changed by more than ``change``, and above them.
-
-        Everywhere else it stays that of the matrix before. False, and nothing is done, where that would take more than
-        the part ``most`` of the work of all. Only of a rough one.
-
-        Raises
-        ------
-        RuntimeError
-            Where a front is exactly singular, or, of Cholesky, not positive definite; the factorisation is lost then.
-        """
-        assert self._renewal is not None
-        pattern = self._pattern
-        front_of = pattern.front_of_entries(matrix)
-        anew = np.zeros(len(pattern.own), np.bool_)
-        frontal.mark(front_of, matrix.data, self._renewal.entries, change, anew)
-        ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
-        for span in ranges:
-            anew[span.first : span.last] = True
-        for front in pattern.above:
-            anew[front] |= anew[pattern.children(front)].any()
-        work = pattern.multiplications()
-        if work[anew].sum() > most * work.sum():
-            return False
-        above = [front for front in pattern.above if anew[front]]
-        _Elimination(pattern, matrix, self._fronts, whole=self.whole, left=self._renewal.left).run(ranges, above)
-        if self._fronts.failed:
-            raise RuntimeError("Factor is exactly singular" if self.whole else "not positive definite")
-        frontal.keep(front_of, matrix.data, anew, self._renewal.entries)
-        return True
+    def __init__(self, pattern: Multifrontal, fronts: _Fronts):
+        self._pattern, self._fronts = pattern, fronts
 
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution for one right-hand side, to the precision of the fronts."""
@@ -431,15 +382,15 @@ class Multifactor:
         def down(first: int, last: int, below: int, outside: np.ndarray) -> FloatArray:
             gathered = np.zeros(len(outside), kind)
             frontal.forward(
-                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
+                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, self.whole,
                 x, below, outside, gathered, np.empty(room, kind),
             )  # fmt: skip
             return gathered
 
         def up(first: int, last: int) -> None:
             frontal.backward(
-                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, fronts.exchanged, self.whole,
-                x, np.empty(room, kind), np.empty(int(pattern.own.max()), kind), np.zeros(1, np.int32),
+                lapack, tree, first, last, fronts.at, fronts.values, fronts.pivots, self.whole,
+                x, np.empty(room, kind), np.empty(int(pattern.own.max()), kind),
             )  # fmt: skip
 
         with threads.mapping(pattern.large) as spread:
@@ -454,10 +405,28 @@ class Multifactor:
         return np.asarray(x, float)
 
 
+class Symmetric(Multifactor):
+    """Factorised fronts of a symmetric matrix."""
+
+    whole = False
+
+
+@dataclass
+class Renewal:
+    """What a factorisation needs to be made anew in parts."""
+
+    entries: FloatArray  #: of the matrix
+    left: dict[int, FloatArray]  #: what subtrees and fronts above them have left
+
+
 class LU(Multifactor):
-    """A factorised matrix."""
+    """Factorised fronts of any matrix; a rough one can be made anew in parts, with its ``renewal``."""
 
     whole = True
+
+    def __init__(self, pattern: Multifrontal, fronts: _Fronts, renewal: Renewal | None = None):
+        super().__init__(pattern, fronts)
+        self._renewal = renewal
 
     @cached_property
     def negative_pivots(self) -> int:
@@ -471,11 +440,32 @@ class LU(Multifactor):
             signs += int((diagonal < 0.0).sum()) + int(exchanged.sum())
         return signs % 2
 
+    @property
+    def price(self) -> float:
+        """About how many solutions cost as much as it: by its multiplications for each number that it holds."""
+        return float(self._pattern.multiplications().sum()) / (OPTIONS.multiplications * self._fronts.values.size)
 
-class Symmetric(Multifactor):
-    """A factorised symmetric matrix."""
-
-    whole = False
+    def renew(self, matrix: sp.csc_array, change: float, most: float) -> bool:
+        """Bring a rough one up to date in the subtrees with changed entries and above them; see :class:`.Renewable`."""
+        assert self._renewal is not None
+        pattern = self._pattern
+        front_of = pattern.front_of_entries(matrix)
+        anew = np.zeros(len(pattern.own), np.bool_)
+        frontal.mark(front_of, matrix.data, self._renewal.entries, change, anew)
+        ranges = [span for span in pattern.ranges if anew[span.first : span.last].any()]
+        for span in ranges:
+            anew[span.first : span.last] = True
+        for front in pattern.above:
+            anew[front] |= anew[pattern.children(front)].any()
+        work = pattern.multiplications()
+        if work[anew].sum() > most * work.sum():
+            return False
+        above = [front for front in pattern.above if anew[front]]
+        _Elimination(pattern, matrix, self._fronts, whole=True, left=self._renewal.left).run(ranges, above)
+        if self._fronts.failed:
+            raise RuntimeError("Factor is exactly singular")
+        frontal.keep(front_of, matrix.data, anew, self._renewal.entries)
+        return True
 
 
 def _by_columns(flat: FloatArray, begin: int, rows: int, columns: int) -> FloatArray:

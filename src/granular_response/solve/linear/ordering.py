@@ -1,4 +1,4 @@
-"""The order in which disks are eliminated, and the kind of factorisation that it calls for."""
+"""The order in which nodes are eliminated, and the kind of factorisation that it calls for."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ WIDEST_BAND = 130
 #: Disks from which on a dissection is remembered: it takes as long as a factorisation.
 REMEMBERED = 40_000
 
-#: What the last dissection of a large packing was asked for, and that dissection.
+#: What the last dissection of a large network was asked for, and that dissection.
 _last: list = []
 
 
 @dataclass(frozen=True)
 class Elimination:
-    """An order of the disks and the fronts that belong to it, if it is a dissection."""
+    """An order of the nodes and the fronts that belong to it, if it is a dissection."""
 
-    order: np.ndarray  #: (n,) disks in the order in which they are eliminated
-    freedoms: int  #: unknowns of each disk, consecutive
+    order: np.ndarray  #: (n,) nodes in the order in which they are eliminated
+    freedoms: int  #: unknowns of each node, consecutive
     dissection: Dissection | None  #: None for a band
 
     def storage(self, indptr: np.ndarray, indices: np.ndarray) -> Storage:
-        """Storage for matrices of this column-compressed pattern, unknowns disk by disk in :attr:`order`."""
+        """Storage for matrices of this column-compressed pattern, unknowns node by node in :attr:`order`."""
         if self.dissection is None:
             return Band(indptr, indices)
         return Multifrontal(self.dissection, self.freedoms)
 
 
 def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, freedoms: int) -> Elimination:
-    """The order for disks at ``position`` (n, 2) that are tied in pairs ``first``, ``second`` (m,).
+    """The order for nodes at ``position`` (n, 2) that are tied in pairs ``first``, ``second`` (m,).
 
-    A narrow band where there is one, nested dissection elsewhere. Each disk has ``freedoms`` unknowns. The last
-    dissection of a large packing is remembered.
+    A narrow band where there is one, nested dissection elsewhere. Each node has ``freedoms`` unknowns. The last
+    dissection of a large network is remembered.
     """
     asked = (position, first, second)
     if _last and all(map(np.array_equal, _last[0], asked)):
@@ -57,14 +57,14 @@ def elimination(position: FloatArray, first: np.ndarray, second: np.ndarray, fre
 
 
 def node_order(position: FloatArray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n,) order of the disks that keeps neighbours close: along x, in columns, or by Cuthill-McKee if narrower."""
+    """(n,) order of the nodes that keeps neighbours close: along x, in columns, or by Cuthill-McKee if narrower."""
     n = len(position)
     along = np.lexsort((position[:, 1], position[:, 0]))
     if len(first) == 0:
         return along
     ones = np.ones(2 * len(first))
     graph = sp.csr_array((ones, (np.r_[first, second], np.r_[second, first])), shape=(n, n))
-    # disks of a column stand a little askew under their weight, which must not decide their order
+    # nodes of a column stand a little askew under their weight, which must not decide their order
     columns = np.lexsort((position[:, 1], np.round(position[:, 0], 1)))
     orders = [along, columns, np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True))]
     return min(orders, key=lambda order: _width(order, first, second))

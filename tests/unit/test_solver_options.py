@@ -1,0 +1,127 @@
+"""The numbers that solvers go by: each says why, and another value of it is noticed."""
+
+import inspect
+import re
+from dataclasses import fields, replace
+
+import pytest
+from small_scenes import free_disks, scene
+
+from granular_response.solve import (
+    Dynamics,
+    EquilibriumError,
+    Problem,
+    Stop,
+    dynamics,
+    energy,
+    equilibrium,
+    finish,
+    follow,
+    minimise,
+    path,
+    relax,
+    rest_state,
+    system,
+)
+from granular_response.solve.equilibrium import external_force, newton
+from granular_response.solve.linear import multifrontal, nearby
+from granular_response.solve.stability import OPTIONS, negative_modes
+from granular_response.solve.system import StaticSystem
+from granular_response.state import State
+
+RECORDS = [dynamics.OPTIONS, energy.OPTIONS, equilibrium.OPTIONS, system.OPTIONS, OPTIONS, path.OPTIONS]
+RECORDS += [multifrontal.OPTIONS, nearby.OPTIONS]
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=lambda record: type(record).__name__)
+def test_every_number_is_said_what_it_is_for(record):
+    described = re.findall(r"#: .*\n(?:\s+#: .*\n)*((?:    \w+: .*\n)+)", inspect.getsource(type(record)))
+    named = {line.split(":")[0].strip() for lines in described for line in lines.splitlines()}
+    assert {field.name for field in fields(record)} <= named
+    with pytest.raises(AttributeError):
+        setattr(record, fields(record)[0].name, 0)
+
+
+def descent() -> tuple[int, float]:
+    """Of a lattice that a force pulls at: iterations and a force."""
+    problem = Problem.from_scene(scene(5, 9, contact__friction=0.0, contact__normal_stiffness=100.0))
+    found = minimise(problem, problem.bare_state())
+    return found.reached.newton_iterations, float(found.position.sum())
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("more", 2.0),
+        ("less", 0.9),
+        ("poor", 0.9),
+        ("first_damping", 10.0),
+        ("longest_step", 1e-3),
+    ],
+)
+def test_a_minimisation_takes_other_steps_to_the_same_minimum(monkeypatch, name, value):
+    iterations, place = descent()
+    monkeypatch.setattr(energy, "OPTIONS", replace(energy.OPTIONS, **{name: value}))
+    others, again = descent()
+    assert others != iterations
+    assert again == pytest.approx(place, abs=1e-9)
+
+
+def test_a_minimisation_is_given_up(monkeypatch):
+    monkeypatch.setattr(energy, "OPTIONS", replace(energy.OPTIONS, iterations=1))
+    with pytest.raises(EquilibriumError, match="within 1 iterations"):
+        descent()
+
+
+def settling() -> tuple[Problem, State]:
+    """A packing that is nearly at rest."""
+    problem = Problem.from_scene(scene(contact__friction=0.2, wall__friction=0.2))
+    return problem, relax(Dynamics(problem, problem.bare_state()), Stop(1e-8))
+
+
+def test_newtons_method_ends_where_its_options_say(monkeypatch):
+    problem, state = settling()
+    equations, external = StaticSystem(problem, state), external_force(problem, 0.0)
+    known = equations.start(state)
+    assert newton(equations, known, external)[1].residual < equilibrium.OPTIONS.tolerance
+    assert newton(equations, known, external, enough=1.0)[1].iterations == 0
+    with pytest.raises(EquilibriumError, match="within 0 Newton iterations"):
+        finish(problem, state, maximum_iterations=0)
+    monkeypatch.setattr(equilibrium, "OPTIONS", replace(equilibrium.OPTIONS, farthest=0.0))
+    with pytest.raises(EquilibriumError, match="mean radii away"):
+        finish(problem, state)
+    monkeypatch.setattr(equilibrium, "OPTIONS", replace(equilibrium.OPTIONS, longest_step=1e-12))
+    assert not newton(equations, known, external)[1].converged
+
+
+def test_a_relaxation_is_looked_at_as_often_as_its_options_say(monkeypatch):
+    problem = Problem.from_scene(scene(contact__friction=0.2))
+
+    def steps(rule="instantaneous", **options) -> int:
+        monkeypatch.setattr(dynamics, "OPTIONS", replace(dynamics.RelaxationOptions(), **options))
+        return relax(Dynamics(problem, problem.bare_state()), Stop(1e-8, rule)).reached.relaxation_steps
+
+    assert steps(check_every=70) % 70 == 0
+    assert steps("envelope", envelope_time=1.0) < steps("envelope", envelope_time=5.0)
+
+
+def test_changed_stiffnesses_make_no_factorisation_up_to_a_number(monkeypatch):
+    loads = [{"disk": "top-centre", "force": [0.0, -12.0]}]
+    problem = Problem.from_scene(scene(6, 13, contact__friction=0.2, loads=loads))
+    rest = rest_state(problem)
+
+    def factorisations() -> int:
+        return follow(problem.with_loads(rest.position), rest, [1.0])[0].reached.factorisations
+
+    few = factorisations()
+    monkeypatch.setattr(system, "OPTIONS", replace(system.OPTIONS, most_changed=0))
+    assert factorisations() > 2 * few
+
+
+def test_regularisation_holds_what_nothing_holds():
+    problem, state = free_disks([[500.0, 1.0], [505.0, 3.0]], contact__friction=0.0)
+    equations = StaticSystem(problem, state)
+    trial = equations.trial(known := equations.start(state), known.q)
+    assert negative_modes(equations, trial) == 0
+    diagonal = equations.tangent(trial, system.OPTIONS.regularisation * problem.stiffness).diagonal()
+    assert (diagonal >= system.OPTIONS.regularisation * problem.stiffness).all()
