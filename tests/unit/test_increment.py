@@ -1,5 +1,7 @@
 """Increments of a path: Newton's method on the true law, and minimisations with fixed Coulomb limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_scenes import scene
@@ -46,7 +48,7 @@ def test_fixed_limits_lead_to_the_same_equilibrium(start, monkeypatch):
         return trial, report
 
     monkeypatch.setattr(module, "newton", refusing)
-    monkeypatch.setattr(module, "DIRECT_ITERATIONS", 10)
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=10))
     work = Work()
     around = solve_increment(system, known, external, known.q, work)
     assert work.rounds >= 3
@@ -58,13 +60,13 @@ def test_a_minimisation_ends_where_steps_no_longer_pay(start, monkeypatch):
     problem, system, known = start
     external = external_force(problem, 0.5)
     limits = np.full(len(known.spring), 0.2)
-    monkeypatch.setattr(module, "MOST", 25)
-    monkeypatch.setattr(module, "ROUGH", 0.0)
-    monkeypatch.setattr(module, "STILL", 0.0)
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, most=25))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, rough=0.0))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, still=0.0))
     long, short = Work(), Work()
     assert module.minimise_with_limits(system, known, external, known.q, limits, long) is None
     assert long.factorisations == 25  # rounding never lets the residual vanish
-    monkeypatch.setattr(module, "STILL", 1e-5)
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, still=1e-5))
     trial = module.minimise_with_limits(system, known, external, known.q, limits, short)
     assert short.factorisations < 15
     assert np.abs(trial.contact_force + external).max() < 1e-8
@@ -83,8 +85,8 @@ def test_hopeless_increment_returns_none():
 def test_an_increment_gives_up_after_its_work(start, monkeypatch):
     """That of one minimisation, which leaves no work for further rounds."""
     problem, system, known = start
-    monkeypatch.setattr(module, "DIRECT_ITERATIONS", 1)
-    monkeypatch.setattr(module, "MOST", 0)
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, direct=1))
+    monkeypatch.setattr(module, "OPTIONS", replace(module.OPTIONS, most=0))
     work = Work()
     assert solve_increment(system, known, external_force(problem, 0.5), known.q, work) is None
     assert work.rounds == 1

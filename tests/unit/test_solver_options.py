@@ -17,8 +17,10 @@ from granular_response.solve import (
     equilibrium,
     finish,
     follow,
+    increment,
     minimise,
     path,
+    rates,
     relax,
     rest_state,
     system,
@@ -30,7 +32,7 @@ from granular_response.solve.system import StaticSystem
 from granular_response.state import State
 
 RECORDS = [dynamics.OPTIONS, energy.OPTIONS, equilibrium.OPTIONS, system.OPTIONS, OPTIONS, path.OPTIONS]
-RECORDS += [multifrontal.OPTIONS, nearby.OPTIONS]
+RECORDS += [increment.OPTIONS, multifrontal.OPTIONS, nearby.OPTIONS, rates.OPTIONS]
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=lambda record: type(record).__name__)

@@ -20,20 +20,31 @@ from .equilibrium import FLAT, LONGEST_STEP, newton
 from .line_search import shortened
 from .system import Configuration, StaticSystem, Trial
 
-#: Newton iterations on the true law before limits are held fixed.
-DIRECT_ITERATIONS = 8
-#: Rounds of fixed limits, and the round from which the true law is tried again.
-ROUNDS, FIRST_TRY = 24, 2
-#: Rounds after which limits must have stopped changing by more than this (mean disk weights), or the increment fails.
-SETTLED_BY, SLOW = 6, 0.05
-#: Levenberg shift of the minimisation, in units of the normal stiffness.
-SHIFT = 1e-7
-#: Residual at which a minimisation with fixed limits ends; they change anyway.
-ROUGH = 1e-7
-#: Residual below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
-STILL, STALLED = 1e-5, 3
-#: Factorisations after which an increment, or one minimisation, is given up.
-MOST = 60
+
+@dataclass(frozen=True)
+class IncrementOptions:
+    """Numbers that an increment goes by. Forces in mean weights."""
+
+    #: Newton iterations on the true law before limits are held fixed, and in each try after that.
+    direct: int = 8
+    #: Rounds of fixed limits, and the round after which the true law is tried again.
+    rounds: int = 24
+    first_try: int = 2
+    #: Rounds after which limits must have stopped changing by more than a force, or the increment fails.
+    settled_by: int = 6
+    slow: float = 0.05
+    #: Levenberg shift of a minimisation, in units of the normal stiffness: holds disks that nothing holds.
+    shift: float = 1e-7
+    #: Unbalanced force at which a minimisation ends; its limits change anyway.
+    rough: float = 1e-7
+    #: That below which it ends too when so many steps in turn have not halved it: contacts go to and fro at no force.
+    still: float = 1e-5
+    stalled: int = 3
+    #: Factorisations after which an increment, or one minimisation, is given up.
+    most: int = 60
+
+
+OPTIONS = IncrementOptions()
 
 
 @dataclass
@@ -56,7 +67,7 @@ def solve_increment(
 
     ``guess`` (dof,) is a prediction of the displacements.
     """
-    trial, report = newton(system, known, external, guess, maximum_iterations=DIRECT_ITERATIONS)
+    trial, report = newton(system, known, external, guess, maximum_iterations=OPTIONS.direct)
     work.factorisations += report.iterations
     if report.converged:
         work.increments += 1
@@ -68,8 +79,8 @@ def solve_increment(
     limits = friction * system.trial(known, known.q).normal
     q = system.held_as_in(guess, known.q)
     before_rounds = work.factorisations
-    for done in range(1, ROUNDS + 1):
-        if work.factorisations - before_rounds > MOST:
+    for done in range(1, OPTIONS.rounds + 1):
+        if work.factorisations - before_rounds > OPTIONS.most:
             return None
         work.rounds += 1
         held = minimise_with_limits(system, known, external, q, limits, work)
@@ -78,10 +89,10 @@ def solve_increment(
         q = held.configuration.q
         before, limits = limits, friction * held.normal
         change = float(np.abs(limits - before).max(initial=0.0))
-        if done >= SETTLED_BY and change > SLOW:
+        if done >= OPTIONS.settled_by and change > OPTIONS.slow:
             return None
-        if done > FIRST_TRY:
-            true, report = newton(system, known, external, q, maximum_iterations=DIRECT_ITERATIONS)
+        if done > OPTIONS.first_try:
+            true, report = newton(system, known, external, q, maximum_iterations=OPTIONS.direct)
             work.factorisations += report.iterations
             if report.converged:
                 work.increments += 1
@@ -100,14 +111,14 @@ def minimise_with_limits(
     """The minimum of an increment's energy with fixed Coulomb limits, as near as steps come; None where they go on."""
     q = start
     trial = system.trial(known, q, limits=limits)
-    shift = SHIFT * system.problem.stiffness
+    shift = OPTIONS.shift * system.problem.stiffness
     best, stalled = np.inf, 0
-    for left in range(MOST, -1, -1):
+    for left in range(OPTIONS.most, -1, -1):
         r = trial.contact_force + external
         size = float(np.abs(r).max())
         stalled = stalled + 1 if size > 0.5 * best else 0
         best = min(best, size)
-        if size < ROUGH or (best < STILL and stalled >= STALLED):
+        if size < OPTIONS.rough or (best < OPTIONS.still and stalled >= OPTIONS.stalled):
             return trial
         if left == 0:
             break

@@ -5,7 +5,8 @@ the rate of the load. Which statuses these are is part of the problem where cont
 Coulomb's limit slides (its slip has the direction of its force) or sticks (its force does not pass the limit), one that
 bears nothing closes or opens. This is the linear complementarity problem of contact with friction in rates
 (McNamara and Herrmann, Phys. Rev. E 74, 061303, 2006), solved here by changing the statuses that contradict themselves
-until none does: all at once, and where that comes back to statuses that it has tried, the worst ones alone.
+until none does: all at once, and where that comes back to statuses that it has tried, the worst ones alone. A contact
+that can neither stay open nor stick slides.
 """
 
 from __future__ import annotations
@@ -19,13 +20,21 @@ from ..state import OPEN, SLIDING, STICKING, FloatArray
 from .linear.updated import Updated
 from .system import Configuration, StaticSystem, Trial
 
-#: Rounds in which all contacts that contradict themselves change, and rounds in which the worst ones do. Those that
-#: ended took 17 and 30 at most in the packings of the benchmarks.
-ALL, WORST = 8, 60
-#: Rounds, whether the worst alone change, and whether each tangent is factorised anew.
-WAYS = (ALL, False, False), (WORST, True, False), (WORST, True, True)
-#: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
-AS_BAD = 0.999
+
+@dataclass(frozen=True)
+class RateOptions:
+    """Numbers by which statuses of a rate problem are found."""
+
+    #: Rounds in which all contacts that contradict themselves change, and rounds in which the worst ones do, twice if
+    #: need be. Those that ended took 17 and 30 at most in the packings of the benchmarks.
+    all: int = 8
+    worst: int = 60
+    #: Part of the largest rate from which on a contact is among the worst: a mirror pair differs by rounding.
+    as_bad: float = 0.999
+
+
+OPTIONS = RateOptions()
+
 #: Ties that a load counts as: more than any disk has freedoms, so that a loaded disk is no rattler.
 LOADED = 4
 
@@ -146,7 +155,8 @@ class RateProblem:
         known = trial.configuration
         # one that bears nothing has no slip to go on with
         sense = np.where((np.abs(sense) == SLIDING) & (trial.normal <= self.force), STICKING, sense).astype(sense.dtype)
-        for rounds, worst, anew in WAYS:
+        ways = (OPTIONS.all, False, False), (OPTIONS.worst, True, False), (OPTIONS.worst, True, True)
+        for rounds, worst, anew in ways:  # whether the worst alone change, and whether each tangent is factorised anew
             now, tried = sense, {sense.tobytes()}
             had: dict[int, set[int]] = {}  #: statuses, in these rounds, of contacts that opened or closed
             for _ in range(rounds):
@@ -164,7 +174,7 @@ class RateProblem:
                     return Rates(now, factor, velocity, found)
                 if worst:
                     rates = found.rate[due]
-                    due = due[rates >= AS_BAD * rates.max()]
+                    due = due[rates >= OPTIONS.as_bad * rates.max()]
                 now = changed(now, due, found.what)
                 for c in due[self._frictional[due] & np.isin(found.what[due], (events.OPENS, events.CLOSES))].tolist():
                     # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
