@@ -1,6 +1,7 @@
 """Events of a load path: in a result, in its file, on the terminal, in exports, and as what find_event reads."""
 
 import csv
+import io
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from commands import call
+from rich.console import Console
 from small_scenes import scene
 
 import granular_response as gr
@@ -20,6 +21,7 @@ from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
 from granular_response.store.export import export
 from granular_response.store.result import ResultError, chosen_states, events_from, state_from, to_dataset
+from granular_response.store.summary import summarise
 
 BEFORE = Path(__file__).parents[1] / "data" / "result_before_events.nc"
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
@@ -46,6 +48,14 @@ def with_lost(result) -> gr.Result:
     one, two, three = solution.loaded
     reached = replace(two.reached, events=(*two.reached.events, jump), events_within=0.25, events_error=3e-5)
     return gr.Result(replace(solution, loaded=(one, replace(two, reached=reached), three)))
+
+
+def shown(path) -> str:
+    """What ``granular-response show`` prints."""
+    console = Console(width=200, file=io.StringIO())
+    for part in summarise(path):
+        console.print(part)
+    return console.file.getvalue()
 
 
 def test_events_lead_from_the_contacts_of_one_state_to_those_of_the_next(result):
@@ -177,7 +187,7 @@ def test_events_that_cannot_be_are_refused(result, damage):
 def test_show_counts_events_and_names_lost_equilibria(result, tmp_path):
     one = with_lost(result)
     one.save(tmp_path / "result.nc")
-    lines = call("show", "result.nc", folder=tmp_path).stdout.splitlines()
+    lines = shown(tmp_path / "result.nc").splitlines()
     for kind, count in result.events.counts().items():
         row = next(line.split() for line in lines if line.startswith(kind))
         assert row[:2] == [kind, "0"] and sum(map(int, row[1:])) == count
@@ -187,7 +197,7 @@ def test_show_counts_events_and_names_lost_equilibria(result, tmp_path):
     row = next(line for line in lines if line.strip().startswith("0.75"))
     assert row.split()[:4] == ["0.75", "0.8", "jump", "0.5"] and "disk 3" in row
     result.save(tmp_path / "result.nc")
-    plain = call("show", "result.nc", folder=tmp_path).stdout
+    plain = shown(tmp_path / "result.nc")
     assert "taken together" not in plain and "lost" not in plain
 
 
@@ -335,9 +345,8 @@ def test_a_result_of_a_version_with_other_keys_is_read_shown_and_continued(tmp_p
     assert [event.load_factor for event in before.events] == starts and before.events.counts() == {"jump": 3}
     assert before.events.states == (1, 2, 2)
     assert before.certificate.stable is True
-    shown = call("show", BEFORE, folder=tmp_path)
-    assert shown.returncode == 0 and "equilibria lost on the way" in shown.stdout and "no equilibrium" in shown.stdout
-    assert call("continue", BEFORE, "--to", 1.01, "-o", "more.nc", folder=tmp_path).returncode == 0
+    assert "equilibria lost on the way" in shown(BEFORE) and "no equilibrium" in shown(BEFORE)
+    before.continued([1.01]).save(tmp_path / "more.nc")
     more = gr.open_result(tmp_path / "more.nc")
     assert more.load_factors == (0.1, 1.0, 1.01) and repr(list(more.events)[:3]) == repr(list(before.events))
     with xr.open_dataset(tmp_path / "more.nc") as plain:

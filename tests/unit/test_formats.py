@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import call
 
 import granular_response as gr
 from granular_response.machine import memory
@@ -327,17 +326,6 @@ def test_a_file_without_a_box_needs_a_width(tmp_path):
         Scene.from_dict({"packing": {"kind": "file", "path": "a", "format": "vtk"}})
 
 
-def test_on_the_command_line(result, tmp_path):
-    """What a program of others hands over is solved, and handed back."""
-    (tmp_path / "a.data").write_text(DATA)
-    packing = "{kind: file, path: a.data, width: 10, origin: [10, -5]}"
-    (tmp_path / "scene.yaml").write_text(f"packing: {packing}\ncontact: {{friction: 0.2}}\nloads: []\n")
-    for arguments in (["run", "scene.yaml", "-o", "a.nc"], ["export", "a.nc", "-o", "b.lmp"]):
-        finished = call(*arguments, folder=tmp_path)
-        assert finished.returncode == 0, finished.stderr
-    assert "3 atoms" in (tmp_path / "b.lmp").read_text()
-
-
 #: Packings of other programs, with what is right in README.md beside them.
 PACKINGS = Path(__file__).parents[1] / "data" / "packings"
 
@@ -425,12 +413,10 @@ def test_masses_come_back_or_it_is_said(tmp_path, name):
     np.testing.assert_allclose(again.normal_force[again.second == 0], 1.0, atol=1e-4)
 
 
-def test_springs_that_an_export_leaves_are_named(result, periodic, tmp_path):
+def test_springs_that_an_export_leaves_are_named(result, tmp_path):
     said = r"a\.csv: the format has no springs of friction: read again, contacts begin anew"
     with pytest.warns(UserWarning, match=said):
         export(result, tmp_path / "a.csv")
-    finished = call("export", result, "-o", "a.csv", folder=tmp_path)
-    assert (finished.returncode, finished.stderr.count("\n")) == (0, 1) and "no springs of friction" in finished.stderr
 
 
 @pytest.mark.parametrize("header", ["X,Z,Radius,Mass", "x (mm), z [mm], radius(mm), MASS [g]", " x,z,radius,mass"])
@@ -575,11 +561,6 @@ def test_devices_and_pipes_are_not_read(tmp_path, name):
     for kind in ("zero", "pipe"):
         with pytest.raises(SceneError, match=r": is not a regular file$"):
             build(tmp_path / f"{kind}_{name}", width=3.0)
-        for arguments in (["run"], ["show"]):
-            output = ["-o", "a.nc"] if arguments == ["run"] else []
-            finished = call(*arguments, f"{kind}_{name}", *output, folder=tmp_path)
-            assert finished.returncode == 2 and finished.stderr.count("\n") == 1
-            assert finished.stderr.endswith(": cannot be read: is not a regular file\n")
 
 
 def test_gsd_takes_from_the_first_frame_what_the_last_one_leaves_out(tmp_path):

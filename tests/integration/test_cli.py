@@ -11,6 +11,7 @@ import pty
 import re
 import resource
 import select
+import shutil
 import signal
 import subprocess
 import sys
@@ -284,6 +285,51 @@ def test_a_failed_run_keeps_the_old_result(tmp_path):
     assert_one_line_error(call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path), "time_step")
     assert (tmp_path / "result.nc").read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["result.nc", "scene.yaml"]
+
+
+def test_disks_of_another_program_are_solved_and_handed_back(tmp_path):
+    shutil.copy(Path(__file__).parents[1] / "data" / "packings" / "shrink_wrapped.dump", tmp_path / "a.dump")
+    packing = "{kind: file, path: a.dump, width: 6, origin: [0, 0]}"
+    (tmp_path / "scene.yaml").write_text(f"packing: {packing}\ncontact: {{friction: 0.2}}\nloads: []\n")
+    assert call("run", "scene.yaml", "-o", "a.nc", folder=tmp_path).returncode == 0
+    command = ["export", "a.nc", "-o"]
+    done = call(*command, "sub/b.lmp", folder=tmp_path)
+    assert (done.returncode, done.stdout.strip(), done.stderr.count("\n")) == (0, "sub/b.lmp", 1)
+    assert "no springs of friction" in done.stderr and "5 atoms" in (tmp_path / "sub" / "b.lmp").read_text()
+    assert call(*command, "rest.xyz", "--state", 0, folder=tmp_path).returncode == 0
+    assert (tmp_path / "rest.xyz").read_text().count("load_factor=0.0") == 1
+    assert_one_line_error(call(*command, "result.abc", folder=tmp_path), "format '.abc' is unknown")
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.data", "a.dump", "a.txt", "a.gsd"])
+def test_devices_and_pipes_are_not_read(tmp_path, name):
+    """A device has no end, and a pipe nobody writes to waits for ever."""
+    (tmp_path / f"zero_{name}").symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / f"pipe_{name}")
+    for kind in ("zero", "pipe"):
+        for arguments in (["run", "-o", "a.nc"], ["show"]):
+            finished = call(*arguments, f"{kind}_{name}", folder=tmp_path)
+            assert_one_line_error(finished, ": cannot be read: is not a regular file\n")
+
+
+def test_a_state_that_moves_is_said_and_fails_unless_allowed(tmp_path):
+    moving = SCENE + "protocol: {method: dynamics, static_finish: false, maximum_steps: 1000, time_step: 5.0e-4}\n"
+    (tmp_path / "scene.yaml").write_text(moving)
+    run = ["run", "scene.yaml", "-o", "result.nc"]
+    said = (
+        "granular-response: result.nc: not at rest within protocol.maximum_steps = 1000: gravity, load factor 0.025\n"
+    )
+    for options, code in (([], 1), (["--allow-unsettled"], 0)):
+        finished = call(*run, *options, folder=tmp_path)
+        assert (finished.returncode, finished.stderr) == (code, said)
+        assert store.read_attributes(tmp_path / "result.nc")["settled"] == "no"  # nothing is lost
+
+
+def test_a_setting_without_effect_is_said(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE + "protocol: {friction_law: literal}\n")
+    finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
+    line = "protocol.friction_law = 'literal' has no effect (no friction)"
+    assert (finished.returncode, finished.stderr) == (0, f"granular-response: result.nc: {line}\n")
 
 
 LABEL = {"long_name": "square", "units": "1"}
