@@ -451,11 +451,14 @@ def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, c
         paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     said = "granular-response-paper: interrupted; 2 finished tasks are kept and are not run again\n"
     assert capsys.readouterr().err == said
+    assert len(list(Path("data/.squares.checkpoint").rglob("*.kept"))) == 2
+    assert not Path("data/squares.nc").exists() and current() == Resources()
     monkeypatch.setattr(simulation, "simulate", whole)
     paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     again = capsys.readouterr()
     kept = "2 finished tasks are kept; those of this code and these parameters are not run again"
     assert again.err == f"granular-response-paper: {group}: {kept}\n"
+    assert not Path("data/.squares.checkpoint").exists()
     paper.simulate(group, workers=1, params=simulation.PARAMETERS)
     assert capsys.readouterr().err == ""
 
@@ -479,22 +482,6 @@ def test_an_error_of_a_load_names_the_file(tmp_path):
 def test_an_error_at_once_leaves_no_folder(group):
     with pytest.raises(SweepError, match="workers = 0"):
         simulation.simulate(group, workers=0)
-    assert not Path("data/.squares.checkpoint").exists()
-
-
-def test_finished_tasks_outlive_an_interruption(group, monkeypatch):
-    def interrupt(done, total, what=""):
-        if done == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        simulation.simulate(group, workers=1, progress=interrupt)
-    assert len(list(Path("data/.squares.checkpoint").rglob("*.kept"))) == 2
-    assert not Path("data/squares.nc").exists()
-    assert current() == Resources()
-    calls = []
-    simulation.simulate(group, workers=1, progress=lambda done, total, what="": calls.append(done))
-    assert calls == [2, 3, 4]
     assert not Path("data/.squares.checkpoint").exists()
 
 

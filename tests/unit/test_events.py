@@ -16,7 +16,7 @@ import granular_response as gr
 from granular_response.observe.events import EventNotBracketed
 from granular_response.scene.protocol import Protocol, without_replaced
 from granular_response.solve import solve_scene
-from granular_response.state import CONTACT_EVENTS, OPEN, SLIDING, STICKING
+from granular_response.state import CONTACT_EVENTS
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
 from granular_response.store.export import export
@@ -56,31 +56,6 @@ def shown(path) -> str:
     for part in summarise(path):
         console.print(part)
     return console.file.getvalue()
-
-
-def test_events_lead_from_the_contacts_of_one_state_to_those_of_the_next(result):
-    """Replayed on the statuses of one they give those of the next; what is left out or doubled would not.
-
-    A contact that closes may slide or stick.
-    """
-    states = (result.rest, *result.loaded)
-    after = {"opens": {OPEN}, "closes": {STICKING, SLIDING}, "sticks": {STICKING}, "slides": {SLIDING}}
-    changed = 0
-    for before, now in pairwise(states):
-        for at_wall, kind in ((False, "pairs"), (True, "walls")):
-            contacts, later = getattr(before, kind), getattr(now, kind)
-            keys = list(zip(contacts.first.tolist(), contacts.second.tolist(), strict=True))
-            status = {key: {old} for key, old in zip(keys, contacts.status.tolist(), strict=True)}
-            for event in now.reached.events:
-                if event.at_wall == at_wall:
-                    assert not status[event.first, event.second] <= after[event.kind]
-                    status[event.first, event.second] = after[event.kind]
-                    changed += 1
-            for first, second, found in zip(later.first, later.second, later.status, strict=True):
-                assert found in status[first, second]
-    assert changed == len(result.events)
-    rising = [event.load_factor for event in result.events[: result.events.states.count(1)]]
-    assert rising == sorted(rising) and rising[0] >= 0.0 and rising[-1] <= 0.5
 
 
 def test_a_result_has_its_events_in_order_and_by_kind(result):
