@@ -5,7 +5,6 @@ import pytest
 import xarray as xr
 
 import granular_response as gr
-from granular_response.scene import SceneError
 
 SMALL = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 21}, "loads": [{"disk": 93, "force": [0, -4]}]}
 
@@ -70,12 +69,6 @@ def test_mistakes_of_a_stress_are_one_line(result, arguments, error, said):
 def test_the_state_of_an_influence_is_an_integer(result):
     with pytest.raises(TypeError, match=r"^state = 1.0: must be an integer"):
         result.influence(state=1.0)
-
-
-@pytest.mark.parametrize("factors", [2, "12", True, [[1, 2]]])
-def test_further_load_factors_that_are_none_are_one_line(result, factors):
-    with pytest.raises(SceneError, match=r"^load factors.*must be .*one or more numbers$"):
-        result.continued(factors)
 
 
 def test_a_stored_result_is_the_result(result, tmp_path):

@@ -52,27 +52,3 @@ def test_figures(datasets) -> None:
     assert labels == ["$k_1^n$", "$k_1^t$", "$k_2^n$", "$k_2^n$", "$k_2^t$", "$k_2^t$"]
     for figure in drawn.values():
         assert style.render(figure) == style.render(figure)
-
-
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [
-        ("stiffness_ratio", -0.1),
-        ("ray_angle", 90.0),
-        ("ray_angle", "steep"),
-        ("diffusion_length", 0.0),
-        ("depths", []),
-        ("depths", [1.0, -2.0]),
-        ("depths", "deep"),
-        ("half_width", True),
-        ("points", 120),
-    ],
-)
-def test_bad_parameter_is_named(key: str, value) -> None:
-    with pytest.raises(ValueError, match=f"{key} = .*: must be"):
-        theory.Parameters(**{**PARAMETERS, key: value})
-
-
-def test_missing_parameter_is_named() -> None:
-    with pytest.raises(ValueError, match="ray_angle: missing, must be given"):
-        theory.Parameters(**{key: value for key, value in PARAMETERS.items() if key != "ray_angle"})

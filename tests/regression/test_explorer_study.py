@@ -5,7 +5,6 @@ import pytest
 import reduced
 
 from granular_response.observe.floor import smoothed_response
-from granular_response.sweeps.resources import using
 from granular_response_paper.groups.explorer import simulate as study
 from granular_response_paper.groups.explorer.numbers import numbers
 from granular_response_paper.groups.explorer.parameters import Parameters
@@ -15,8 +14,7 @@ SECTION = reduced.parameters("explorer")
 
 @pytest.fixture(scope="module")
 def slabs():
-    with using(workers=1):
-        found = study.simulate(Parameters.model_validate(SECTION))
+    found = study.simulate(Parameters.model_validate(SECTION))
     return [found["slab_0"], found["slab_1"]]
 
 
