@@ -2,22 +2,10 @@
 
 import numpy as np
 import pytest
-import reduced
 
 from granular_response.plot import style
-from granular_response.store import files as store
 from granular_response_paper.groups.stiffness_ratio_crossover import spring_model
 from granular_response_paper.groups.theory import draw as figures
-from granular_response_paper.groups.theory import simulate as theory
-
-PARAMETERS = reduced.parameters("theory")
-
-
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("theory") / "theory.nc"
-    store.write(path, theory.simulate(theory.Parameters(**PARAMETERS)))
-    return store.read(path)
 
 
 def test_predictions_are_symmetric_and_carry_the_force(datasets) -> None:
