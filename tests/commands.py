@@ -6,18 +6,13 @@ What a process does before it has imported anything, and what it must not import
 
 from __future__ import annotations
 
-import atexit
 import importlib
+import multiprocessing
 import os
-import pickle
-import pkgutil
-import socket
 import subprocess
 import sys
 import tempfile
-import traceback
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 
 LIBRARY, PAPER = "granular_response", "granular_response_paper"
@@ -43,72 +38,26 @@ def process(
 def call(
     *arguments: object, folder: str | Path | None = None, package: str | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """The same in a forked process."""
+    """The same in a process forked from one that has imported everything (``conftest.py``)."""
     argv = [package or package_of(*arguments), *map(str, arguments)]
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        server = _server()
-        request = pickle.dumps((argv, str(folder or Path.cwd()), dict(os.environ)))
-        socket.send_fds(server, [request], [out.fileno(), err.fileno()])
-        code = int(server.recv(64))
-        for stream in (out, err):
-            stream.seek(0)
-        return subprocess.CompletedProcess(argv, code, out.read().decode(), err.read().decode())
+    with tempfile.TemporaryDirectory() as place:
+        streams = [Path(place, name) for name in ("out", "err")]
+        asked = (argv, str(folder or Path.cwd()), dict(os.environ), *map(str, streams))
+        child = multiprocessing.get_context("forkserver").Process(target=_run, args=asked)
+        child.start()
+        child.join(LONGEST)
+        if child.is_alive():
+            child.kill()
+        return subprocess.CompletedProcess(argv, child.exitcode, *(one.read_text(encoding="utf-8") for one in streams))
 
 
-@cache
-def _server() -> socket.socket:
-    """The connection to the process that forks; it ends when this one does."""
-    ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with its:
-        process = subprocess.Popen([sys.executable, __file__, str(its.fileno())], pass_fds=[its.fileno()])
-    ours.settimeout(LONGEST)
-    atexit.register(process.wait)
-    atexit.register(ours.close)
-    return ours
-
-
-def _serve(connection: socket.socket) -> None:
-    for name in (LIBRARY, PAPER):
-        package = importlib.import_module(name)
-        for module in pkgutil.walk_packages(package.__path__, f"{name}."):
-            if not module.name.endswith("__main__"):
-                importlib.import_module(module.name)
-    while True:
-        request, descriptors, _, _ = socket.recv_fds(connection, 1 << 20, 2)
-        if not request:
-            return
-        child = os.fork()
-        if child == 0:
-            connection.close()
-            os._exit(_run(*pickle.loads(request), descriptors))
-        for descriptor in descriptors:
-            os.close(descriptor)
-        connection.send(str(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])).encode())
-
-
-def _run(argv: Sequence[str], folder: str, environment: dict[str, str], descriptors: Sequence[int]) -> int:
-    """The exit code of the command, as an interpreter would end with."""
+def _run(argv: Sequence[str], folder: str, environment: dict[str, str], out: str, err: str) -> None:
+    """The command, in this process; its end is that of the process."""
+    for descriptor, name in enumerate((os.devnull, out, err)):
+        mode = os.O_RDONLY if descriptor == 0 else os.O_WRONLY | os.O_CREAT
+        os.dup2(os.open(name, mode), descriptor)
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
-    with open(os.devnull) as nothing:
-        os.dup2(nothing.fileno(), 0)
-    for ours, theirs in zip((1, 2), descriptors, strict=True):
-        os.dup2(theirs, ours)
-        os.close(theirs)
     sys.argv = list(argv)
-    try:
-        sys.modules[{LIBRARY: f"{LIBRARY}.cli.main", PAPER: f"{PAPER}.cli"}[argv[0]]].main()
-        code = 0
-    except SystemExit as end:
-        code = end.code if isinstance(end.code, int) else int(end.code is not None)
-    except BaseException:
-        traceback.print_exc()
-        code = 1
-    sys.stdout.flush()
-    return code
-
-
-if __name__ == "__main__":
-    os.environ.setdefault("MPLBACKEND", "Agg")
-    _serve(socket.socket(fileno=int(sys.argv[1])))
+    importlib.import_module({LIBRARY: f"{LIBRARY}.cli.main", PAPER: f"{PAPER}.cli"}[argv[0]]).main()

@@ -9,7 +9,6 @@ import reduced
 
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
-from granular_response.state import Reached
 from granular_response_paper.groups.stability import draw as figures
 from granular_response_paper.groups.stability import simulate as stability
 from granular_response_paper.pipeline import simulation
@@ -197,26 +196,17 @@ def test_scenes_are_drawn_from_all_that_a_scene_may_say():
     assert min(step for step in steps if isinstance(step, float)) < 1e-6
 
 
-@pytest.mark.parametrize(
-    ("tamper", "said"),
-    [
-        (lambda state: replace(state, position=state.position * (1.0 - 1e-7)), "force_residual is"),
-        (lambda state: replace(state, reached=Reached()), "a state without a certificate"),
-        (lambda state: replace(state, load_factor=2.0), "force_residual is"),
-    ],
-    ids=["moved", "no certificate", "another load"],
-)
-def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch, tamper, said):
+def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch):
     solve = random_scenes.solve_scene
 
     def wrong(scene, **keywords):
         solution = solve(scene, **keywords)
-        return replace(solution, loaded=[tamper(state) for state in solution.loaded])
+        moved = [replace(state, position=state.position * (1.0 - 1e-7)) for state in solution.loaded]
+        return replace(solution, loaded=moved)
 
     monkeypatch.setattr(random_scenes, "solve_scene", wrong)
     trial = random_scenes.attempt(DESCRIPTION, str(tmp_path))
-    assert trial.outcome == "wrong"
-    assert said in trial.message
+    assert trial.outcome == "wrong" and "force_residual is" in trial.message
 
 
 @pytest.mark.parametrize(
