@@ -17,11 +17,18 @@ PACKAGE = SOURCE / "granular_response"
 PAPER = SOURCE / "granular_response_paper"
 
 
+@functools.cache
+def imports(path: Path) -> list[ast.Import | ast.ImportFrom]:
+    """Import statements of a file, wherever in it."""
+    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    return [node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))]
+
+
 def outside_imports(part: Path) -> dict[str, str]:
     """Packages that neither Python nor this project brings, each with a place where it is imported."""
     found = {}
     for path in sorted(part.rglob("*.py")) if part.is_dir() else [part]:
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in imports(path):
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]
             elif isinstance(node, ast.ImportFrom) and node.level == 0:
@@ -36,7 +43,7 @@ def outside_imports(part: Path) -> dict[str, str]:
 
 def test_the_library_imports_its_own_by_relative_names():
     for path in sorted(PACKAGE.rglob("*.py")):
-        nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
+        nodes = [node for node in imports(path) if isinstance(node, ast.ImportFrom)]
         absolute = [str(node.module) for node in nodes if node.level == 0]
         assert not [name for name in absolute if name.startswith("granular_response")], path
 
@@ -66,7 +73,7 @@ def inside_imports(part: Path) -> set[str]:
     found: set[str] = set()
     for path in sorted(part.rglob("*.py")) if part.is_dir() else [part]:
         depth = len(path.relative_to(ROOT / "src").parts) - 1
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in imports(path):
             if not isinstance(node, ast.ImportFrom):
                 continue
             module = (node.module or "").split(".") if node.module else []
@@ -105,7 +112,7 @@ def test_every_import_is_a_declared_dependency():
 @functools.cache
 def names_used(path: Path) -> set[str]:
     """Dotted names in a file, such as os.environ.update."""
-    nodes = list(ast.walk(ast.parse(path.read_text())))
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
     return {ast.unparse(node) for node in nodes if isinstance(node, (ast.Attribute, ast.Subscript))} | {
         f"{ast.unparse(target.value)} is set"
         for node in nodes
