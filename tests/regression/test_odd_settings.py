@@ -1,11 +1,13 @@
 """Every stage of every figure group with parameters that leave little to be measured: results, or one line."""
 
 import json
+from functools import partial
 
 import odd_settings
 import pytest
 import reduced
 
+from granular_response.plot import style
 from granular_response.scene import SceneError, text
 from granular_response.solve import SOLVE_ERRORS
 from granular_response.sweeps.errors import SweepError
@@ -16,6 +18,13 @@ from granular_response_paper.pipeline import GroupError, drawing, measuring, sim
 LINES = (GroupError, SceneError, *SOLVE_ERRORS)
 #: The group that measures what another pipeline has simulated.
 MEASURES_THE_SURVEY = "phase_diagram"
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    """All that is asked of a picture here is that it can be drawn."""
+    monkeypatch.setattr(style, "render", partial(style.render, dpi=30))
+    monkeypatch.setattr(style, "save", partial(style.save, formats=["png"]))
 
 
 def test_every_group_has_odd_settings():
