@@ -34,8 +34,13 @@ AT_ONCE = {"friction": 0.2, "forces": [], "ramp_time": 0.0, "time_step": 0.0005}
 FEW_CASES = {
     "cases": [{"polydispersities": [0.01], "friction": 0.2, "forces": [1.0]}],
     "individual": {"polydispersity": 0.01, "frictions": [0.2], "force": 1.0, "realizations": 1, "width": 3.0},
-    "linear_range": {"polydispersities": [0.01], "frictions": [0.2], "forces": [0.1, 0.5], "width": 3.0,
-                     "tolerance": 0.05},
+    "linear_range": {
+        "polydispersities": [0.01],
+        "frictions": [0.2],
+        "forces": [0.1, 0.5],
+        "width": 3.0,
+        "tolerance": 0.05,
+    },
     "forces_picture": {"polydispersity": 0.01, "friction": 0.2, "force": 1.0, "realization": 0},
 }
 
