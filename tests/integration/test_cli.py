@@ -193,7 +193,6 @@ def test_datasets_of_another_group_are_not_drawn(tmp_path):
             ("stress_spacing:", "stress_spacng:"),
             "pile_dip.stress_spacng = 0.25: unknown key, did you mean",
         ),
-        (("dip_height: 4.0", "dip_height: high"), "pile_dip.dip_height = 'high': must be a number greater than 0"),
         (("friction: 0.94", "friction: -0.94"), "pile_dip.scene.contact.friction = -0.94: must be a number from 0 to"),
         (("layers: 11", "kind: slab"), "pile_dip.scene.packing.kind = 'slab': must be pile"),
     ],

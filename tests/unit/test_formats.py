@@ -426,19 +426,32 @@ def test_names_of_columns_in_any_case_and_with_units(tmp_path, header):
     np.testing.assert_allclose(packing.mass, [0.5, 1.5])
 
 
+TWO_DISKS = "1,1,1,1\n4,1,2,3\n"
+ONE_DISK = "x,z,radius,mass\n1,1,1,1\n"
+
+
 @pytest.mark.parametrize(
-    ("header", "said"),
+    ("text", "said"),
     [
-        ("x,z,radius,weight", "column weight: unknown, did you mean mass? (mass or density, or neither)"),
-        ("x,z,radius,masses", "column masses: unknown, did you mean mass? (mass or density, or neither)"),
-        ("x,z,radius,Rho", "column rho: unknown, did you mean density? (mass or density, or neither)"),
-        ("x [mm],z [mm],radius [cm],mass", "columns x, z and radius: must have the same unit of length"),
-        ("X,x,z,radius", "column x is given 2 times, header must name x, z and radius"),
+        (f"x,z,radius,weight\n{TWO_DISKS}", "column weight: unknown, did you mean mass? (mass or density, or neither)"),
+        (f"x,z,radius,masses\n{TWO_DISKS}", "column masses: unknown, did you mean mass? (mass or density, or neither)"),
+        (f"x,z,radius,Rho\n{TWO_DISKS}", "column rho: unknown, did you mean density? (mass or density, or neither)"),
+        (f"x [mm],z [mm],radius [cm],mass\n{TWO_DISKS}", "columns x, z and radius: must have the same unit of length"),
+        (f"X,x,z,radius\n{TWO_DISKS}", "column x is given 2 times, header must name x, z and radius"),
+        (f"{ONE_DISK}1e300,1,1,1\n", "x = 1e+300: must be between the side walls 0 and 9"),
+        (f"{ONE_DISK}4,1e300,1,1\n", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
+        (f"{ONE_DISK}4,1,1,1e300\n", "line 2: mass = 1.0: must be at least 1e+288, 1e-12 of the largest"),
+        (f"{ONE_DISK}4,1,1e300,1\n", "line 3: radius = 1e+300: must be at most 4.5, half the width of the box"),
+        (f"{ONE_DISK}4,1,-1e300,1\n", "line 3: radius = -1e+300: must be greater than 0"),
+        (f"{ONE_DISK}4,1,1,1e-300\n", "line 3: mass = 1e-300: must be at least 1e-12, 1e-12 of the largest"),
+        (f"{ONE_DISK}4,1,1,1e-13\n", "line 3: mass = 1e-13: must be at least 1e-12, 1e-12 of the largest"),
+        (f"{ONE_DISK}4,1,1e-7,1\n", "line 3: radius = 1e-07: must be at least 1e-06, a millionth of the largest"),
     ],
 )
-def test_columns_that_look_like_masses_are_not_passed_over(tmp_path, header, said):
+def test_what_others_swallow_is_refused(tmp_path, text, said):
+    """Columns that look like masses, and values that leave no digits for the others."""
     with pytest.raises(SceneError) as caught:
-        build(tmp_path / "a.csv", f"{header}\n1,1,1,1\n4,1,2,3\n", width=9.0)
+        build(tmp_path / "a.csv", text, width=9.0)
     assert str(caught.value).endswith(said)
 
 
@@ -512,25 +525,6 @@ def test_a_bond_to_nowhere_and_half_a_log_are_one_line(tmp_path):
     del whole["box_width"]
     with pytest.raises(SceneError, match="must be given, and origin"):
         build(written(**whole))
-
-
-@pytest.mark.parametrize(
-    ("row", "said"),
-    [
-        ("1e300,1,1,1", "x = 1e+300: must be between the side walls 0 and 9"),
-        ("4,1e300,1,1", "z = 1e+300: must be at most 1e+09, 1e9 mean radii"),
-        ("4,1,1,1e300", "line 2: mass = 1.0: must be at least 1e+288, 1e-12 of the largest"),
-        ("4,1,1e300,1", "line 3: radius = 1e+300: must be at most 4.5, half the width of the box"),
-        ("4,1,-1e300,1", "line 3: radius = -1e+300: must be greater than 0"),
-        ("4,1,1,1e-300", "line 3: mass = 1e-300: must be at least 1e-12, 1e-12 of the largest"),
-        ("4,1,1,1e-13", "line 3: mass = 1e-13: must be at least 1e-12, 1e-12 of the largest"),
-        ("4,1,1e-7,1", "line 3: radius = 1e-07: must be at least 1e-06, a millionth of the largest"),
-    ],
-)
-def test_values_that_others_swallow_are_refused(tmp_path, row, said):
-    with pytest.raises(SceneError) as caught:
-        build(tmp_path / "a.csv", f"x,z,radius,mass\n1,1,1,1\n{row}\n", width=9.0)
-    assert str(caught.value).endswith(said)
 
 
 def test_a_start_deep_inside_others_is_asked_about(tmp_path):
