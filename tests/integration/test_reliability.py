@@ -52,40 +52,40 @@ def processes():
     return multiprocessing.get_context("forkserver")  # starts in milliseconds, with everything imported
 
 
-def killed_at_random(processes, folder: Path, arguments: list[str], output: Path, kills: int) -> list[int]:
-    """Kill the command ``kills`` times; returns at which of them a file was there. Each file found is whole."""
+def killed_at_random(processes, folder: Path, arguments: list[str], output: Path, kills: int) -> None:
+    """Kill the command ``kills`` times. Each file found is whole, and the next whole run tidies up."""
     generator = random.Random(1)
-    times = []
-    for _ in range(2):  # the first run also reads compiled code
-        started = time.perf_counter()
+
+    def started():
         process = processes.Process(target=command, args=(str(folder), arguments))
         process.start()
+        return process
+
+    def whole_run() -> float:
+        begun, process = time.perf_counter(), started()
         process.join()
         assert process.exitcode == 0
-        times.append(time.perf_counter() - started)
+        return time.perf_counter() - begun
+
+    whole_run()  # it also reads compiled code
+    longest = 1.1 * whole_run()
     output.unlink()
-    found, hit = [], 0
-    for kill in range(kills):
-        process = processes.Process(target=command, args=(str(folder), arguments))
-        process.start()
-        time.sleep(generator.uniform(0.0, 1.1 * times[-1]))
+    hit = 0
+    for _ in range(kills):
+        process = started()
+        time.sleep(generator.uniform(0.0, longest))
         if process.is_alive():
             os.kill(process.pid, signal.SIGKILL)
             hit += 1
         process.join()
         if output.exists():
             assert store.read(output)
-            found.append(kill)
             if generator.random() < 0.5:
                 output.unlink()
     assert hit >= kills // 3
-    process = processes.Process(target=command, args=(str(folder), arguments))
-    process.start()
-    process.join()
-    assert process.exitcode == 0
+    whole_run()
     assert store.read(output)
     assert not list(output.parent.glob(".*")), "what killed runs left is gone after the next whole one"
-    return found
 
 
 def test_killed_runs_leave_whole_results_or_none(tmp_path, processes):
