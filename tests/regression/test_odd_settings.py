@@ -22,8 +22,14 @@ MEASURES_THE_SURVEY = "phase_diagram"
 
 @pytest.fixture(autouse=True)
 def coarse_pictures(monkeypatch):
-    """All that is asked of a picture here is that it can be drawn."""
-    monkeypatch.setattr(style, "render", partial(style.render, dpi=30))
+    """All that is asked of a picture here is that it can be drawn, wherever its panels are."""
+    render = style.render
+
+    def coarse(drawn, file_format):
+        drawn.set_layout_engine("none")  # to lay out takes as long as to draw
+        return render(drawn, file_format, dpi=30)
+
+    monkeypatch.setattr(style, "render", coarse)
     monkeypatch.setattr(style, "save", partial(style.save, formats=["png"]))
 
 
