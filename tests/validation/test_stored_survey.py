@@ -85,7 +85,6 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
         ("moduli", (0.1, 1.0, 16, 6)),
         ("moduli", (0.25, 1.0, 16, 9)),
         ("crossover_scaling", (21, 63, 0.0)),
-        ("crossover_scaling", (19, 57, 0.1)),
         ("hysteresis", (0.1, 0.0, 6)),
     ],
 )
