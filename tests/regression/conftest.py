@@ -1,15 +1,11 @@
-"""The small problems of the unit tests serve here too; studies run in this process unless a test says otherwise."""
+"""Studies run in this process, and are those of the notebooks."""
 
-import sys
 from pathlib import Path
 
 import pytest
+import reduced
 
 from granular_response.sweeps.resources import using
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
-
-import reduced
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.scene import SceneError
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.crossover_scaling import draw, simulate
@@ -166,24 +165,3 @@ def test_claims_are_judged(datasets):
         "reproduced",
         "reproduced",
     ]
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"layers": [6, 8]}, r"layers = \[6, 8\]: must be odd"),
-        ({"layers": [7]}, "must have several entries in one of layers"),
-        ({"confinement": [0.1, 0.2]}, "must have several entries in one of layers"),
-        ({"confined": "loose"}, "confined"),
-    ],
-)
-def test_a_series_that_cannot_be_compared_is_refused(change, message):
-    one = {"name": "one", "friction": 0.0, "layers": [5, 7]} | change
-    with pytest.raises(SceneError, match=message):
-        Parameters(**PARAMETERS | {"series": [one]})
-
-
-def test_series_have_different_names():
-    one = {"name": "one", "friction": 0.0, "layers": [5, 7]}
-    with pytest.raises(SceneError, match="must have different names"):
-        Parameters(**PARAMETERS | {"series": [one, one]})

@@ -2,13 +2,10 @@
 
 import numpy as np
 import pytest
-import reduced
 
 from granular_response.plot import style
 from granular_response_paper.groups.friction_fields import draw as figures
-from granular_response_paper.groups.friction_fields import simulate as study
 
-PARAMETERS = reduced.parameters("friction_fields")
 SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")
 
 
@@ -63,10 +60,3 @@ def test_figures(datasets) -> None:
     np.testing.assert_array_equal(lines[0].get_ydata(), datasets["profiles"]["magnitude"].values[1, 0])
     for figure in drawn.values():
         assert style.render(figure)
-
-
-def test_bad_parameters_are_named() -> None:
-    with pytest.raises(ValueError, match=r"profiles\.frictions = \[0\.5\]"):
-        study.Parameters(**{**PARAMETERS, "profiles": {**PARAMETERS["profiles"], "frictions": [0.5]}})
-    with pytest.raises(ValueError, match="stress_width = 0: must be a number greater than 0"):
-        study.Parameters(**{**PARAMETERS, "stress_width": 0})

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.scene import SceneError
-from granular_response.solve import Problem, loaded_states, minimise
+from granular_response.solve import Problem, loaded_states
 from granular_response.solve import solution as solvers
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
@@ -81,15 +80,6 @@ def test_sliding_stops_where_friction_is_high():
     assert books.slid == pytest.approx(0.0, abs=1e-12) and abs(books.work) < 1e-12
 
 
-def test_without_friction_the_path_ends_in_the_minimum_of_the_energy():
-    parameters = Parameters.model_validate(PARAMETERS)
-    problem = Problem.from_scene(parameters.of(parameters.cases[SMOOTH], 0))
-    rest = solvers.rest_state(problem)
-    problem = problem.with_loads(rest.position)
-    back = loaded_states(problem, rest, [1.0, 2.0, 1.0])[1][-1]
-    assert np.abs(back.position - minimise(problem, rest, load_factor=1.0).position).max() < 1e-9
-
-
 def test_the_reversible_range_is_where_a_loop_begins_to_leave_something(datasets):
     events, loops = datasets["events"], datasets["loops"]
     for case in (ROUGH, DISORDERED):
@@ -134,9 +124,3 @@ def test_the_claims_are_measured(datasets):
 
 def test_loads_of_all_ways_are_the_same():
     assert simulate.grid([1.0, 4.0], 2) == [0.0, 0.5, 1.0, 2.5, 4.0]
-
-
-@pytest.mark.parametrize(("key", "value"), [("left", 0.0), ("tolerance", 2.0), ("cases", [])])
-def test_wrong_parameters_are_named(key, value):
-    with pytest.raises(SceneError, match=key):
-        Parameters(**PARAMETERS | {key: value})

@@ -2,17 +2,12 @@
 
 import numpy as np
 import pytest
-import reduced
 import xarray as xr
 
-from granular_response.scene import SceneError
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.influence import draw, simulate
 from granular_response_paper.groups.influence.claims import CLAIMS
-from granular_response_paper.groups.influence.parameters import Parameters
-
-PARAMETERS = reduced.parameters("influence")
 
 
 def test_values_are_the_stored_ones(datasets, num_regression):
@@ -66,8 +61,3 @@ def test_the_claim_follows_the_powers(lattice, disordered, verdict):
         }
     )
     assert judge(CLAIMS[0], Data({"influence": {"saint_venant": study}})).verdict == verdict
-
-
-def test_heights_to_fit_are_two_growing_numbers():
-    with pytest.raises(SceneError, match=r"fitted = \[6.0, 1.0\]: must be two growing numbers"):
-        Parameters(**PARAMETERS | {"fitted": [6.0, 1.0]})

@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-import reduced
 
-from granular_response.scene import SceneError
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
@@ -13,9 +11,6 @@ from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.moduli import draw, simulate
 from granular_response_paper.groups.moduli.claims import CLAIMS
-from granular_response_paper.groups.moduli.parameters import Parameters
-
-PARAMETERS = reduced.parameters("moduli")
 
 
 def test_values_are_the_stored_ones(datasets, num_regression):
@@ -106,11 +101,3 @@ def test_figures_have_their_panels_and_claims_are_judged(datasets):
         entry = judge(claim, Data({"moduli": datasets}))
         assert len(entry.finding.readings) == 2  # of the case with friction and the one without
         assert "without friction" in entry.finding.summary
-
-
-def test_parameters_are_checked():
-    case = PARAMETERS["cases"][0]
-    with pytest.raises(SceneError, match=r"realizations = \[4\]: must have a number for each of the layers"):
-        Parameters(**PARAMETERS | {"cases": [case | {"realizations": [4]}]})
-    with pytest.raises(SceneError, match=r"responding = \[7, 8\]: must be odd"):
-        Parameters(**PARAMETERS | {"lattice": PARAMETERS["lattice"] | {"responding": [7, 8]}})

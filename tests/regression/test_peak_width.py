@@ -2,16 +2,12 @@
 
 import numpy as np
 import pytest
-import reduced
 
-from granular_response.scene import SceneError
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.peak_width import draw
 from granular_response_paper.groups.peak_width.claims import CLAIMS
-from granular_response_paper.groups.peak_width.parameters import Parameters
 
-PARAMETERS = reduced.parameters("peak_width")
 SMALL, LARGE, DISORDERED = 0, 1, 2
 
 
@@ -75,16 +71,3 @@ def test_the_claims_follow_the_powers(datasets, name, value, verdict):
         data["interval"] = data["interval"].fillna(0.0) * 0.0 + value + np.array([-0.02, 0.02])
     claim = next(one for one in CLAIMS if one.id == name)
     assert judge(claim, Data({"peak_width": changed})).verdict == verdict
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "message"),
-    [
-        ("cases", [{"polydispersity": 0.1, "friction": 0.2, "layers": [4], "realizations": 2}], "must be at least 3"),
-        ("cases", [{"polydispersity": 0.0, "friction": 0.2, "layers": [6, 4]}], "must be growing numbers"),
-        ("spacing", 0.5, "must be below a tenth of reach"),
-    ],
-)
-def test_parameters_that_mean_nothing_are_refused(key, value, message):
-    with pytest.raises(SceneError, match=message):
-        Parameters(**PARAMETERS | {key: value})

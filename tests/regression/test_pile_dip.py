@@ -1,14 +1,9 @@
 """Fig. 17, from parameters through a file to figures. The pile of the paper is small enough for a test."""
 
 import numpy as np
-import pytest
-import reduced
 
 from granular_response.plot import style
 from granular_response_paper.groups.pile_dip import draw as figures
-from granular_response_paper.groups.pile_dip import simulate as study
-
-PARAMETERS = reduced.parameters("pile_dip")
 
 
 def test_numbers(datasets, num_regression) -> None:
@@ -60,8 +55,3 @@ def test_figures(datasets) -> None:
     np.testing.assert_array_equal(line.get_ydata(), datasets["stress"]["profile_zz"].sel(case="frictional"))
     for figure in drawn.values():
         assert style.render(figure)
-
-
-def test_bad_parameter_is_named() -> None:
-    with pytest.raises(ValueError, match=r"dip_height = -1\.0: must be a number greater than 0"):
-        study.Parameters(**{**PARAMETERS, "dip_height": -1.0})

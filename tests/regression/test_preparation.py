@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.scene import SceneError
 from granular_response_paper.groups.preparation import draw as figures
 from granular_response_paper.groups.preparation import simulate as study
 from granular_response_paper.groups.preparation.numbers import numbers
@@ -75,18 +74,3 @@ def test_the_figure_and_the_numbers_show_what_is_stored(datasets):
     named = numbers(datasets)
     assert named["first_opening_0.2_rough_without friction"] == float(opening["high"][-1])
     assert len(named) == int(np.isfinite(found["high"]).sum())
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"ways": [{"name": "x", "changes": {"contact.friction": 1.0}}]}, "must be one of preparation.gravity"),
-        ({"ways": [*WAYS, WAYS[0]]}, "must have different names"),
-        ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, "must be one of the names in ways"),
-        ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
-        ({"ways": [{"name": "x", "changes": {"contact.damping_ratio": -1.0}}]}, "damping_ratio"),
-    ],
-)
-def test_mistakes_in_the_section_are_named(change, message):
-    with pytest.raises((SceneError, ValueError), match=message):
-        Parameters(**{**PARAMETERS, **change})

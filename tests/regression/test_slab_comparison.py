@@ -1,19 +1,9 @@
 """Small forces on small slabs beside the elastic slab, from parameters through a file to the figure."""
 
 import numpy as np
-import pytest
-import reduced
 
 from granular_response.plot import style
 from granular_response_paper.groups.slab_comparison import draw as figures
-from granular_response_paper.groups.slab_comparison import simulate as study
-
-
-def case(friction, floor, layers, gravity="at-once"):
-    return {"friction": friction, "floor": floor, "gravity": gravity, "disks_per_layer": 6, "layers": layers}
-
-
-PARAMETERS = reduced.parameters("slab_comparison")
 
 
 def test_distances(datasets, num_regression) -> None:
@@ -59,20 +49,3 @@ def test_figure(datasets) -> None:
     np.testing.assert_array_equal(distances.lines[0].get_ydata(), datasets["slabs"]["distance"].values[:3])
     assert [text.get_text() for text in profiles.get_legend().get_texts()][2] == "elastic slab, smooth"
     assert style.render(drawn["fig01b_slab_comparison"])
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"force": 0.0}, r"force = 0\.0: must be a number greater than 0"),
-        ({"cases": []}, r"cases = \[\]"),
-        ({"cases": [{"friction": 0.2}]}, r"cases\[0\]\.floor: missing"),
-        ({"cases": [case(0.0, "rough", [4])]}, "floor = 'rough': must be smooth, or rough with friction above 0"),
-        ({"cases": [case(0.2, "smooth", [4], "never")]}, "gravity = 'never': must be at-once or slow"),
-        ({"cases": [case(0.2, "smooth", [4.5])]}, r"cases\[0\]\.layers\[0\] = 4\.5"),
-        ({"cases": [{**case(0.2, "smooth", [4]), "disks_per_layer": 1}]}, "disks_per_layer = 1"),
-    ],
-)
-def test_bad_parameter_is_named(change, message) -> None:
-    with pytest.raises(ValueError, match=message):
-        study.Parameters(**{**PARAMETERS, **change})

@@ -7,7 +7,6 @@ import reduced
 from granular_response.plot import style
 from granular_response.theory import crossover
 from granular_response_paper.groups.stiffness_ratio_crossover import draw as figures
-from granular_response_paper.groups.stiffness_ratio_crossover import simulate as study
 
 PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 
@@ -55,11 +54,3 @@ def test_figures(datasets) -> None:
     marked = next(line for line in dips.lines if line.get_label() == "simulation")
     np.testing.assert_array_equal(marked.get_ydata(), datasets["response"]["central_dip"])
     assert style.render(drawn["fig10_stiffness_ratio"])
-
-
-@pytest.mark.parametrize(
-    ("key", "value"), [("ratios", [0.3, 0.2]), ("ratios", [-0.1, 0.2]), ("ratios", [0.1]), ("force", 0.0)]
-)
-def test_bad_parameter_is_named(key, value) -> None:
-    with pytest.raises(ValueError, match=f"{key} = .*: must be"):
-        study.Parameters(**{**PARAMETERS, key: value})

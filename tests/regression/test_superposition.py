@@ -109,21 +109,3 @@ def test_figures(datasets) -> None:
     np.testing.assert_array_equal(lines["(Left)+(Right)"], shown.sel(part="left") + shown.sel(part="right"))
     for figure in drawn.values():
         assert style.render(figure)
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "message"),
-    [
-        ("forces", [1.0, 0.5], r"forces = \[1.0, 0.5\]: must be two or more growing numbers above 0"),
-        ("single_forces", [1.0], r"single_forces = \[1.0\]: must be two or more"),
-        ("offsets", [0], r"offsets = \[0\]: must be a list of different whole numbers from 1 on"),
-        ("offsets", [10], "must be places from 1 to 9"),
-        ("offsets", [], "must be a list"),
-        ("realizations", 0, "realizations = 0: must be a whole number, 1 or greater"),
-        ("pair_realizations", 4, "pair_realizations = 4: must be from 1 to realizations = 3"),
-        ("tolerance", 0.0, "tolerance = 0.0: must be a number greater than 0"),
-    ],
-)
-def test_bad_parameters_are_named(key, value, message) -> None:
-    with pytest.raises(ValueError, match=message):
-        study.Parameters(**{**PARAMETERS, key: value})

@@ -1,14 +1,10 @@
 """Fig. 18 on a slab of 5 layers, from parameters through a file to figures."""
 
 import numpy as np
-import pytest
-import reduced
 
 from granular_response.plot import style
 from granular_response_paper.groups.torque import draw as figures
-from granular_response_paper.groups.torque import simulate as study
 
-PARAMETERS = reduced.parameters("torque")
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")
 
 
@@ -51,11 +47,3 @@ def test_figures(datasets) -> None:
     assert arcs == [0, 1, 1]
     for figure in drawn.values():
         assert style.render(figure)
-
-
-@pytest.mark.parametrize(
-    ("key", "value"), [("torques", [1.0, 2.0]), ("torques", []), ("distances", [3.0, 1.0]), ("force", -1.0)]
-)
-def test_bad_parameter_is_named(key, value) -> None:
-    with pytest.raises(ValueError, match=f"{key} = .*: must be"):
-        study.Parameters(**{**PARAMETERS, key: value})

@@ -9,7 +9,6 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from test_layering import PAPER, PARTS, PLACES, outside_imports
 
 from granular_response.cli import scene_reference
 from granular_response.scene import LaboratoryUnits, Scene, SceneError
@@ -34,51 +33,6 @@ def test_every_page_is_on_the_site():
     index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     listed = {line for block in re.findall(r"```{toctree}\n(.*?)```", index, re.DOTALL) for line in block.split()}
     assert {page.stem for page in (ROOT / "docs").glob("*.md")} - {"index"} <= listed
-
-
-def table_of_imports() -> dict[str, set[str]]:
-    """What docs/architecture.md allows each part to import; "any part" means all of them."""
-    rows = re.findall(r"^\| (`.*?) \| .*? \| (.*?) \|$", (ROOT / "docs" / "architecture.md").read_text(), re.MULTILINE)
-    parts = {name: set() for names, _ in rows for name in re.findall(r"`(\w+)/?`", names)}
-    for names, allowed in rows:
-        for name in re.findall(r"`(\w+)/?`", names):
-            parts[name] = set(re.findall(r"\w+", allowed)) | (
-                set(parts) - {PAPER.name} if "any part" in allowed else set()
-            )
-    return parts
-
-
-def inside_imports(part: Path) -> set[str]:
-    """Other parts of the package that a part imports, wherever in its files."""
-    own = {path.stem for path in PARTS}
-    found: set[str] = set()
-    for path in sorted(part.rglob("*.py")) if part.is_dir() else [part]:
-        depth = len(path.relative_to(ROOT / "src").parts) - 1
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if not isinstance(node, ast.ImportFrom):
-                continue
-            module = (node.module or "").split(".") if node.module else []
-            if node.level == 0:
-                if module[0] != "granular_response":
-                    continue
-                module = module[1:]
-            elif node.level < depth or part == PAPER:
-                continue  # within the part
-            found |= {module[0]} if module else {alias.name for alias in node.names}
-    return found & own - {part.stem}
-
-
-def test_every_part_is_in_the_table_of_imports():
-    assert set(table_of_imports()) == {part.stem for part in PLACES}
-    store = next(part for part in PARTS if part.stem == "store")
-    assert {"observe", "solve"} <= inside_imports(store)
-
-
-@pytest.mark.parametrize("part", PLACES, ids=lambda part: part.stem)
-def test_the_table_of_imports_agrees_with_the_code(part):
-    names = {"PIL": "pillow", "pydantic_core": "pydantic"}
-    imported = {names.get(name, name) for name in outside_imports(part)} | inside_imports(part)
-    assert imported <= table_of_imports()[part.stem]
 
 
 @cache

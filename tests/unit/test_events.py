@@ -1,6 +1,7 @@
 """Events of a load path: in a result, in its file, on the terminal, in exports, and as what find_event reads."""
 
 import csv
+import io
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -8,18 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from commands import call
+from rich.console import Console
 from small_scenes import scene
 
 import granular_response as gr
 from granular_response.observe.events import EventNotBracketed
 from granular_response.scene.protocol import Protocol, without_replaced
 from granular_response.solve import solve_scene
-from granular_response.state import CONTACT_EVENTS, OPEN, SLIDING, STICKING
+from granular_response.state import CONTACT_EVENTS
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
 from granular_response.store.export import export
 from granular_response.store.result import ResultError, chosen_states, events_from, state_from, to_dataset
+from granular_response.store.summary import summarise
 
 BEFORE = Path(__file__).parents[1] / "data" / "result_before_events.nc"
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
@@ -48,29 +50,12 @@ def with_lost(result) -> gr.Result:
     return gr.Result(replace(solution, loaded=(one, replace(two, reached=reached), three)))
 
 
-def test_events_lead_from_the_contacts_of_one_state_to_those_of_the_next(result):
-    """Replayed on the statuses of one they give those of the next; what is left out or doubled would not.
-
-    A contact that closes may slide or stick.
-    """
-    states = (result.rest, *result.loaded)
-    after = {"opens": {OPEN}, "closes": {STICKING, SLIDING}, "sticks": {STICKING}, "slides": {SLIDING}}
-    changed = 0
-    for before, now in pairwise(states):
-        for at_wall, kind in ((False, "pairs"), (True, "walls")):
-            contacts, later = getattr(before, kind), getattr(now, kind)
-            keys = list(zip(contacts.first.tolist(), contacts.second.tolist(), strict=True))
-            status = {key: {old} for key, old in zip(keys, contacts.status.tolist(), strict=True)}
-            for event in now.reached.events:
-                if event.at_wall == at_wall:
-                    assert not status[event.first, event.second] <= after[event.kind]
-                    status[event.first, event.second] = after[event.kind]
-                    changed += 1
-            for first, second, found in zip(later.first, later.second, later.status, strict=True):
-                assert found in status[first, second]
-    assert changed == len(result.events)
-    rising = [event.load_factor for event in result.events[: result.events.states.count(1)]]
-    assert rising == sorted(rising) and rising[0] >= 0.0 and rising[-1] <= 0.5
+def shown(path) -> str:
+    """What ``granular-response show`` prints."""
+    console = Console(width=200, file=io.StringIO())
+    for part in summarise(path):
+        console.print(part)
+    return console.file.getvalue()
 
 
 def test_a_result_has_its_events_in_order_and_by_kind(result):
@@ -177,7 +162,7 @@ def test_events_that_cannot_be_are_refused(result, damage):
 def test_show_counts_events_and_names_lost_equilibria(result, tmp_path):
     one = with_lost(result)
     one.save(tmp_path / "result.nc")
-    lines = call("show", "result.nc", folder=tmp_path).stdout.splitlines()
+    lines = shown(tmp_path / "result.nc").splitlines()
     for kind, count in result.events.counts().items():
         row = next(line.split() for line in lines if line.startswith(kind))
         assert row[:2] == [kind, "0"] and sum(map(int, row[1:])) == count
@@ -187,7 +172,7 @@ def test_show_counts_events_and_names_lost_equilibria(result, tmp_path):
     row = next(line for line in lines if line.strip().startswith("0.75"))
     assert row.split()[:4] == ["0.75", "0.8", "jump", "0.5"] and "disk 3" in row
     result.save(tmp_path / "result.nc")
-    plain = call("show", "result.nc", folder=tmp_path).stdout
+    plain = shown(tmp_path / "result.nc")
     assert "taken together" not in plain and "lost" not in plain
 
 
@@ -335,9 +320,8 @@ def test_a_result_of_a_version_with_other_keys_is_read_shown_and_continued(tmp_p
     assert [event.load_factor for event in before.events] == starts and before.events.counts() == {"jump": 3}
     assert before.events.states == (1, 2, 2)
     assert before.certificate.stable is True
-    shown = call("show", BEFORE, folder=tmp_path)
-    assert shown.returncode == 0 and "equilibria lost on the way" in shown.stdout and "no equilibrium" in shown.stdout
-    assert call("continue", BEFORE, "--to", 1.01, "-o", "more.nc", folder=tmp_path).returncode == 0
+    assert "equilibria lost on the way" in shown(BEFORE) and "no equilibrium" in shown(BEFORE)
+    before.continued([1.01]).save(tmp_path / "more.nc")
     more = gr.open_result(tmp_path / "more.nc")
     assert more.load_factors == (0.1, 1.0, 1.01) and repr(list(more.events)[:3]) == repr(list(before.events))
     with xr.open_dataset(tmp_path / "more.nc") as plain:

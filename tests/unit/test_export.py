@@ -9,7 +9,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from commands import call
 
 import granular_response as gr
 from granular_response.scene import Scene
@@ -207,20 +206,6 @@ def test_a_missing_library_is_named(result, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "gsd.hoomd", None)
     with pytest.raises(ExportError, match=r"needs the package gsd.*install granular-response\[export\]"):
         export(result, tmp_path / "result.gsd")
-
-
-def test_on_the_command_line(result, tmp_path):
-    command = ["export", result, "-o"]
-    done = call(*command, "sub/result.xyz", folder=tmp_path)
-    assert (done.returncode, done.stdout.strip()) == (0, "sub/result.xyz"), done.stderr
-    one = call(*command, "rest.xyz", "--state", 0, folder=tmp_path)
-    assert one.returncode == 0, one.stderr
-    assert (tmp_path / "rest.xyz").read_text().count("load_factor=0.0") == 1
-    assert "load_factor=1.0" not in (tmp_path / "rest.xyz").read_text()
-    wrong = call(*command, "result.abc", folder=tmp_path)
-    assert wrong.returncode == 2
-    assert wrong.stderr.count("\n") == 1
-    assert "format '.abc' is unknown" in wrong.stderr
 
 
 def test_gsd_by_its_own_library(result, data, tmp_path):

@@ -1,31 +1,13 @@
 """The recipes of docs/extending.md, followed with a law and an integrator that the package does not have."""
 
-import math
-import os
-import subprocess
-import sys
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
-from demonstration import RECORD, Cubic
+from demonstration import RECORD, problem
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Scene
 from granular_response.solve import Dynamics, Problem, certify, follow, minimise, rest_state
 from granular_response.solve.timestep import oscillator_limit
-
-
-def problem(friction: float) -> Problem:
-    """A small slab with a law of force xi^3, softer where little is borne."""
-    packing = {"layers": 4, "disks_per_row": 9, "lattice_constant": 1.99}
-    scene = Scene().updated({"packing": packing, "contact.friction": friction, "protocol.time_step": "auto"})
-    made = Problem.from_scene(scene)
-    pair, wall = (Cubic.of(k, 50.0, 0.8 * k, 40.0, mu, -math.inf, 0.5) for k, mu in ((3000.0, friction), (6000.0, 0.0)))
-    if friction == 0.0:
-        pair = pair.without_friction()
-    return replace(made, pair_law=pair, wall_law=wall.without_friction())
 
 
 def test_a_law_of_ones_own_is_minimised():
@@ -58,19 +40,3 @@ def test_an_integrator_of_ones_own(monkeypatch):
     assert 0 < np.abs(ours.position - paper.position).max() < 0.01 * moved
     # an undamped spring: stable up to 2 over the frequency
     assert oscillator_limit("euler", 400.0, 0.0) == pytest.approx(0.1, rel=2e-2)
-
-
-def test_what_comes_from_elsewhere_does_not_trouble_other_processes(tmp_path):
-    """Machine code for it is not kept: a process without its module could not read the list of what is."""
-    ours = Path(__file__).parent
-    script = "import test_extending as t; t.problem(0.0).bare_state()"
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": os.environ.get("PYTHONPATH", "")}
-    small = {"packing": {"kind": "slab", "layers": 2, "disks_per_row": 5}, "contact": {"friction": 0.0}}
-    plain = (
-        "from granular_response.scene import Scene; from granular_response.solve import Problem; "
-        f"Problem.from_scene(Scene.from_dict({small})).bare_state()"
-    )
-    for code, folder in ((script, ours), (plain, tmp_path)):
-        run = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True)
-        assert run.returncode == 0, run.stderr
-    assert list(tmp_path.rglob("*.nbi"))

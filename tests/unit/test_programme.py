@@ -7,8 +7,6 @@ from small_scenes import scene
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import continue_solution, solve_scene
-from granular_response.store import files as store
-from granular_response.store.result import solution_from, to_dataset
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
 PROGRAMME = (0.5, 1.0, 0.5, 0.0, 1.0)
@@ -36,13 +34,6 @@ def test_unloading_with_friction_leads_along_another_branch():
     assert unloading / 3.0 == pytest.approx(0.2325, abs=5e-4)
     assert unloaded == pytest.approx(-0.1126, abs=2e-3)  # friction keeps what the load has done
     assert again == pytest.approx(full, rel=0.01)
-
-
-def test_unloading_without_friction_leads_back():
-    solution = solve_scene(slab(contact__friction=0.0), load_factors=PROGRAMME)
-    loading, full, unloading, unloaded, again = under_the_load(solution)
-    assert (unloading, again) == (pytest.approx(loading, abs=1e-9), pytest.approx(full, abs=1e-9))
-    assert unloaded == pytest.approx(0.0, abs=1e-9)
 
 
 def test_dynamics_agrees_with_the_path_on_the_way_down():
@@ -87,28 +78,6 @@ def test_loads_may_change_their_sign():
     )
     assert np.abs(a).max() > 0.05
     assert b == pytest.approx(a[::-1], abs=1e-8)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"contact__friction": 0.2},
-        {"contact__friction": 0.0},
-        {"contact__friction": 0.2, "protocol__method": "dynamics", "protocol__stop_kinetic_energy": 1e-9},
-        {"contact__friction": 0.2, "packing__polydispersity": 0.1},
-    ],
-    ids=["path", "minimise", "dynamics", "disordered path"],
-)
-def test_a_programme_that_is_cut_and_taken_up_again_has_the_same_bits(tmp_path, changes):
-    whole = solve_scene(slab(**changes), load_factors=PROGRAMME)
-    parts = solve_scene(slab(**changes), load_factors=PROGRAMME[:1])
-    for factor in PROGRAMME[1:]:
-        store.write(tmp_path / "part.nc", to_dataset(parts))
-        parts = continue_solution(solution_from(store.read(tmp_path / "part.nc")[""]), [factor])
-    assert parts.load_factors == whole.load_factors == PROGRAMME
-    for one, other in zip(whole.loaded, parts.loaded, strict=True):
-        assert np.array_equal(one.position, other.position)
-        assert np.array_equal(one.angle, other.angle)
 
 
 def test_dynamics_starts_from_rest_until_the_programme_turns():

@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 from small_scenes import scene
-from test_cli import call
 
-import granular_response
+import granular_response as gr
 from granular_response.scene import Scene
 from granular_response.solve import certify, solve_scene
 from granular_response.solve.timestep import resolve_time_step
@@ -35,18 +33,19 @@ def test_a_ramp_that_is_cut_short_carries_the_load_it_has_reached():
     assert solve_scene(scene(loads=LOAD)).unsettled == ""
 
 
-def test_run_says_so_and_fails_unless_asked(tmp_path):
-    (tmp_path / "scene.yaml").write_text(cut_short(protocol__time_step=5e-4).to_yaml())
-    finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
-    moving = "not at rest within protocol.maximum_steps = 1000: gravity, load factor 0.025"
-    said = f"granular-response: result.nc: {moving}\n"
-    assert (finished.returncode, finished.stderr) == (1, said)
-    with xr.open_dataset(tmp_path / "result.nc") as stored:  # nothing is lost
-        assert stored.attrs["settled"] == "no"
-    finished = call("run", "scene.yaml", "-o", "result.nc", "--allow-unsettled", folder=tmp_path)
-    assert (finished.returncode, finished.stderr) == (0, said)
-    with pytest.warns(UserWarning, match=moving):
-        granular_response.solve(tmp_path / "scene.yaml")
+@pytest.mark.parametrize(
+    ("moving", "said"),
+    [
+        (cut_short(protocol__time_step=5e-4), "not at rest within protocol.maximum_steps = 1000: gravity, load factor"),
+        (
+            scene(contact__friction=0.0, loads=LOAD, protocol__friction_law="literal"),
+            "protocol.friction_law = 'literal' has no effect",
+        ),
+    ],
+)
+def test_remarks_are_warnings_in_python(moving, said):
+    with pytest.warns(UserWarning, match=said):
+        gr.solve(moving)
 
 
 @pytest.mark.parametrize(

@@ -2,49 +2,30 @@
 
 import numpy as np
 import pytest
-from small_scenes import free_disks, scene
+from small_scenes import scene
 
 from granular_response.contact import LAWS
 from granular_response.solve import Dynamics, NotSettled, Problem, Stop, relax, solve_scene
 from granular_response_paper.trials.closed_forms import collision, mechanical_energy
 
 
-@pytest.mark.parametrize("damping_ratio", [0.0, 0.5])
-@pytest.mark.parametrize("friction", [0.2, 1.0])
-def test_frictional_wall_gives_no_energy_at_any_incidence(friction, damping_ratio):
-    """From grazing to head-on, with and without spin."""
-    for angle in np.radians([2.0, 5.0, 15.0, 30.0, 45.0, 60.0, 80.0, 88.0]):
-        for spin in (-2.0, 0.0, 2.0):
-            problem, state = free_disks(
-                [[500.0, 1.01]],
-                velocity=[(np.cos(angle), -np.sin(angle))],
-                spin=[spin],
-                contact__friction=0.0,
-                wall__friction=friction,
-                wall__damping_ratio=damping_ratio,
-            )
-            dynamics = Dynamics(problem, state, "beeman", 1e-4)
-            dynamics.set_ramps(gravity=(0.0, 0.0, 0.0))
-            before = dynamics.kinetic_energy()
-            dynamics.advance(round((0.02 / np.sin(angle) + 0.2) / 1e-4))
-            assert dynamics.v[1] > 0 and not dynamics.touching().any()  # it has bounced
-            assert dynamics.v[0] != pytest.approx(np.cos(angle))
-            assert dynamics.kinetic_energy() <= before * (1.0 + 1e-4)
-
-
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.5])
 @pytest.mark.parametrize("pair", [False, True], ids=["floor", "pair"])
-def test_no_collision_gives_energy_under_any_law(pair, damping_ratio, law):
-    for friction in (0.2, 1.0):
-        changes = {"contact__friction": friction, "contact__damping_ratio": damping_ratio, "contact__law": law}
-        one = scene(**changes, wall__friction=friction, wall__damping_ratio=damping_ratio)
-        for angle in (2.0, 15.0, 45.0, 80.0, 90.0):
-            for spin in (-2.0, 0.0, 2.0):
-                left = collision(one, angle, spin, 1e-4, pair=pair)
-                assert 0.0 < left <= 1.0 + 1e-4
-                if damping_ratio and angle == 90.0:
-                    assert left < 0.9
+@pytest.mark.parametrize("friction", [0.05, 0.5, 2.0, 100.0])
+def test_no_collision_gains_energy(friction, pair, damping_ratio, law):
+    """At any incidence from grazing to head-on and with any spin, but for the error of the integration."""
+    rubs = {"friction": friction, "damping_ratio": damping_ratio}
+    one = scene().updated({"contact": {**rubs, "law": law}, "wall": rubs, "loads": []})
+    grazing = 0.5 if law == "linear" else 2.0  # the softer contact lasts longer than is waited for
+    left = {
+        (angle, spin): collision(one, angle, spin, 1e-4, pair=pair)
+        for angle in (grazing, 5.0, 10.0, 25.0, 45.0, 65.0, 85.0, 90.0)
+        for spin in (-3.0, 0.0, 1.0)
+    }
+    assert 0.0 < min(left.values()) < 0.95  # some slide or are damped: the test is one of friction and of dashpots
+    assert max(left.values()) < (1.0 if damping_ratio and law == "linear" else 1.0 + 1e-4)
+    assert not damping_ratio or max(left[90.0, spin] for spin in (-3.0, 0.0, 1.0)) < 0.9
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -1,4 +1,4 @@
-"""The 3/2 law in every way to an equilibrium, in `continue` and in exports."""
+"""The 3/2 law in every way to an equilibrium."""
 
 import numpy as np
 import pytest
@@ -6,10 +6,6 @@ import pytest
 from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene
 from granular_response.solve import Solution, solve_scene
-from granular_response.solve.solution import continue_solution
-from granular_response.store import files as store
-from granular_response.store.export import export
-from granular_response.store.result import solution_from, to_dataset
 
 FLOOR = np.arange(9)
 
@@ -58,17 +54,3 @@ def test_every_method_finds_the_same_equilibrium(friction, limit):
         assert floor == pytest.approx(floor_force(solutions[0].loaded[-1], FLOOR), abs=limit)
     if not friction:
         assert solutions[-1].loaded[-1].reached.method == "minimise"
-
-
-def test_continued_and_exported(tmp_path):
-    """From a file on to another load, as far as in one go; every contact force is in the export."""
-    first, whole = solved(0.4, "path"), solved(0.4, "path", (1.0, 2.0))
-    store.write(tmp_path / "first.nc", to_dataset(first))
-    kept = solution_from(store.read(tmp_path / "first.nc")[""])
-    assert kept.problem.pair_law == first.problem.pair_law
-    further = continue_solution(kept, [2.0])
-    by_hand(further)
-    assert further.loaded[-1].position == pytest.approx(whole.loaded[-1].position, abs=1e-12)
-    store.write(tmp_path / "further.nc", to_dataset(further))
-    for name in ("state.vtu", "state.xyz"):
-        assert export(tmp_path / "further.nc", tmp_path / name).stat().st_size > 1000

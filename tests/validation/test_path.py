@@ -18,7 +18,6 @@ from granular_response.solve import (
     continue_solution,
     finish,
     follow,
-    loaded_states,
     minimise,
     relax,
     rest_state,
@@ -53,21 +52,6 @@ def test_dynamics_approaches_the_path_as_its_ramp_grows(settled):
     assert difference[2] < 0.7 * difference[1]
 
 
-def test_stops_on_the_way_do_not_matter_much(settled):
-    problem, rest = settled
-    once = follow(problem, rest, [6.0])[0]
-    often = follow(problem, rest, [0.5, 1.0, 2.0, 3.5, 5.0, 6.0])
-    assert [s.load_factor for s in often] == [0.5, 1.0, 2.0, 3.5, 5.0, 6.0]
-    assert floor_force(often[-1], FLOOR) == pytest.approx(floor_force(once, FLOOR), abs=5e-3)
-
-
-def test_a_path_goes_on_from_one_of_its_states(settled):
-    problem, rest = settled
-    half = follow(problem, rest, [3.0])[0]
-    whole = follow(problem, rest, [3.0, 6.0])[1]
-    assert np.array_equal(floor_force(follow(problem, half, [6.0])[0], FLOOR), floor_force(whole, FLOOR))
-
-
 def test_a_path_back_leads_elsewhere_with_friction_and_back_within_the_reversible_range(settled):
     problem, rest = settled
     up, _, down = follow(problem, rest, [2.0, 4.0, 2.0])
@@ -90,31 +74,12 @@ def test_an_equilibrium_that_is_left_slowly_is_not_called_stable(factor):
         follow(problem, balanced, [factor], record=record)
 
 
-def test_every_state_is_certified(settled):
-    problem, rest = settled
-    choice, states = loaded_states(problem, rest, [1.0, 4.0, 9.0])
-    assert choice.method == "path"
-    for state in states:
-        certificate = state.certificate
-        assert certificate.force_residual < 1e-9 and certificate.torque_residual < 1e-9
-        assert certificate.coulomb_excess < 1e-9
-        assert certificate.stable
-
-
 def test_passes_the_load_where_contacts_begin_to_slide_together():
     """Near 29.3 at friction 0.2 plain Newton iterations chatter; the branch goes on and needs no dynamics."""
     state = slab(0.2, 31.0, "path").loaded[-1]
     assert not any(event.lost for event in state.reached.events)
     assert state.certificate.force_residual < 1e-9
     assert (state.pairs.status == 2).any()
-
-
-def test_a_path_is_within_the_aim_of_accuracy(settled):
-    """Largest error of the normalised response against a path in small increments."""
-    problem, rest = settled
-    force = 4.0
-    fine = floor_force(follow(problem, rest, [force], together=0.02)[0], FLOOR)
-    assert np.abs(floor_force(follow(problem, rest, [force])[0], FLOOR) - fine).max() / force < 1e-4
 
 
 @pytest.mark.parametrize("friction", [0.05, 0.2, 1.0])

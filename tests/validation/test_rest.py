@@ -72,12 +72,3 @@ def test_symmetric_equilibrium_of_the_pile_is_a_saddle():
     middle, left, right = middle_and_sides(state, problem)
     assert (middle, left, right) == pytest.approx((7.97, 9.15, 9.15), abs=0.006)
     assert left == pytest.approx(right, abs=1e-9)
-
-
-def test_pile_rests_in_a_minimum_beside_the_saddle():
-    problem = pile()
-    state = rest_state(problem)
-    assert state.certificate.negative_modes == 0
-    middle, left, right = middle_and_sides(state, problem)
-    assert (middle, min(left, right), max(left, right)) == pytest.approx((8.34, 9.08, 9.15), abs=0.006)
-    assert floor_force(state, np.flatnonzero(problem.packing.row == 0)).sum() == pytest.approx(problem.n, rel=1e-9)

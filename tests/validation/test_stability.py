@@ -9,7 +9,6 @@ import reduced
 
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import NotSettled
-from granular_response.state import Reached
 from granular_response_paper.groups.stability import draw as figures
 from granular_response_paper.groups.stability import simulate as stability
 from granular_response_paper.pipeline import simulation
@@ -65,20 +64,6 @@ def colliding(mu: float, damping: float, rule: str = "cut") -> Scene:
             "loads": [],
         }
     )
-
-
-@pytest.mark.parametrize("pair", [False, True], ids=["floor", "disk"])
-@pytest.mark.parametrize("damping", [0.0, 0.5])
-@pytest.mark.parametrize("mu", [0.05, 0.5, 2.0, 100.0])
-def test_no_collision_gains_energy(mu, damping, pair):
-    """At any incidence from grazing to head-on and with any spin, but for the error of the integration."""
-    ratios = [
-        closed_forms.collision(colliding(mu, damping), angle, spin, 1e-4, pair=pair)
-        for angle in (0.5, 2.0, 10.0, 25.0, 45.0, 65.0, 85.0, 90.0)
-        for spin in (-3.0, 0.0, 1.0)
-    ]
-    assert max(ratios) < (1.0 + 3e-5 if damping == 0 else 1.0)
-    assert min(ratios) < 0.95  # some slide or are damped, so the test is one of friction and of dashpots
 
 
 def test_what_a_frictionless_bounce_gains_is_an_error_of_the_integration():
@@ -211,26 +196,17 @@ def test_scenes_are_drawn_from_all_that_a_scene_may_say():
     assert min(step for step in steps if isinstance(step, float)) < 1e-6
 
 
-@pytest.mark.parametrize(
-    ("tamper", "said"),
-    [
-        (lambda state: replace(state, position=state.position * (1.0 - 1e-7)), "force_residual is"),
-        (lambda state: replace(state, reached=Reached()), "a state without a certificate"),
-        (lambda state: replace(state, load_factor=2.0), "force_residual is"),
-    ],
-    ids=["moved", "no certificate", "another load"],
-)
-def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch, tamper, said):
+def test_a_solver_that_gives_a_wrong_answer_is_caught(tmp_path, monkeypatch):
     solve = random_scenes.solve_scene
 
     def wrong(scene, **keywords):
         solution = solve(scene, **keywords)
-        return replace(solution, loaded=[tamper(state) for state in solution.loaded])
+        moved = [replace(state, position=state.position * (1.0 - 1e-7)) for state in solution.loaded]
+        return replace(solution, loaded=moved)
 
     monkeypatch.setattr(random_scenes, "solve_scene", wrong)
     trial = random_scenes.attempt(DESCRIPTION, str(tmp_path))
-    assert trial.outcome == "wrong"
-    assert said in trial.message
+    assert trial.outcome == "wrong" and "force_residual is" in trial.message
 
 
 @pytest.mark.parametrize(

@@ -93,7 +93,6 @@ def of_survey(group):
         ("moduli", (0.1, 1.0, 16, 6)),
         ("moduli", (0.25, 1.0, 16, 9)),
         ("crossover_scaling", (21, 63, 0.0)),
-        ("crossover_scaling", (19, 57, 0.1)),
         ("hysteresis", (0.1, 0.0, 6)),
     ],
 )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from observe_states import contacts, state
 from scipy.spatial import Delaunay
 from scipy.special import erf
 
@@ -22,37 +23,10 @@ from granular_response.observe.stress import (
     load_forces,
     pressure,
 )
-from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, STICKING, WALL_NORMAL, Box, Contacts, State
+from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, State
 
 #: Far enough for the Gaussian to be below rounding, where a test wants the identity itself.
 WHOLE = 7.0
-
-
-def contacts(links: list[tuple[int, int]], normal: np.ndarray, tangential: np.ndarray) -> Contacts:
-    array = np.array(links, dtype=np.int32)
-    m = len(links)
-    return Contacts(
-        first=array[:, 0],
-        second=array[:, 1],
-        overlap=np.zeros(m),
-        normal_force=normal,
-        tangential_force=tangential,
-        spring=np.zeros(m),
-        status=np.full(m, STICKING, dtype=np.int8),
-    )
-
-
-def state(position: np.ndarray, pairs: Contacts, walls: Contacts, width: float) -> State:
-    n = len(position)
-    return State(
-        position=position,
-        angle=np.zeros(n),
-        velocity=np.zeros((n, 2)),
-        angular_velocity=np.zeros(n),
-        pairs=pairs,
-        walls=walls,
-        box=Box(width),
-    )
 
 
 def body_force_density(position: np.ndarray, force: np.ndarray, points: np.ndarray, w: float) -> np.ndarray:

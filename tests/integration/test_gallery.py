@@ -89,7 +89,7 @@ def test_an_example_is_short_and_has_a_title(script):
     assert len(text.splitlines()) <= 70
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/tutorial.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
 def test_the_python_of_the_pages_runs(page, figures, tmp_path, monkeypatch):
     """Smaller than it stands there; what is drawn with xarray from a file of the page's commands is left out."""
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)

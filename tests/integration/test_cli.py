@@ -4,17 +4,16 @@ How a process begins is tried by new ones (``process``), what commands say and d
 """
 
 import gc
-import io
 import json
 import os
 import pty
 import re
 import resource
 import select
+import shutil
 import signal
 import subprocess
 import sys
-import time
 import tomllib
 from pathlib import Path
 
@@ -23,21 +22,12 @@ import pytest
 import xarray as xr
 import yaml
 from commands import LIBRARY, OF_THE_PAPER, PAPER, call, process
-from rich.console import Console
 
 from granular_response import __version__
-from granular_response.api import terminal
 from granular_response.cli import main as cli
 from granular_response.machine import floating_point
-from granular_response.scene import SceneError
-from granular_response.scene.base import Description
 from granular_response.store import files as store
-from granular_response.sweeps.errors import SweepError
-from granular_response.sweeps.resources import Resources, current
 from granular_response_paper import cli as paper
-from granular_response_paper import pipeline
-from granular_response_paper.captions import Caption
-from granular_response_paper.pipeline import drawing, simulation
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = ["run", "continue", "show", "plot", "keys", "export", "cite", "version"]
@@ -137,7 +127,7 @@ def test_run_and_show(tmp_path):
     result = store.read(tmp_path / "out" / "result.nc")[""]
     assert float(result["floor_response"].sum()) == pytest.approx(1.0, abs=1e-8)
 
-    shown = process("show", "out/result.nc", folder=tmp_path)
+    shown = call("show", "out/result.nc", folder=tmp_path)
     assert shown.returncode == 0, shown.stderr
     assert re.search(r"1\.0000000\d\d|0\.999999999", shown.stdout)
     for part in ("certificate", "force residual", "layers: 3", "minimise"):
@@ -195,7 +185,6 @@ def test_datasets_of_another_group_are_not_drawn(tmp_path):
             ("stress_spacing:", "stress_spacng:"),
             "pile_dip.stress_spacng = 0.25: unknown key, did you mean",
         ),
-        (("dip_height: 4.0", "dip_height: high"), "pile_dip.dip_height = 'high': must be a number greater than 0"),
         (("friction: 0.94", "friction: -0.94"), "pile_dip.scene.contact.friction = -0.94: must be a number from 0 to"),
         (("layers: 11", "kind: slab"), "pile_dip.scene.packing.kind = 'slab': must be pile"),
     ],
@@ -278,141 +267,59 @@ def test_a_failed_run_keeps_the_old_result(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["result.nc", "scene.yaml"]
 
 
-LABEL = {"long_name": "square", "units": "1"}
+def test_disks_of_another_program_are_solved_and_handed_back(tmp_path):
+    shutil.copy(Path(__file__).parents[1] / "data" / "packings" / "shrink_wrapped.dump", tmp_path / "a.dump")
+    packing = "{kind: file, path: a.dump, width: 6, origin: [0, 0]}"
+    (tmp_path / "scene.yaml").write_text(f"packing: {packing}\ncontact: {{friction: 0.2}}\nloads: []\n")
+    assert call("run", "scene.yaml", "-o", "a.nc", folder=tmp_path).returncode == 0
+    command = ["export", "a.nc", "-o"]
+    done = call(*command, "sub/b.lmp", folder=tmp_path)
+    assert (done.returncode, done.stdout.strip(), done.stderr.count("\n")) == (0, "sub/b.lmp", 1)
+    assert "no springs of friction" in done.stderr and "5 atoms" in (tmp_path / "sub" / "b.lmp").read_text()
+    assert call(*command, "rest.xyz", "--state", 0, folder=tmp_path).returncode == 0
+    assert (tmp_path / "rest.xyz").read_text().count("load_factor=0.0") == 1
+    assert_one_line_error(call(*command, "result.abc", folder=tmp_path), "format '.abc' is unknown")
 
 
-def square(item):
-    if item < 0:
-        raise SceneError("count = -1: must be 0 or more")
-    return item * item
+@pytest.mark.parametrize("name", ["a.csv", "a.data", "a.dump", "a.txt", "a.gsd"])
+def test_devices_and_pipes_are_not_read(tmp_path, name):
+    """A device has no end, and a pipe nobody writes to waits for ever."""
+    (tmp_path / f"zero_{name}").symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / f"pipe_{name}")
+    for kind in ("zero", "pipe"):
+        for arguments in (["run", "-o", "a.nc"], ["show"]):
+            finished = call(*arguments, f"{kind}_{name}", folder=tmp_path)
+            assert_one_line_error(finished, ": cannot be read: is not a regular file\n")
 
 
-class Study:
-    """Stands where the modules of a figure group would."""
-
-    class Parameters(Description):
-        count: int
-        method: str
-
-    @staticmethod
-    def simulate(parameters):
-        from granular_response.sweeps.tasks import map_tasks
-
-        squares = map_tasks(square, range(parameters.count))
-        return {"squares": xr.Dataset({"square": ("item", np.array(squares), LABEL)})}
-
-    @staticmethod
-    def draw(datasets):
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(2, 2))
-        figure.add_subplot().plot(datasets["squares"]["square"])
-        return {"fig99_squares": figure}
-
-    def captions(datasets, parameters):
-        return {"fig99_squares": Caption(f"{parameters.count} squares.", "A parabola.", {"force": [1.0, 2.0]})}
+def test_a_state_that_moves_is_said_and_fails_unless_allowed(tmp_path):
+    moving = SCENE + "protocol: {method: dynamics, static_finish: false, maximum_steps: 1000, time_step: 5.0e-4}\n"
+    (tmp_path / "scene.yaml").write_text(moving)
+    run = ["run", "scene.yaml", "-o", "result.nc"]
+    said = (
+        "granular-response: result.nc: not at rest within protocol.maximum_steps = 1000: gravity, load factor 0.025\n"
+    )
+    for options, code in (([], 1), (["--allow-unsettled"], 0)):
+        finished = call(*run, *options, folder=tmp_path)
+        assert (finished.returncode, finished.stderr) == (code, said)
+        assert store.read_attributes(tmp_path / "result.nc")["settled"] == "no"  # nothing is lost
 
 
-@pytest.fixture
-def group(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "params.yaml").write_text("common: {method: auto}\nsquares: {count: 4}\n")
-    for module in (simulation, drawing):
-        monkeypatch.setattr(module, "group_member", lambda group, module, name: getattr(Study, name))
-    return "squares"
+def test_a_setting_without_effect_is_said(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE + "protocol: {friction_law: literal}\n")
+    finished = call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path)
+    line = "protocol.friction_law = 'literal' has no effect (no friction)"
+    assert (finished.returncode, finished.stderr) == (0, f"granular-response: result.nc: {line}\n")
 
 
-def test_a_group_has_the_common_parameters_and_its_own(group):
-    given, described = simulation.parameters(group)
-    assert given == {"count": 4, "method": "auto"} and described == Study.Parameters(count=4, method="auto")
-    with pytest.raises(pipeline.GroupError, match=r"params.yaml: section cubes is missing"):
-        simulation.parameters("cubes")
-
-
-def test_simulate_and_draw(group, tmp_path):
-    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
-    assert store.read("data/squares.nc")["squares"]["square"].values.tolist() == [0, 1, 4, 9]
-    attributes = store.read_attributes("data/squares.nc")
-    assert yaml.safe_load(attributes["parameters"])["count"] == 4
-    paths = drawing.draw(group)
-    assert sorted(map(str, paths)) == [
-        f"figures/squares/{name}" for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png")
-    ]
-    assert json.loads(Path("figures/squares/captions.json").read_text()) == {
-        "fig99_squares": {
-            "figure": None,
-            "panels": [],
-            "caption": "4 squares. F_ext = 1 and 2 m\u0304g.",
-            "alternative": "A parabola.",
-            "parameters": {"force": [1.0, 2.0]},
-        }
-    }
-    before = [path.read_bytes() for path in paths]
-    first = Path("data/squares.nc").read_bytes()
-    simulation.simulate(group, workers=1)
-    assert Path("data/squares.nc").read_bytes() == first
-    assert [path.read_bytes() for path in drawing.draw(group)] == before
-    assert sorted(path.name for path in (tmp_path / "data").iterdir()) == ["squares.nc"]
-
-
-def test_a_second_run_of_a_group_is_refused_while_the_first_one_lasts(group, monkeypatch):
-    """Not when it comes first to the end: it would take away what the other keeps."""
-    said = []
-
-    def second(done, total, what=""):
-        if done == 2 and not said:
-            kept = sorted(Path("data/.squares.checkpoint").rglob("*.kept"))
-            with pytest.raises(pipeline.GroupError) as caught:
-                simulation.simulate(group, workers=1)
-            said.append(str(caught.value))
-            assert simulation.simulate(group, Path("data/other.nc"), workers=1) == Path("data/other.nc")
-            assert sorted(Path("data/.squares.checkpoint").rglob("*.kept")) == kept and len(kept) == 2
-
-    simulation.simulate(group, workers=1, progress=second)
-    assert said == ["data/squares.nc: another run is making it; wait for it, or give another --output"]
-    assert sorted(path.name for path in Path("data").iterdir()) == ["other.nc", "squares.nc"]
-    simulation.simulate(group, workers=1)
-
-
-def test_a_run_that_is_killed_leaves_no_lock(group):
-    Path("data/.squares.checkpoint").mkdir(parents=True)
-    code = "import fcntl, os, time; d = os.open('data/.squares.checkpoint', os.O_RDONLY); fcntl.flock(d, fcntl.LOCK_EX)"
-    code += "; print(1, flush=True); time.sleep(60)"
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as other:
-        other.stdout.readline()
-        with pytest.raises(pipeline.GroupError, match="another run is making it"):
-            simulation.simulate(group, workers=1)
-        other.kill()
-    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
-
-
-def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, capsys):
-    def interrupt(done, total, what=""):
-        if done == 2:
-            raise KeyboardInterrupt
-
-    whole = simulation.simulate
-    monkeypatch.setattr(simulation, "simulate", lambda *args, **kind: whole(*args, **{**kind, "progress": interrupt}))
-    with pytest.raises(KeyboardInterrupt):
-        paper.simulate(group, workers=1, params=simulation.PARAMETERS)
-    said = "granular-response-paper: interrupted; 2 finished tasks are kept and are not run again\n"
-    assert capsys.readouterr().err == said
-    monkeypatch.setattr(simulation, "simulate", whole)
-    paper.simulate(group, workers=1, params=simulation.PARAMETERS)
-    again = capsys.readouterr()
-    kept = "2 finished tasks are kept; those of this code and these parameters are not run again"
-    assert again.err == f"granular-response-paper: {group}: {kept}\n"
-    paper.simulate(group, workers=1, params=simulation.PARAMETERS)
-    assert capsys.readouterr().err == ""
-
-
-def test_a_terminal_of_no_columns_has_the_usual_width(tmp_path):
+def test_a_terminal_of_no_columns_has_the_usual_width(tmp_path, monkeypatch):
     """Some say 0 where they do not know; nothing was printed."""
     store.write(tmp_path / "a.nc", xr.Dataset())
-    usual = process("show", "a.nc", folder=tmp_path, env={**os.environ, "COLUMNS": "80"})
-    for width in ("0", "00"):
-        shown = process("show", "a.nc", folder=tmp_path, env={**os.environ, "COLUMNS": width})
-        assert (shown.returncode, shown.stdout) == (0, usual.stdout) and "a.nc" in usual.stdout
+    shown = {}
+    for width in ("80", "0", "00"):
+        monkeypatch.setenv("COLUMNS", width)
+        shown[width] = call("show", "a.nc", folder=tmp_path).stdout
+    assert shown["0"] == shown["00"] == shown["80"] and "a.nc" in shown["80"]
 
 
 def test_an_error_of_a_load_names_the_file(tmp_path):
@@ -420,60 +327,6 @@ def test_an_error_of_a_load_names_the_file(tmp_path):
     finished = call("run", "y.yaml", "-o", "a.nc", folder=tmp_path)
     assert finished.returncode == 2
     assert finished.stderr.startswith("granular-response: y.yaml: loads[0].force: 1e+300 disk weights")
-
-
-def test_an_error_at_once_leaves_no_folder(group):
-    with pytest.raises(SweepError, match="workers = 0"):
-        simulation.simulate(group, workers=0)
-    assert not Path("data/.squares.checkpoint").exists()
-
-
-def test_finished_tasks_outlive_an_interruption(group, monkeypatch):
-    def interrupt(done, total, what=""):
-        if done == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        simulation.simulate(group, workers=1, progress=interrupt)
-    assert len(list(Path("data/.squares.checkpoint").rglob("*.kept"))) == 2
-    assert not Path("data/squares.nc").exists()
-    assert current() == Resources()
-    calls = []
-    simulation.simulate(group, workers=1, progress=lambda done, total, what="": calls.append(done))
-    assert calls == [2, 3, 4]
-    assert not Path("data/.squares.checkpoint").exists()
-
-
-def test_the_address_of_a_scheduler_reaches_the_sweep(group, monkeypatch):
-    seen = []
-    monkeypatch.setattr(Study, "simulate", lambda *_, **__: seen.append(current().scheduler) or {})
-    simulation.simulate(group, scheduler="tcp://127.0.0.1:8786")
-    assert seen == ["tcp://127.0.0.1:8786"]
-    assert current() == Resources()
-
-
-def test_progress_is_silent_where_nobody_looks():
-    stream = io.StringIO()
-    with terminal.TerminalProgress(Console(file=stream), patience=0) as progress:
-        progress(1, 2, "scenes")
-    assert stream.getvalue() == ""
-
-
-def test_progress_on_a_terminal_shows_time_left_after_a_while():
-    stream = io.StringIO()
-    console = Console(file=stream, force_terminal=True, width=100)
-    with terminal.TerminalProgress(console, patience=0.2) as progress:
-        progress(0, 4, "scenes")
-        assert stream.getvalue() == ""
-        time.sleep(0.3)
-        progress(1, 4, "scenes")
-        time.sleep(0.2)
-        progress(2, 4, "scenes")
-        time.sleep(0.2)
-        progress(0, 1, "paths")
-    shown = stream.getvalue()
-    for part in ("scenes", "50 %", "left", "paths"):
-        assert part in shown
 
 
 def test_an_interrupted_command_ends_quietly(tmp_path):

@@ -11,7 +11,7 @@ import xarray as xr
 from granular_response.store import files as store
 from granular_response_paper.pipeline import GroupError, simulation
 
-PATH = Path(__file__).parents[2] / "notebooks" / "reduced.yaml"
+PATH = Path(__file__).parents[1] / "notebooks" / "reduced.yaml"
 
 
 def parameters(group: str) -> dict[str, Any]:

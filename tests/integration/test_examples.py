@@ -9,7 +9,7 @@ from pathlib import Path
 import nbformat
 import numpy as np
 import pytest
-from commands import process
+from commands import call
 from nbclient import NotebookClient
 
 from granular_response.scene import Scene
@@ -110,7 +110,7 @@ def test_the_starts_of_a_disordered_slab_differ_as_the_notes_say():
 
 
 def test_an_example_runs_on_the_command_line_from_another_folder(tmp_path):
-    done = process("run", EXAMPLES / "own_packing.yaml", "-o", "out.nc", folder=tmp_path)
+    done = call("run", EXAMPLES / "own_packing.yaml", "-o", "out.nc", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "52 disks" in done.stdout
 

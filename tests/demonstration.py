@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import NamedTuple
 
 from granular_response.kernels.integrators import Integrator
+from granular_response.scene import Scene
+from granular_response.solve import Problem
 
 
 class Cubic(NamedTuple):
@@ -67,3 +71,14 @@ class Euler(NamedTuple):
 
 
 RECORD = Integrator(name="euler", title="symplectic Euler", order=1, reference="none", scheme=Euler())
+
+
+def problem(friction: float) -> Problem:
+    """A small slab with a law of force xi^3, softer where little is borne."""
+    packing = {"layers": 4, "disks_per_row": 9, "lattice_constant": 1.99}
+    scene = Scene().updated({"packing": packing, "contact.friction": friction, "protocol.time_step": "auto"})
+    made = Problem.from_scene(scene)
+    pair, wall = (Cubic.of(k, 50.0, 0.8 * k, 40.0, mu, -math.inf, 0.5) for k, mu in ((3000.0, friction), (6000.0, 0.0)))
+    if friction == 0.0:
+        pair = pair.without_friction()
+    return replace(made, pair_law=pair, wall_law=wall.without_friction())

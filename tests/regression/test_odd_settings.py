@@ -1,11 +1,13 @@
 """Every stage of every figure group with parameters that leave little to be measured: results, or one line."""
 
 import json
+from functools import partial
 
 import odd_settings
 import pytest
 import reduced
 
+from granular_response.plot import style
 from granular_response.scene import SceneError, text
 from granular_response.solve import SOLVE_ERRORS
 from granular_response.sweeps.errors import SweepError
@@ -16,6 +18,19 @@ from granular_response_paper.pipeline import GroupError, drawing, measuring, sim
 LINES = (GroupError, SceneError, *SOLVE_ERRORS)
 #: The group that measures what another pipeline has simulated.
 MEASURES_THE_SURVEY = "phase_diagram"
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    """All that is asked of a picture here is that it can be drawn, wherever its panels are."""
+    render = style.render
+
+    def coarse(drawn, file_format):
+        drawn.set_layout_engine("none")  # to lay out takes as long as to draw
+        return render(drawn, file_format, dpi=30)
+
+    monkeypatch.setattr(style, "render", coarse)
+    monkeypatch.setattr(style, "save", partial(style.save, formats=["png"]))
 
 
 def test_every_group_has_odd_settings():

@@ -2,22 +2,10 @@
 
 import numpy as np
 import pytest
-import reduced
 
 from granular_response.plot import style
-from granular_response.store import files as store
 from granular_response_paper.groups.stiffness_ratio_crossover import spring_model
 from granular_response_paper.groups.theory import draw as figures
-from granular_response_paper.groups.theory import simulate as theory
-
-PARAMETERS = reduced.parameters("theory")
-
-
-@pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
-    path = tmp_path_factory.mktemp("theory") / "theory.nc"
-    store.write(path, theory.simulate(theory.Parameters(**PARAMETERS)))
-    return store.read(path)
 
 
 def test_predictions_are_symmetric_and_carry_the_force(datasets) -> None:
@@ -52,27 +40,3 @@ def test_figures(datasets) -> None:
     assert labels == ["$k_1^n$", "$k_1^t$", "$k_2^n$", "$k_2^n$", "$k_2^t$", "$k_2^t$"]
     for figure in drawn.values():
         assert style.render(figure) == style.render(figure)
-
-
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [
-        ("stiffness_ratio", -0.1),
-        ("ray_angle", 90.0),
-        ("ray_angle", "steep"),
-        ("diffusion_length", 0.0),
-        ("depths", []),
-        ("depths", [1.0, -2.0]),
-        ("depths", "deep"),
-        ("half_width", True),
-        ("points", 120),
-    ],
-)
-def test_bad_parameter_is_named(key: str, value) -> None:
-    with pytest.raises(ValueError, match=f"{key} = .*: must be"):
-        theory.Parameters(**{**PARAMETERS, key: value})
-
-
-def test_missing_parameter_is_named() -> None:
-    with pytest.raises(ValueError, match="ray_angle: missing, must be given"):
-        theory.Parameters(**{key: value for key, value in PARAMETERS.items() if key != "ray_angle"})

@@ -1,4 +1,4 @@
-"""Kills, damaged files, odd parameter files, restarts, and the wheel."""
+"""Kills, damaged files, odd parameter files, and the wheel."""
 
 import contextlib
 import io
@@ -12,9 +12,7 @@ import time
 import zipfile
 from pathlib import Path
 
-import numpy as np
 import pytest
-import xarray as xr
 import yaml
 from commands import PAPER, call, package_of
 from hypothesis import HealthCheck, given, settings
@@ -23,17 +21,10 @@ from hypothesis import strategies as st
 from granular_response.cli import main as cli
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import (
-    Dynamics,
-    Problem,
-    Stop,
-    continue_solution,
-    loaded_states,
-    relax,
-    rest_state,
     solve_scene,
 )
 from granular_response.store import files as store
-from granular_response.store.result import ResultError, solution_from, state_from, states_dataset, to_dataset
+from granular_response.store.result import to_dataset
 from granular_response_paper import cli as paper
 from granular_response_paper.pipeline import GroupError, simulation
 
@@ -61,40 +52,40 @@ def processes():
     return multiprocessing.get_context("forkserver")  # starts in milliseconds, with everything imported
 
 
-def killed_at_random(processes, folder: Path, arguments: list[str], output: Path, kills: int) -> list[int]:
-    """Kill the command ``kills`` times; returns at which of them a file was there. Each file found is whole."""
+def killed_at_random(processes, folder: Path, arguments: list[str], output: Path, kills: int) -> None:
+    """Kill the command ``kills`` times. Each file found is whole, and the next whole run tidies up."""
     generator = random.Random(1)
-    times = []
-    for _ in range(2):  # the first run also reads compiled code
-        started = time.perf_counter()
+
+    def started():
         process = processes.Process(target=command, args=(str(folder), arguments))
         process.start()
+        return process
+
+    def whole_run() -> float:
+        begun, process = time.perf_counter(), started()
         process.join()
         assert process.exitcode == 0
-        times.append(time.perf_counter() - started)
+        return time.perf_counter() - begun
+
+    whole_run()  # it also reads compiled code
+    longest = 1.1 * whole_run()
     output.unlink()
-    found, hit = [], 0
-    for kill in range(kills):
-        process = processes.Process(target=command, args=(str(folder), arguments))
-        process.start()
-        time.sleep(generator.uniform(0.0, 1.1 * times[-1]))
+    hit = 0
+    for _ in range(kills):
+        process = started()
+        time.sleep(generator.uniform(0.0, longest))
         if process.is_alive():
             os.kill(process.pid, signal.SIGKILL)
             hit += 1
         process.join()
         if output.exists():
             assert store.read(output)
-            found.append(kill)
             if generator.random() < 0.5:
                 output.unlink()
     assert hit >= kills // 3
-    process = processes.Process(target=command, args=(str(folder), arguments))
-    process.start()
-    process.join()
-    assert process.exitcode == 0
+    whole_run()
     assert store.read(output)
     assert not list(output.parent.glob(".*")), "what killed runs left is gone after the next whole one"
-    return found
 
 
 def test_killed_runs_leave_whole_results_or_none(tmp_path, processes):
@@ -193,121 +184,6 @@ def test_any_bytes_as_parameters(tmp_path, content):
 def test_any_tree_as_parameters(tmp_path, content):
     (tmp_path / "params.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
     loaded(tmp_path / "params.yaml")
-
-
-# Restarts
-
-
-def labelled(tmp_path: Path, solution):
-    store.write(tmp_path / "result.nc", to_dataset(solution))
-    return store.read(tmp_path / "result.nc")[""]
-
-
-def assert_same(one, other) -> None:
-    for name in ("position", "angle", "velocity", "angular_velocity"):
-        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
-    for kind in ("pairs", "walls"):
-        for name in ("first", "second", "overlap", "normal_force", "tangential_force", "spring", "status"):
-            np.testing.assert_array_equal(getattr(getattr(one, kind), name), getattr(getattr(other, kind), name))
-
-
-def assert_same_contacts(one, other) -> None:
-    """As above, for states that may list their candidates in another order."""
-    for name in ("position", "angle", "velocity", "angular_velocity"):
-        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
-    names = ("first", "second", "overlap", "normal_force", "tangential_force", "spring", "status")
-    for kind in ("pairs", "walls"):
-        rows = []
-        for contacts in (getattr(one, kind), getattr(other, kind)):
-            touching = np.stack([getattr(contacts, name)[contacts.touching].astype(float) for name in names])
-            rows.append(touching[:, np.lexsort(touching[1::-1])])
-        np.testing.assert_array_equal(*rows)
-
-
-def test_loading_from_a_stored_rest_state_is_the_same_to_the_last_bit(tmp_path, solution):
-    back = state_from(labelled(tmp_path, solution), 0)
-    assert_same(back, solution.rest)
-    _, (again,) = loaded_states(solution.problem, back, [1.0])
-    assert_same(again, solution.loaded[0])
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"contact.friction": 0.3},
-        {"contact.friction": 0.0},
-        {"contact.friction": 0.3, "protocol.method": "dynamics", "protocol.stop_kinetic_energy": 1e-9},
-        # its path loses its equilibrium, which the test below sees to
-        {"contact.friction": 0.2, "packing.polydispersity": 0.1, "packing.seed": 3},
-    ],
-    ids=["path", "minimise", "dynamics", "path that is lost"],
-)
-def test_a_continued_result_is_the_uninterrupted_one(tmp_path, changes):
-    """Cut twice, each time stored and read again: every state and every measured number has the same bits."""
-    scene = Scene.from_dict(SCENE).updated({"loads.0.force": [0.0, -10.0], **changes})
-    straight = solve_scene(scene, load_factors=[0.3, 0.6, 1.0])
-    if "packing.polydispersity" in changes:
-        assert any(event.lost for event in straight.loaded[1].reached.events)
-    parts = solve_scene(scene, load_factors=[0.3])
-    for factor in (0.6, 1.0):
-        store.write(tmp_path / "part.nc", to_dataset(parts))
-        parts = continue_solution(solution_from(store.read(tmp_path / "part.nc")[""]), [factor])
-    for one, other in zip((straight.rest, *straight.loaded), (parts.rest, *parts.loaded), strict=True):
-        assert_same_contacts(one, other)
-    # states of one file share one list of candidates, so what does not touch may be listed in another order
-    lists = {"contact", "wall_contact"}
-    one, other = (to_dataset(solution).drop_dims(lists) for solution in (parts, straight))
-    work = [name for name in one.variables if str(name).startswith("reached_")]  # counted anew by each command
-    assert work
-    xr.testing.assert_identical(one.drop_vars(work), other.drop_vars(work, errors="ignore"))
-
-
-def test_only_finite_loads_and_the_same_packing_can_be_continued(tmp_path, solution):
-    with pytest.raises(SceneError, match="load factors nan: must be finite"):
-        continue_solution(solution, [float("nan")])
-    unloaded = solve_scene(Scene.from_dict(SCENE).updated({"loads": []}))
-    with pytest.raises(SceneError, match="loads: none in this scene"):
-        continue_solution(unloaded, [2.0])
-    stored = labelled(tmp_path, solution)
-    with pytest.raises(ResultError, match="holds no states"):
-        solution_from(stored.drop_vars("contact_spring"))
-    stored["radius"] = stored["radius"] * 1.01
-    with pytest.raises(ResultError, match="table of disks has changed"):
-        solution_from(stored)
-
-
-def test_dynamics_from_a_stored_moving_state(tmp_path):
-    """A stored state and one in memory go on alike to the last bit.
-
-    A run that was never interrupted differs from both by the memory of its integrator (the acceleration one step
-    earlier), which no state holds: an error of one step, not of the equilibrium.
-    """
-    problem = Problem.from_scene(Scene.from_dict(SCENE))
-    running = Dynamics(problem, problem.bare_state())
-    running.set_ramps()
-    running.advance(2000)
-    state = running.state()
-    stored = states_dataset([state]).drop_vars("axis").assign_attrs(width=state.box.width)
-    store.write(tmp_path / "moving.nc", {"moving": stored})
-    back = state_from(store.read(tmp_path / "moving.nc")["moving"])
-    ends = []
-    for start in (state, back):
-        dynamics = Dynamics(problem, start)
-        dynamics.set_ramps()
-        dynamics.advance(2000)
-        ends.append(dynamics.state())
-    assert_same(*ends)
-    running.advance(2000)
-    difference = np.abs(running.state().position - ends[0].position).max()
-    moved = np.abs(state.position - ends[0].position).max()
-    assert 0.0 < difference < 1e-2 * moved
-
-
-def test_a_settled_packing_stays_where_it_is(solution):
-    rest = rest_state(solution.problem)
-    again = relax(Dynamics(solution.problem, rest), Stop(1e-20, maximum_steps=2000))
-    np.testing.assert_allclose(again.position, rest.position, rtol=0, atol=1e-12)
-    assert again.reached.kinetic_energy < 1e-20
 
 
 # The wheel

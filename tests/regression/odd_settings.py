@@ -30,6 +30,19 @@ def _dotted(values: dict[str, Any], above: str = "") -> dict[str, Any]:
 SMALL = {"packing.layers": 2, "packing.disks_per_row": 5}
 SHALLOW = {"packing.layers": 3, "packing.disks_per_row": 9}
 ONE = {"packing.layers": 1, "packing.disks_per_row": 7}
+AT_ONCE = {"friction": 0.2, "forces": [], "ramp_time": 0.0, "time_step": 0.0005}
+FEW_CASES = {
+    "cases": [{"polydispersities": [0.01], "friction": 0.2, "forces": [1.0]}],
+    "individual": {"polydispersity": 0.01, "frictions": [0.2], "force": 1.0, "realizations": 1, "width": 3.0},
+    "linear_range": {
+        "polydispersities": [0.01],
+        "frictions": [0.2],
+        "forces": [0.1, 0.5],
+        "width": 3.0,
+        "tolerance": 0.05,
+    },
+    "forces_picture": {"polydispersity": 0.01, "friction": 0.2, "force": 1.0, "realization": 0},
+}
 
 SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
     "theory": (
@@ -44,27 +57,28 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
                                    "layers": [3]}]},
     ),
     "frictionless_crossover": (
-        {"forces": [0.01], "size_forces": [0.01], "stiffness_forces": [0.01]},
-        {"scene": ONE, "sizes": [[2, 7]], "widths": [[2, 7]]},
+        {"scene": SMALL, "sizes": [[2, 7]], "widths": [[2, 7]], "forces": [0.01], "size_forces": [0.01],
+         "stiffness_forces": [0.01]},
+        {"scene": ONE, "sizes": [[2, 7]], "widths": [[2, 7]], "forces": [0.25, 15.0]},
         {"scene": SMALL, "sizes": [[2, 7], [3, 7]], "widths": [[2, 9]], "stiffnesses": [10.0, 100.0],
          "compared_stiffnesses": [10.0, 100.0], "forces": [400.0]},
     ),
     "friction_linear_range": (
-        {"scene": SMALL, "forces": [0.1]},
-        {"scene": ONE, "extra_forces": [], "ends": []},
+        {"scene": SMALL, "forces": [0.1], "dynamics": AT_ONCE},
+        {"scene": ONE, "extra_forces": [], "ends": [], "dynamics": AT_ONCE},
         {"frictions": [0.2], "forces": [8.0], "extra_forces": [], "ends": [], "states_of": [0.2],
          "friction_axis": {"frictions": [0.2], "force": 0.1, "tolerance": 0.05},
-         "dynamics": {"friction": 0.2, "forces": [], "ramp_time": 0.0, "time_step": 0.0005}},
+         "dynamics": AT_ONCE},
     ),
     "symmetry_breaking": (
         {"scene": SMALL},
-        {"asymmetry": 100.0},
+        {"scene": SHALLOW, "asymmetry": 100.0},
         {"held": {"forces": [0.01], "displacement": 1e-6}, "copies": {"force": 0.01, "displacement": 1e-6, "seeds": []},
          "protocols": [{"ramp_time": 0.0, "time_steps": [0.0005], "between": [0.0, 0.1]}], "tolerance": 0.1},
     ),
     "stiffness_ratio_crossover": (
         {"scene": ONE},
-        {"ratios": [0.8, 0.9], "force": 0.01},
+        {"scene": SHALLOW, "ratios": [0.8, 0.9], "force": 0.01},
         {"scene": {**SHALLOW, "contact.friction": 0.0}, "ratios": [0.0, 1.0]},
     ),
     "friction_fields": (
@@ -83,16 +97,16 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"scene": SHALLOW, "force": 0.5, "torques": [0.0, 0.01], "distances": [0.0, 1e-6]},
     ),
     "polydisperse_averages": (
-        {"realizations": 1, "few": 50, "widths": [1e-3]},
-        {"reach": 1e-3, "spacing": 1.0},
-        {"linear_range": {"polydispersities": [0.01], "frictions": [0.2], "forces": [50.0], "ramp_time": 1.0,
-                          "width": 3.0, "tolerance": 1e-9}},
+        {**FEW_CASES, "realizations": 1, "few": 50, "widths": [1e-3]},
+        {**FEW_CASES, "reach": 1e-3, "spacing": 1.0},
+        {**FEW_CASES, "linear_range": {**FEW_CASES["linear_range"], "forces": [0.5], "tolerance": 1e-9}},
     ),
     "superposition": (
         {"realizations": 1, "pair_realizations": 1, "offsets": [1], "forces": [0.01, 0.02],
          "single_forces": [0.01, 0.02]},
-        {"tolerance": 1e-9},
-        {"forces": [5.0, 20.0], "single_forces": [10.0, 40.0], "tolerance": 10.0},
+        {"realizations": 2, "pair_realizations": 1, "offsets": [4], "tolerance": 1e-9},
+        {"scene": SHALLOW, "realizations": 1, "pair_realizations": 1, "offsets": [1],
+         "forces": [5.0, 20.0], "single_forces": [10.0, 40.0], "tolerance": 10.0},
     ),
     "influence": (
         {"cases": [{"polydispersity": 0.0, "friction": 0.0}], "margin": 100.0},
@@ -119,7 +133,7 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
     "hysteresis": (
         {"cases": [{"polydispersity": 0.0, "friction": 0.0, "forces": [0.01], "increments": 1}]},
         {"cases": [{"polydispersity": 0.1, "friction": 0.2, "realizations": 1, "forces": [0.3], "increments": 2}]},
-        {"left": 1.0, "cases": [{"polydispersity": 0.0, "friction": 0.2, "forces": [0.1, 30.0], "increments": 2}]},
+        {"left": 1.0, "cases": [{"polydispersity": 0.0, "friction": 0.2, "forces": [0.1, 15.0], "increments": 2}]},
     ),
     "preparation": (
         {"scene": SMALL, "parts": [{"friction": 0.2, "to": 0.05}]},

@@ -1,8 +1,8 @@
 """Files of every kind that others may hand over, cut and changed at random, and what the commands make of them.
 
-``python tests/unit/broken_files.py 10000`` tries so many and prints how many had which outcome (``make broken``). A
-broken file is refused in one line, or what it still says is taken: never a traceback, a quiet change, or more time or
-memory than a file of this size may cost.
+``python tests/integration/broken_files.py 10000`` tries so many and prints how many had which outcome (``make
+broken``). A broken file is refused in one line, or what it still says is taken: never a traceback, a quiet change, or
+more time or memory than a file of this size may cost.
 """
 
 from __future__ import annotations

@@ -2,22 +2,14 @@
 
 import numpy as np
 import pytest
-import reduced
 
 from granular_response.observe.floor import smoothed_response
-from granular_response.sweeps.resources import using
-from granular_response_paper.groups.explorer import simulate as study
 from granular_response_paper.groups.explorer.numbers import numbers
-from granular_response_paper.groups.explorer.parameters import Parameters
-
-SECTION = reduced.parameters("explorer")
 
 
 @pytest.fixture(scope="module")
-def slabs():
-    with using(workers=1):
-        found = study.simulate(Parameters.model_validate(SECTION))
-    return [found["slab_0"], found["slab_1"]]
+def slabs(datasets):
+    return [datasets["slab_0"], datasets["slab_1"]]
 
 
 def test_states_begin_at_rest_and_end_before_the_collapse(slabs):

@@ -1,0 +1,63 @@
+"""The command lines as a test runs them: in a new process, or in one forked from a process that imported everything.
+
+Both have their own folder, streams and exit code, and a forked one begins in a hundredth of the time that imports take.
+What a process does before it has imported anything, and what it must not import, is tested by new ones.
+"""
+
+from __future__ import annotations
+
+import importlib
+import multiprocessing
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+LIBRARY, PAPER = "granular_response", "granular_response_paper"
+#: Commands of the reproduction; all others are the library's.
+OF_THE_PAPER = ("simulate", "draw", "measure", "claims", "report", "notebooks", "archive", "restore")
+#: Of a command, in seconds.
+LONGEST = 120.0
+
+
+def package_of(*arguments: object) -> str:
+    """The package whose command line has a command."""
+    return PAPER if arguments and arguments[0] in OF_THE_PAPER else LIBRARY
+
+
+def process(
+    *arguments: object, folder: str | Path | None = None, package: str | None = None, **options
+) -> subprocess.CompletedProcess[str]:
+    """``granular-response ARGUMENTS``, or that of ``package``, in a new process; ``options`` of ``subprocess.run``."""
+    command = [sys.executable, "-m", package or package_of(*arguments), *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, **options)
+
+
+def call(
+    *arguments: object, folder: str | Path | None = None, package: str | None = None
+) -> subprocess.CompletedProcess[str]:
+    """The same in a process forked from one that has imported everything (``conftest.py``)."""
+    argv = [package or package_of(*arguments), *map(str, arguments)]
+    with tempfile.TemporaryDirectory() as place:
+        streams = [Path(place, name) for name in ("out", "err")]
+        asked = (argv, str(folder or Path.cwd()), dict(os.environ), *map(str, streams))
+        child = multiprocessing.get_context("forkserver").Process(target=_run, args=asked)
+        child.start()
+        child.join(LONGEST)
+        if child.is_alive():
+            child.kill()
+        return subprocess.CompletedProcess(argv, child.exitcode, *(one.read_text(encoding="utf-8") for one in streams))
+
+
+def _run(argv: Sequence[str], folder: str, environment: dict[str, str], out: str, err: str) -> None:
+    """The command, in this process; its end is that of the process."""
+    for descriptor, name in enumerate((os.devnull, out, err)):
+        mode = os.O_RDONLY if descriptor == 0 else os.O_WRONLY | os.O_CREAT
+        os.dup2(os.open(name, mode), descriptor)
+    os.chdir(folder)
+    os.environ.clear()
+    os.environ.update(environment)
+    sys.argv = list(argv)
+    importlib.import_module({LIBRARY: f"{LIBRARY}.cli.main", PAPER: f"{PAPER}.cli"}[argv[0]]).main()

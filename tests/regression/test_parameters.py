@@ -1,0 +1,109 @@
+"""What the parameters of a figure group must be: each mistake is named, with its place."""
+
+from typing import Any
+
+import pytest
+import reduced
+
+from granular_response.scene import SceneError
+from granular_response_paper.pipeline import group_member
+
+BETWEEN = {"friction": 0.2, "floor": "smooth", "gravity": "at-once", "disks_per_layer": 6, "layers": [4]}
+SERIES = {"name": "one", "friction": 0.0, "layers": [5, 7]}
+WIDTH = {"polydispersity": 0.1, "friction": 0.2, "layers": [4], "realizations": 2}
+WAY = {"name": "x", "changes": {}}
+
+#: For each group: changes to its section of the notebooks' parameters (None: left out), and what is said.
+MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
+    "crossover_scaling": [
+        ({"series": [SERIES | {"layers": [6, 8]}]}, r"layers = \[6, 8\]: must be odd"),
+        ({"series": [SERIES | {"layers": [7]}]}, "must have several entries in one of layers"),
+        ({"series": [SERIES | {"confinement": [0.1, 0.2]}]}, "must have several entries in one of layers"),
+        ({"series": [SERIES | {"confined": "loose"}]}, "confined"),
+        ({"series": [SERIES, SERIES]}, "must have different names"),
+    ],
+    "friction_fields": [
+        ({"profiles": {"frictions": [0.5], "force": 12.0, "rows": [1.5]}}, r"profiles\.frictions = \[0\.5\]"),
+        ({"stress_width": 0}, "stress_width = 0: must be a number greater than 0"),
+    ],
+    "hysteresis": [({"left": 0.0}, "left"), ({"tolerance": 2.0}, "tolerance"), ({"cases": []}, "cases")],
+    "influence": [({"fitted": [6.0, 1.0]}, r"fitted = \[6.0, 1.0\]: must be two growing numbers")],
+    "moduli": [
+        (
+            {"cases": [{"polydispersity": 0.1, "friction": 0.0, "layers": [5, 7], "realizations": [4]}]},
+            r"realizations = \[4\]: must have a number for each of the layers",
+        ),
+        (
+            {"lattice": reduced.parameters("moduli")["lattice"] | {"responding": [7, 8]}},
+            r"responding = \[7, 8\]: must be odd",
+        ),
+    ],
+    "peak_width": [
+        ({"cases": [WIDTH]}, "must be at least 3"),
+        ({"cases": [WIDTH | {"polydispersity": 0.0, "layers": [6, 4], "realizations": 1}]}, "must be growing numbers"),
+        ({"spacing": 0.5}, "must be below a tenth of reach"),
+    ],
+    "pile_dip": [({"dip_height": -1.0}, r"dip_height = -1\.0: must be a number greater than 0")],
+    "preparation": [
+        ({"ways": [WAY | {"changes": {"contact.friction": 1.0}}]}, "must be one of preparation.gravity"),
+        ({"ways": [WAY, WAY]}, "must have different names"),
+        ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, "must be one of the names in ways"),
+        ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
+        ({"ways": [WAY | {"changes": {"contact.damping_ratio": -1.0}}]}, "damping_ratio"),
+    ],
+    "slab_comparison": [
+        ({"force": 0.0}, r"force = 0\.0: must be a number greater than 0"),
+        ({"cases": []}, r"cases = \[\]"),
+        ({"cases": [{"friction": 0.2}]}, r"cases\[0\]\.floor: missing"),
+        (
+            {"cases": [BETWEEN | {"friction": 0.0, "floor": "rough"}]},
+            "floor = 'rough': must be smooth, or rough with friction above 0",
+        ),
+        ({"cases": [BETWEEN | {"gravity": "never"}]}, "gravity = 'never': must be at-once or slow"),
+        ({"cases": [BETWEEN | {"layers": [4.5]}]}, r"cases\[0\]\.layers\[0\] = 4\.5"),
+        ({"cases": [BETWEEN | {"disks_per_layer": 1}]}, "disks_per_layer = 1"),
+    ],
+    "stiffness_ratio_crossover": [
+        ({"ratios": [0.3, 0.2]}, "ratios = .*: must be"),
+        ({"ratios": [-0.1, 0.2]}, "ratios = .*: must be"),
+        ({"ratios": [0.1]}, "ratios = .*: must be"),
+        ({"force": 0.0}, "force = .*: must be"),
+    ],
+    "superposition": [
+        ({"forces": [1.0, 0.5]}, r"forces = \[1.0, 0.5\]: must be two or more growing numbers above 0"),
+        ({"single_forces": [1.0]}, r"single_forces = \[1.0\]: must be two or more"),
+        ({"offsets": [0]}, r"offsets = \[0\]: must be a list of different whole numbers from 1 on"),
+        ({"offsets": [10]}, "must be places from 1 to 9"),
+        ({"offsets": []}, "must be a list"),
+        ({"realizations": 0}, "realizations = 0: must be a whole number, 1 or greater"),
+        ({"pair_realizations": 4}, "pair_realizations = 4: must be from 1 to realizations = 3"),
+        ({"tolerance": 0.0}, "tolerance = 0.0: must be a number greater than 0"),
+    ],
+    "theory": [
+        ({"stiffness_ratio": -0.1}, "stiffness_ratio = .*: must be"),
+        ({"ray_angle": 90.0}, "ray_angle = .*: must be"),
+        ({"ray_angle": "steep"}, "ray_angle = .*: must be"),
+        ({"ray_angle": None}, "ray_angle: missing, must be given"),
+        ({"diffusion_length": 0.0}, "diffusion_length = .*: must be"),
+        ({"depths": []}, "depths = .*: must be"),
+        ({"depths": [1.0, -2.0]}, "depths = .*: must be"),
+        ({"depths": "deep"}, "depths = .*: must be"),
+        ({"half_width": True}, "half_width = .*: must be"),
+        ({"points": 120}, "points = .*: must be"),
+    ],
+    "torque": [
+        ({"torques": [1.0, 2.0]}, "torques = .*: must be"),
+        ({"torques": []}, "torques = .*: must be"),
+        ({"distances": [3.0, 1.0]}, "distances = .*: must be"),
+        ({"force": -1.0}, "force = .*: must be"),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("group", "change", "said"), [(group, *mistake) for group, mistakes in MISTAKES.items() for mistake in mistakes]
+)
+def test_a_mistake_in_the_parameters_of_a_group_is_named(group, change, said):
+    given = {**reduced.parameters(group), **change}
+    with pytest.raises(SceneError, match=said):
+        group_member(group, "parameters", "Parameters")(**{k: v for k, v in given.items() if v is not None})

@@ -1,0 +1,189 @@
+"""Stages of a figure group that is made up for it: simulated, drawn, interrupted; progress on a terminal."""
+
+import fcntl
+import io
+import json
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from rich.console import Console
+
+from granular_response.api import terminal
+from granular_response.scene.base import Description
+from granular_response.store import files as store
+from granular_response.sweeps.errors import SweepError
+from granular_response.sweeps.resources import Resources, current
+from granular_response_paper import cli as paper
+from granular_response_paper import pipeline
+from granular_response_paper.captions import Caption
+from granular_response_paper.pipeline import drawing, simulation
+
+LABEL = {"long_name": "square", "units": "1"}
+
+
+def square(item):
+    return item * item
+
+
+class Study:
+    """Stands where the modules of a figure group would."""
+
+    class Parameters(Description):
+        count: int
+        method: str
+
+    @staticmethod
+    def simulate(parameters):
+        from granular_response.sweeps.tasks import map_tasks
+
+        squares = map_tasks(square, range(parameters.count))
+        return {"squares": xr.Dataset({"square": ("item", np.array(squares), LABEL)})}
+
+    @staticmethod
+    def draw(datasets):
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(2, 2))
+        figure.add_subplot().plot(datasets["squares"]["square"])
+        return {"fig99_squares": figure}
+
+    def captions(datasets, parameters):
+        return {"fig99_squares": Caption(f"{parameters.count} squares.", "A parabola.", {"force": [1.0, 2.0]})}
+
+
+@pytest.fixture
+def group(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "params.yaml").write_text("common: {method: auto}\nsquares: {count: 4}\n")
+    for module in (simulation, drawing):
+        monkeypatch.setattr(module, "group_member", lambda group, module, name: getattr(Study, name))
+    return "squares"
+
+
+def test_a_group_has_the_common_parameters_and_its_own(group):
+    given, described = simulation.parameters(group)
+    assert given == {"count": 4, "method": "auto"} and described == Study.Parameters(count=4, method="auto")
+    with pytest.raises(pipeline.GroupError, match=r"params.yaml: section cubes is missing"):
+        simulation.parameters("cubes")
+
+
+def test_simulate_and_draw(group, tmp_path):
+    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
+    assert store.read("data/squares.nc")["squares"]["square"].values.tolist() == [0, 1, 4, 9]
+    attributes = store.read_attributes("data/squares.nc")
+    assert yaml.safe_load(attributes["parameters"])["count"] == 4
+    paths = drawing.draw(group)
+    assert sorted(map(str, paths)) == [
+        f"figures/squares/{name}" for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png")
+    ]
+    assert json.loads(Path("figures/squares/captions.json").read_text()) == {
+        "fig99_squares": {
+            "figure": None,
+            "panels": [],
+            "caption": "4 squares. F_ext = 1 and 2 m\u0304g.",
+            "alternative": "A parabola.",
+            "parameters": {"force": [1.0, 2.0]},
+        }
+    }
+    before = [path.read_bytes() for path in paths]
+    first = Path("data/squares.nc").read_bytes()
+    simulation.simulate(group, workers=1)
+    assert Path("data/squares.nc").read_bytes() == first
+    assert [path.read_bytes() for path in drawing.draw(group)] == before
+    assert sorted(path.name for path in (tmp_path / "data").iterdir()) == ["squares.nc"]
+
+
+def test_a_second_run_of_a_group_is_refused_while_the_first_one_lasts(group, monkeypatch):
+    """Not when it comes first to the end: it would take away what the other keeps."""
+    said = []
+
+    def second(done, total, what=""):
+        if done == 2 and not said:
+            kept = sorted(Path("data/.squares.checkpoint").rglob("*.kept"))
+            with pytest.raises(pipeline.GroupError) as caught:
+                simulation.simulate(group, workers=1)
+            said.append(str(caught.value))
+            assert simulation.simulate(group, Path("data/other.nc"), workers=1) == Path("data/other.nc")
+            assert sorted(Path("data/.squares.checkpoint").rglob("*.kept")) == kept and len(kept) == 2
+
+    simulation.simulate(group, workers=1, progress=second)
+    assert said == ["data/squares.nc: another run is making it; wait for it, or give another --output"]
+    assert sorted(path.name for path in Path("data").iterdir()) == ["other.nc", "squares.nc"]
+    simulation.simulate(group, workers=1)
+
+
+def test_a_run_that_has_ended_leaves_no_lock(group):
+    """However it ended: the kernel closes what a killed process had open."""
+    Path("data/.squares.checkpoint").mkdir(parents=True)
+    other = os.open("data/.squares.checkpoint", os.O_RDONLY)
+    fcntl.flock(other, fcntl.LOCK_EX)
+    with pytest.raises(pipeline.GroupError, match="another run is making it"):
+        simulation.simulate(group, workers=1)
+    os.close(other)
+    assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
+
+
+def test_an_interruption_and_what_goes_on_from_it_are_said(group, monkeypatch, capsys):
+    def interrupt(done, total, what=""):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    whole = simulation.simulate
+    monkeypatch.setattr(simulation, "simulate", lambda *args, **kind: whole(*args, **{**kind, "progress": interrupt}))
+    with pytest.raises(KeyboardInterrupt):
+        paper.simulate(group, workers=1, params=simulation.PARAMETERS)
+    said = "granular-response-paper: interrupted; 2 finished tasks are kept and are not run again\n"
+    assert capsys.readouterr().err == said
+    assert len(list(Path("data/.squares.checkpoint").rglob("*.kept"))) == 2
+    assert not Path("data/squares.nc").exists() and current() == Resources()
+    monkeypatch.setattr(simulation, "simulate", whole)
+    paper.simulate(group, workers=1, params=simulation.PARAMETERS)
+    again = capsys.readouterr()
+    kept = "2 finished tasks are kept; those of this code and these parameters are not run again"
+    assert again.err == f"granular-response-paper: {group}: {kept}\n"
+    assert not Path("data/.squares.checkpoint").exists()
+    paper.simulate(group, workers=1, params=simulation.PARAMETERS)
+    assert capsys.readouterr().err == ""
+
+
+def test_an_error_at_once_leaves_no_folder(group):
+    with pytest.raises(SweepError, match="workers = 0"):
+        simulation.simulate(group, workers=0)
+    assert not Path("data/.squares.checkpoint").exists()
+
+
+def test_the_address_of_a_scheduler_reaches_the_sweep(group, monkeypatch):
+    seen = []
+    monkeypatch.setattr(Study, "simulate", lambda *_, **__: seen.append(current().scheduler) or {})
+    simulation.simulate(group, scheduler="tcp://127.0.0.1:8786")
+    assert seen == ["tcp://127.0.0.1:8786"]
+    assert current() == Resources()
+
+
+def test_progress_is_silent_where_nobody_looks():
+    stream = io.StringIO()
+    with terminal.TerminalProgress(Console(file=stream), patience=0) as progress:
+        progress(1, 2, "scenes")
+    assert stream.getvalue() == ""
+
+
+def test_progress_on_a_terminal_shows_time_left_after_a_while():
+    stream = io.StringIO()
+    console = Console(file=stream, force_terminal=True, width=100)
+    with terminal.TerminalProgress(console, patience=0.2) as progress:
+        progress(0, 4, "scenes")
+        assert stream.getvalue() == ""
+        time.sleep(0.3)
+        progress(1, 4, "scenes")
+        time.sleep(0.2)
+        progress(2, 4, "scenes")
+        time.sleep(0.2)
+        progress(0, 1, "paths")
+    shown = stream.getvalue()
+    for part in ("scenes", "50 %", "left", "paths"):
+        assert part in shown
