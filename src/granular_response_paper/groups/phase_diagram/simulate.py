@@ -8,6 +8,8 @@ among them, so nothing is simulated. What counts as two peaks, and what a crosso
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -37,9 +39,9 @@ from granular_response_paper.survey.crossover import (
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """What the survey says of every case.
 
-    Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances; ``shapes``, the
-    shape against the force; ``realizations``, one by one; ``packings`` at rest; ``starts`` side by side;
-    ``linear_range``, the response at x = 0 under small forces beside smooth walls.
+    Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances, and ``trimmed``, of
+    trimmed means; ``shapes``, the shape against the force; ``realizations``, one by one; ``packings`` at rest;
+    ``starts`` side by side; ``linear_range``, the response under small forces beside smooth walls, and its change.
 
     Raises
     ------
@@ -55,34 +57,29 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     source = stored["ensembles"]
     cases = source.sizes["case"]
     table: list[list[Crossing]] = []
+    trimmed: list[list[Crossing]] = []
     single: list[list[Singles]] = []
     for row, width in enumerate(widths):
         table.append([])
+        trimmed.append([])
         single.append([])
         for case in range(cases):
             ensemble = read_ensemble(source, case, x, width, parameters.least_part)
             symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)
-            table[-1].append(
-                cross(
-                    symmetric,
-                    x,
-                    width,
-                    few=parameters.few,
-                    draws=draws,
-                    seed=seed,
-                    tolerance=tolerance,
-                    others=parameters.other_tolerances,
-                )
-            )
+            crossing = partial(cross, x=x, width=width, draws=draws, seed=seed, tolerance=tolerance)
+            table[-1].append(crossing(symmetric, numbers=parameters.numbers, others=parameters.other_tolerances))
+            trimmed[-1].append(crossing(replace(symmetric, trimmed=parameters.trimmed), numbers=()))
             single[-1].append(singles(ensemble, x, width, draws=draws, seed=seed, tolerance=tolerance))
             if progress := current().progress:
                 progress(row * cases + case + 1, len(widths) * cases, "crossovers")
     found = _datasets(source, parameters, table, single)
+    found["trimmed"] = _trimmed(found["crossovers"], trimmed, parameters.trimmed)
     packings = stored["packings"]
     found["packings"] = packings[[name for name in packings.data_vars if str(name) != "processor_time"]]
     found["starts"] = _starts(source, parameters, found["shapes"], packings)
     small = survey.read(Path(parameters.survey), [parameters.linear_range])["ensembles"]
-    found["linear_range"] = _linear_range(small, parameters.linear_width)
+    both_sides = np.concatenate([-x[:0:-1], x])
+    found["linear_range"] = _linear_range(small, parameters.linear_width, both_sides)
     return labelled(found)
 
 
@@ -92,6 +89,21 @@ def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, le
     used = np.isfinite(one["force"].values)
     response = smoothed(one.isel(step=used), np.concatenate([-x[:0:-1], x]), width)
     return Ensemble(one["force"].values[used], response, max(1, int(np.ceil(least_part * len(response)))))
+
+
+def _trimmed(usual: xr.Dataset, table: Sequence[Sequence[Crossing]], part: float) -> xr.Dataset:
+    """What ``crossovers`` holds, of trimmed means."""
+    columns = {
+        "force": np.array([[one.force for one in row] for row in table]),
+        "kind": np.array([[one.kind for one in row] for row in table], np.int8),
+        "interval": np.array([[one.interval for one in row] for row in table]),
+        "draws": np.array([[one.draws for one in row] for row in table], np.float32),
+        "limits": usual["limits"].values,
+    }
+    data = usual[list(columns)].drop_attrs(deep=False)
+    return data.assign({name: usual[name].copy(data=values) for name, values in columns.items()}).assign_attrs(
+        part=part
+    )
 
 
 def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset) -> xr.Dataset:
@@ -149,16 +161,24 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
     )
 
 
-def _linear_range(source: xr.Dataset, width: float) -> xr.Dataset:
-    response = np.array(
-        [smoothed(source.isel(case=case), np.zeros(1), width)[..., 0] for case in range(source.sizes["case"])]
-    )
+def _linear_range(source: xr.Dataset, width: float, x: FloatArray) -> xr.Dataset:
+    profiles = [smoothed(source.isel(case=case), x, width) for case in range(source.sizes["case"])]
+    changes = []
+    for profile in profiles:
+        small = profile[:, :1]
+        changes.append(np.linalg.norm(profile - small, axis=-1) / np.linalg.norm(small, axis=-1))
+    each = ("case", "realization", "step")
     return xr.Dataset(
         {
             "response_at_centre": variable(
-                ("case", "realization", "step"),
-                response,
+                each,
+                np.array([profile[..., np.argmin(np.abs(x))] for profile in profiles]),
                 "smoothed response at x = 0 in 1/mean radius: stress per applied force",
+            ),
+            "profile_change": variable(
+                each,
+                np.array(changes),
+                "root mean square change of the smoothed response from that to the smallest force, relative to it",
             ),
             "applied_force": variable(("case", "step"), source["force"].values, f"applied force {FORCE}"),
         },
@@ -256,10 +276,10 @@ def _datasets(
             "shape_interval": variable(
                 (*step, "level"), along("spread", ["step", "level"]), "quantiles of the bootstrapped shape"
             ),
-            "few_agree": variable(
-                step,
-                along("alike", ["step"]),
-                f"part of the averages of {parameters.few} realizations with as many peaks as the mean of all",
+            "two_peaked_means": variable(
+                (*step, "number"),
+                along("two_peaked", ["step", "number"]),
+                "part of the means of so many realizations, drawn at random, that have two peaks",
             ),
             "spread": variable(
                 step,
@@ -280,8 +300,8 @@ def _datasets(
                 (*dims, "level"), grid("step_interval", single), "quantiles of the bootstrapped largest change"
             ),
         },
-        coords=coordinates,
-        attrs={"few": parameters.few},
+        coords={**coordinates, "number": variable("number", parameters.numbers, "realizations in a mean")},
+        attrs={"tolerance": parameters.tolerance},
     )
     outcome = source["outcome"].values
     gone = (outcome == COLLAPSED).any(axis=-1)
@@ -290,7 +310,11 @@ def _datasets(
     collapse = np.where(gone, np.take_along_axis(force, at[..., None], axis=-1)[..., 0], np.nan)
     realizations = xr.Dataset(
         {
-            "shape": variable(each, along("shapes", ["realization", "step"], single), "shape of each response"),
+            "shape": variable(
+                each,
+                along("shapes", ["realization", "step"], single),
+                "shape of each response, by the lower of the largest values on both sides",
+            ),
             "asymmetry": variable(
                 each,
                 along("leans", ["realization", "step"], single),
