@@ -406,7 +406,7 @@ def phases_study():
         "crossovers": dataset(
             {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers
         ).assign_attrs(tolerance=0.01),
-        "trimmed": dataset({**cases, **levels}, **crossovers),
+        "medians": dataset({**cases, **levels}, **crossovers, collapsed=("case", np.where(delta == 0.25, 3, 0))),
         "definitions": dataset(
             {**cases, **levels, "tolerance": tolerances}, **definitions, limits=crossovers["limits"]
         ),

@@ -154,23 +154,6 @@ def test_means_of_a_few_are_alike_far_from_the_crossover() -> None:
     assert 0.0 < part[1:-1].max() < 1.0 or 0.0 < part[1:-1].min() < 1.0
 
 
-def test_a_trimmed_mean_leaves_out_what_is_far_from_the_others() -> None:
-    """Four of forty responses are those of packings near their collapse."""
-    whole = make_ensemble(0.5)
-    whole.response[:4, 3] *= -50.0
-    trimmed = Ensemble(whole.force, whole.response, 1, 0.1)
-    np.testing.assert_allclose(trimmed.mean()[3], whole.response[4:, 3].mean(axis=0))
-    assert np.abs(whole.mean()[3] - trimmed.mean()[3]).max() > 1.0
-    # in every draw anew: what is drawn twice counts twice
-    twice = np.ones((1, 40))
-    twice[0, 0], twice[0, 4] = 2.0, 0.0
-    drawn = trimmed.means(twice)[0, 3]
-    assert np.abs(drawn - trimmed.mean()[3]).max() > 1.0
-    # nor does it need all of them
-    few = Ensemble(whole.force, np.where(np.arange(40)[:, None, None] < 20, np.nan, whole.response), 1, 0.1)
-    assert np.isfinite(few.mean()).all()
-
-
 def test_one_peak_beside_the_middle_is_one() -> None:
     """Made symmetric it would be two; two peaks of different height are two."""
     both = np.concatenate([-X[:0:-1], X])
@@ -376,7 +359,7 @@ def test_blocks_of_different_size_become_one(stored) -> None:
 
 def parameters(stored, **changes) -> Parameters:
     given = {
-        "draws": 50, "numbers": [5], "trimmed": 0.1, "seed": 0, "least_part": 0.5,
+        "draws": 50, "numbers": [5], "seed": 0, "least_part": 0.5,
         "spacing": 0.5, "reach": 30.0, "widths": [3.0, 6.0],
         "tolerance": 0.01, "other_tolerances": [0.0, 0.05], "survey": str(stored), "blocks": list(SIZES),
         "linear_range": "few", "linear_width": 3.0, "compared": [{"polydispersity": 0.1, "force": 4.0}],
@@ -407,7 +390,13 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     assert np.isnan(single["collapse_force"].values[1, 1:]).all()
     low, high = single["median_interval"].values[1, 2, [0, -1]]
     assert low <= single["median"].values[1, 2] <= high
+    medians = found["medians"]
+    assert medians["collapsed"].values.tolist() == [0, 1, 0]
+    np.testing.assert_array_equal(medians["force"], single["median"])  # none beyond a path
+    np.testing.assert_array_equal(medians["interval"], single["median_interval"])
     assert found["linear_range"]["response_at_centre"].shape == (1, 8, 4)
+    np.testing.assert_array_equal(found["linear_range"]["profile_change"].values[..., 0], 0.0)
+    assert np.nanmin(found["linear_range"]["profile_change"].values[..., -1]) > 0.1
     assert found["packings"]["horizontal_contacts"].shape == (3, 10)
     side = found["starts"]
     assert side["friction"].values.tolist() == [0.2, 0.5]

@@ -10,10 +10,6 @@ than the smoothing width are not told apart from one. Figs. 19, 21 and 22 and al
 definition; what other tolerances give is stored beside it. A single realization is not symmetric, and made so, one peak
 beside the middle would be two: its dip is that below the lower of the largest values on either side.
 
-Mean. Packings near their collapse have responses many times as large as the others, and a mean hangs on a few of them.
-So the crossover of a trimmed mean is stored too: a part of the realizations, those whose response is
-farthest from the median response (root mean square), is left out, in every draw anew.
-
 Crossover. Between two phases there is one boundary, so the shape is taken to grow with the force: its
 least-squares non-decreasing fit along the load path keeps a chance dip of a finite ensemble from counting as a
 boundary of its own. The crossover is where this fit, linear in the logarithm of the force, passes the tolerance. Where
@@ -26,7 +22,9 @@ radii, so the ratio of two crossovers has less scatter than either.
 
 Single realizations. Each has a crossover of its own. Where its packing collapses or its path ends before, all that
 is known is that the crossover lies higher: such values are censored, and the median over realizations is that of Kaplan
-and Meier, which counts them as long as they last.
+and Meier, which counts them as long as they last. Where packings collapse, this median is the crossover of the ensemble
+for the claims: those near their collapse have responses many times as large as the others, and those beyond it none, so
+the mean hangs on a few and leaves out the weakest.
 """
 
 from __future__ import annotations
@@ -53,37 +51,21 @@ class Ensemble:
     """Smoothed responses of the realizations of one case.
 
     ``force`` (k,); ``response`` (r, k, x), nan where a realization is not at rest; ``least``, how many realizations a
-    mean needs; ``trimmed``, the part of them that it leaves out.
+    mean needs.
     """
 
     force: FloatArray
     response: FloatArray
     least: int = 1
-    trimmed: float = 0.0
 
     def means(self, weights: FloatArray) -> FloatArray:
         """(d, k, x) weighted means for ``weights`` (d, r); nan where less than ``least`` of the weight is at rest."""
         here = np.isfinite(self.response[:, :, 0])
-        values = np.where(here[:, :, None], self.response, 0.0)
-        found = np.full((len(weights), *self.response.shape[1:]), np.nan)
-        for k in range(len(self.force)):
-            counts = weights * here[:, k]
-            enough = counts.sum(axis=1) >= self.least
-            if self.trimmed:
-                counts = self._nearest(counts, self.response[:, k])
-            found[enough, k] = (counts[enough] @ values[:, k]) / counts[enough].sum(axis=1)[:, None]
-        return found
-
-    def _nearest(self, counts: FloatArray, response: FloatArray) -> FloatArray:
-        """Counts (d, r) at one force without the part farthest from the median of ``response`` (r, x)."""
-        off = ((response - np.nanmedian(response, axis=0)) ** 2).mean(axis=-1)
-        order = np.argsort(off)  # what is nan comes last, and counts nothing
-        sorted_counts = counts[:, order]
-        before = sorted_counts.cumsum(axis=1) - sorted_counts
-        left = (1.0 - self.trimmed) * counts.sum(axis=1)[:, None] - before
-        kept = np.empty_like(counts)
-        kept[:, order] = np.clip(left, 0.0, sorted_counts)
-        return kept
+        r, k, points = self.response.shape
+        values = np.where(here[:, :, None], self.response, 0.0).reshape(r, k * points)
+        total = (weights @ values).reshape(-1, k, points)
+        count = (weights @ here)[:, :, None]
+        return np.where(count >= self.least, total / np.maximum(count, 1.0), np.nan)
 
     def mean(self) -> FloatArray:
         """(k, x) mean over all realizations."""
@@ -260,8 +242,9 @@ def cross(
     known = np.isfinite(drawn).all(axis=0)
     spread[known] = np.quantile(drawn[:, known], LEVELS, axis=0).T
     parts = [two_peaked_means(ensemble, x, width, n, draws=draws, seed=seed, tolerance=tolerance) for n in numbers]
-    two_peaked = np.stack(parts, axis=-1) if parts else np.empty((len(shapes), 0))
-    return Crossing(force, kind, limits, found, shapes, spread, two_peaked, tuple(at(limit) for limit in others))
+    return Crossing(
+        force, kind, limits, found, shapes, spread, np.stack(parts, axis=-1), tuple(at(limit) for limit in others)
+    )
 
 
 @dataclass(frozen=True)
@@ -278,7 +261,12 @@ class Singles:
     force: FloatArray  #: (r,) crossovers, or their bounds
     kind: NDArray[np.int8]  #: (r,)
     median: float
-    median_interval: FloatArray  #: (levels,)
+    median_draws: FloatArray  #: (draws,) infinite beyond bounds
+
+    @property
+    def median_interval(self) -> FloatArray:
+        """(levels,) quantiles of the draws."""
+        return quantiles(self.median_draws)
 
 
 def singles(
@@ -310,7 +298,7 @@ def singles(
         force,
         kind,
         float(censored_medians(value, censored, everybody)[0]),
-        quantiles(censored_medians(value, censored, drawn)),
+        censored_medians(value, censored, drawn),
     )
 
 

@@ -3,7 +3,7 @@ definition of two peaks (:mod:`granular_response_paper.survey.crossover`)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -201,6 +201,13 @@ def _crossovers(data: Data, width: float, words: Bounds) -> dict[tuple[float, fl
     return _by_case(_defined(data, width, words))
 
 
+def _medians(data: Data, width: float) -> tuple[dict[tuple[float, float], Crossover], dict[tuple[float, float], bool]]:
+    """Crossovers of the median realization by polydispersity and friction, and whether packings collapse."""
+    study = at(data.get(GROUP, "medians", "collapsed", *_CROSSING), width=width)
+    found = _by_case(study)
+    return found, {key: bool(_case(study, *key, STARTS[0])["collapsed"]) for key in found}
+
+
 def _by_case(study: xr.Dataset) -> dict[tuple[float, float], Crossover]:
     keys = dict.fromkeys(zip(study["polydispersity"].values.tolist(), study["friction"].values.tolist(), strict=True))
     return {key: _crossover(_case(study, *key, STARTS[0])) for key in keys}
@@ -222,15 +229,22 @@ def trend(line: Sequence[Crossover]) -> Quantity:
     return Quantity(float(np.median(up - down)), low, high, "confidence")
 
 
-def _lines(found: Mapping[tuple[float, float], Crossover], what: str) -> dict[str, list[Crossover]]:
-    """Crossovers of disorder along friction or polydispersity, by the value of the other; bounds alone are left out."""
+def _lines(
+    data: Data, width: float, words: Bounds, what: str, means: bool = False
+) -> list[tuple[str, list[Crossover]]]:
+    """Crossovers of disorder along friction or polydispersity, by the value of the other; bounds alone are left out.
+
+    They are all medians of realizations if packings of one of them collapse, unless ``means`` are wanted.
+    """
+    usual, medians, collapsed = _crossovers(data, width, words), *_medians(data, width)
     along, across = (1, 0) if what == "friction" else (0, 1)
-    lines = {}
-    for other in sorted({key[across] for key in found if key[0] > 0.0}):
-        keys = sorted((key for key in found if key[0] > 0.0 and key[across] == other), key=lambda key: key[along])
+    lines = []
+    for other in sorted({key[across] for key in usual if key[0] > 0.0}):
+        keys = sorted((key for key in usual if key[0] > 0.0 and key[across] == other), key=lambda key: key[along])
+        found = usual if means or not any(collapsed[key] for key in keys) else medians
         line = [found[key] for key in keys]
         if any(after.comparable(before) for before, after in pairwise(line)):
-            lines[f"{'polydispersity' if along else 'friction'} {other:g}"] = line
+            lines.append((f"{'polydispersity' if along else 'friction'} {other:g}", line))
     return lines
 
 
@@ -247,7 +261,7 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
     turned = slice(None, None, -1 if rising == "falls" else 1)
     for width, change in WIDTHS.items():
         conditions, trends = [], []
-        for name, found in _lines(_crossovers(data, width, words), what).items():
+        for name, found in _lines(data, width, words, what):
             line = found[turned]
             steps = [after.per(before) for before, after in pairwise(line) if after.comparable(before)]
             trends.append(_trend(line))
@@ -260,12 +274,11 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds too few crossover forces to compare")
         texts.append(f"trend {', '.join(q.text() for q in trends)} (w = {width:g})")
         readings.append(Reading(f"w = {width:g}", *conditions, change=change))
-    trimmed = _lines(_by_case(at(data.get(GROUP, "trimmed", *_CROSSING), width=6.0)), what)
-    means = ", ".join(f"{_trend(line[turned]).text()} ({name})" for name, line in trimmed.items())
+    means = ", ".join(f"{_trend(line[turned]).text()} ({name})" for name, line in _lines(data, 6.0, words, what, True))
     return Finding(
         f"crossover force {rising} with {what}: " + ", ".join(texts),
         readings,
-        f"Of means without the tenth of the packings that is farthest from the others (w = 6): trend {means}",
+        f"Where packings collapse, medians of realizations are compared; of means alone (w = 6): trend {means}",
     )
 
 
@@ -348,12 +361,12 @@ def five_enough(data: Data, words: Bounds) -> Finding:
 def below_lattice(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
     for width, change in WIDTHS.items():
-        found = _crossovers(data, width, words)
-        ratios = {
-            key: found[key].per(found[(0.0, key[1])])
-            for key in sorted(found)
-            if key[0] > 0.0 and (0.0, key[1]) in found and found[key].comparable(found[(0.0, key[1])])
-        }
+        means, medians, collapsed = _crossovers(data, width, words), *_medians(data, width)
+        ratios = {}
+        for key in sorted(means):
+            found, lattice = medians if collapsed[key] else means, (0.0, key[1])
+            if key[0] > 0.0 and lattice in found and found[key].comparable(found[lattice]):
+                ratios[key] = found[key].per(found[lattice])
         if not ratios:
             raise NotMeasured(f"data/{GROUP}.nc: crossovers holds no lattice to compare with")
         texts.append(f"{sum(r.high <= 1.0 for r in ratios.values())} of {len(ratios)} clear (w = {width:g})")
@@ -369,7 +382,11 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
                 change=change,
             )
         )
-    return Finding("crossover force below that of the lattice: " + ", ".join(texts), readings)
+    return Finding(
+        "crossover force below that of the lattice: " + ", ".join(texts),
+        readings,
+        "Where packings collapse, the median of realizations is compared",
+    )
 
 
 @CLAIMS.add(

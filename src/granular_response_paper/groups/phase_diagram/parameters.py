@@ -35,5 +35,4 @@ class Parameters(Description):
     draws: Count = Field(description="Of the bootstrap over realizations.")
     seed: Index = Field(description="Of the bootstrap.")
     numbers: Counts = Field(description="Of realizations in the paper's means: Fig. 21, Fig. 19.")
-    trimmed: Part = Field(description="Of the realizations, left out of the trimmed means.")
     least_part: Part = Field(description="Part of the realizations that must be at rest.")

@@ -8,12 +8,11 @@ among them, so nothing is simulated. What counts as two peaks, and what a crosso
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, flags, variable
@@ -23,6 +22,9 @@ from granular_response_paper.ensembles import COLLAPSED, smoothed
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import (
+    ABOVE,
+    BELOW,
+    FOUND,
     KINDS,
     LEVELS,
     Crossing,
@@ -39,8 +41,8 @@ from granular_response_paper.survey.crossover import (
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """What the survey says of every case.
 
-    Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances, and ``trimmed``, of
-    trimmed means; ``shapes``, the shape against the force; ``realizations``, one by one; ``packings`` at rest;
+    Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances, and ``medians``, of
+    the median realization; ``shapes``, the shape against the force; ``realizations``, one by one; ``packings`` at rest;
     ``starts`` side by side; ``linear_range``, the response under small forces beside smooth walls, and its change.
 
     Raises
@@ -57,23 +59,31 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     source = stored["ensembles"]
     cases = source.sizes["case"]
     table: list[list[Crossing]] = []
-    trimmed: list[list[Crossing]] = []
     single: list[list[Singles]] = []
     for row, width in enumerate(widths):
         table.append([])
-        trimmed.append([])
         single.append([])
         for case in range(cases):
             ensemble = read_ensemble(source, case, x, width, parameters.least_part)
             symmetric = Ensemble(ensemble.force, folded(ensemble.response), ensemble.least)
-            crossing = partial(cross, x=x, width=width, draws=draws, seed=seed, tolerance=tolerance)
-            table[-1].append(crossing(symmetric, numbers=parameters.numbers, others=parameters.other_tolerances))
-            trimmed[-1].append(crossing(replace(symmetric, trimmed=parameters.trimmed), numbers=()))
+            table[-1].append(
+                cross(
+                    symmetric,
+                    x,
+                    width,
+                    numbers=parameters.numbers,
+                    draws=draws,
+                    seed=seed,
+                    tolerance=tolerance,
+                    others=parameters.other_tolerances,
+                )
+            )
             single[-1].append(singles(ensemble, x, width, draws=draws, seed=seed, tolerance=tolerance))
             if progress := current().progress:
                 progress(row * cases + case + 1, len(widths) * cases, "crossovers")
     found = _datasets(source, parameters, table, single)
-    found["trimmed"] = _trimmed(found["crossovers"], trimmed, parameters.trimmed)
+    collapsed = (source["outcome"].values == COLLAPSED).any(axis=-1).sum(axis=-1).astype(np.int32)
+    found["medians"] = _medians(found["crossovers"], single, collapsed)
     packings = stored["packings"]
     found["packings"] = packings[[name for name in packings.data_vars if str(name) != "processor_time"]]
     found["starts"] = _starts(source, parameters, found["shapes"], packings)
@@ -91,19 +101,19 @@ def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, le
     return Ensemble(one["force"].values[used], response, max(1, int(np.ceil(least_part * len(response)))))
 
 
-def _trimmed(usual: xr.Dataset, table: Sequence[Sequence[Crossing]], part: float) -> xr.Dataset:
-    """What ``crossovers`` holds, of trimmed means."""
+def _medians(usual: xr.Dataset, table: Sequence[Sequence[Singles]], collapsed: NDArray[np.int32]) -> xr.Dataset:
+    """What ``crossovers`` holds, of the median realization; ``collapsed`` (case,) packings of each."""
+    smallest, largest = (usual["limits"].values[..., end] for end in (0, 1))
+    median = np.array([[one.median for one in row] for row in table])
     columns = {
-        "force": np.array([[one.force for one in row] for row in table]),
-        "kind": np.array([[one.kind for one in row] for row in table], np.int8),
-        "interval": np.array([[one.interval for one in row] for row in table]),
-        "draws": np.array([[one.draws for one in row] for row in table], np.float32),
+        "force": np.clip(median, smallest, largest),
+        "kind": np.where(median == -np.inf, BELOW, np.where(median == np.inf, ABOVE, FOUND)).astype(np.int8),
+        "interval": np.array([[one.median_interval for one in row] for row in table]),
+        "draws": np.array([[one.median_draws for one in row] for row in table], np.float32),
         "limits": usual["limits"].values,
     }
-    data = usual[list(columns)].drop_attrs(deep=False)
-    return data.assign({name: usual[name].copy(data=values) for name, values in columns.items()}).assign_attrs(
-        part=part
-    )
+    data = usual[list(columns)].assign({name: usual[name].copy(data=values) for name, values in columns.items()})
+    return data.assign(collapsed=variable("case", collapsed, "packings that collapse along their load paths"))
 
 
 def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset) -> xr.Dataset:
