@@ -578,13 +578,13 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
     """
     rng = np.random.default_rng(0)
 
-    def part(ours: FloatArray, theirs: FloatArray) -> float:
-        first, second = (rng.choice(of, (200, SHOWN)) for of in (ours, theirs))
+    def part(ours: FloatArray, theirs: FloatArray, samples: int = 200) -> float:
+        first, second = (rng.choice(of, (samples, SHOWN)) for of in (ours, theirs))
         return float(((first[:, :, None] > second[:, None]).mean(axis=(1, 2)) >= least).mean())
 
     drawn = [part(rng.choice(without, without.size), rng.choice(full, full.size)) for _ in range(200)]
     low, high = np.quantile(drawn, LEVELS)
-    return Quantity(part(without, full), float(low), float(high), "confidence")
+    return Quantity(part(without, full, 20000), float(low), float(high), "confidence")
 
 
 @CLAIMS.add(
