@@ -324,19 +324,23 @@ def frictionless_study():
         "sizes": dataset(
             {"force": forces, **depths},
             disks_per_row=("slab", [61, 122, 61, 122]),
+            crossover_bracket=crossover,
+        ),
+        "regions": dataset(
+            {"force": forces, **depths},
             teardrop_depth=(("slab", "force"), wide),
             teardrop_width=(("slab", "force"), wide),
             reaches_floor=(("slab", "force"), np.zeros((4, 3), int)),
-            crossover_bracket=crossover,
         ),
         "widths": dataset(depths, disks_per_row=("slab", [61, 62, 61, 62]), crossover_bracket=crossover),
         "stiffness": dataset(
-            {"force": forces, "normal_stiffness": stiffness},
+            {"force": forces, "normal_stiffness": stiffness, "dip": [0.0, 0.01]},
             response_at_centre=(axes, np.array([[0.05] * 3, [0.0693] * 3, [0.07] * 3, [0.07] * 3, [0.07] * 3])),
             teardrop_depth=(axes, size),
             teardrop_width=(axes, size),
             reaches_floor=(axes, np.zeros((5, 3), int)),
             crossover_bracket=(("normal_stiffness", "bracket"), np.tile([3.0, 3.03], (5, 1))),
+            crossovers=(("normal_stiffness", "dip", "bracket"), np.tile([3.0, 3.03], (5, 2, 1))),
         ),
     }
 
@@ -357,17 +361,6 @@ def disordered_cases():
         "friction": ("case", list(mu)),
         "lattice_constant": ("case", list(start)),
     }
-
-
-def averages_study():
-    force = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
-    ends = np.array([0.15, 0.15, 0.15, 0.9, 1.8, 1.8])
-    linear = dataset(
-        {"polydispersity": ("path", [0.01] * 3 + [0.0] * 3), "friction": ("path", [0.0, 0.2, 1.0] * 2)},
-        force=("force", force),
-        response_at_centre=(("path", "force"), 0.07 * (1.0 - 0.1 * np.maximum(0.0, force / ends[:, None] - 1.0))),
-    )
-    return {"linear_range": linear}
 
 
 #: Draws of the planted bootstrap, the same part of the crossover in every case.
@@ -403,23 +396,29 @@ def phases_study():
         for name, (dims, values) in crossovers.items()
         if name != "limits"
     }
-    ends = np.array([2.0, 1.0, 0.5, 0.25])
+    ends = np.array([4.0, 1.0, 0.5, 0.25])
     linear = np.array([[d, m] for d in (0.0, 0.01, 0.1, 0.25) for m in (0.0, 0.2)])
     small = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
-    away = np.maximum(0.0, small / np.repeat(ends, 2)[:, None] - 1.0)
+    # packings differ by a few per cent in where they leave the linear range
+    apart = 1.0 + 0.05 * rng.standard_normal((len(linear), few, 1))
+    away = np.maximum(0.0, small / (apart * np.repeat(ends, 2)[:, None, None]) - 1.0)
     return {
         "crossovers": dataset(
             {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers
         ).assign_attrs(tolerance=0.01),
+        "medians": dataset({**cases, **levels}, **crossovers, collapsed=("case", np.where(delta == 0.25, 3, 0))),
         "definitions": dataset(
             {**cases, **levels, "tolerance": tolerances}, **definitions, limits=crossovers["limits"]
         ),
         "shapes": dataset(
-            {**cases, **levels},
+            {**cases, **levels, "number": [5, 15]},
             applied_force=(("case", "step"), np.tile(steps, (force.size, 1))),
             shape=(("width", "case", "step"), np.stack([dip[:, None] + np.zeros((1, 3))] * 2)),
             shape_interval=(("width", "case", "step", "level"), np.stack([spread] * 2)),
-            few_agree=(("width", "case", "step"), np.full((2, force.size, 3), 0.99)),
+            two_peaked_means=(
+                ("width", "case", "step", "number"),
+                np.tile(np.where(dip > 0.01, 0.99, 0.01)[:, None, None], (2, 1, 3, 2)),
+            ),
             spread=(("width", "case", "step"), np.stack([scatter] * 2)),
             spread_interval=(
                 ("width", "case", "step", "level"), np.stack([scatter[..., None] * np.array([0.9, 1.0, 1.1])] * 2)
@@ -447,9 +446,8 @@ def phases_study():
                 "friction": ("case", linear[:, 1]),
                 "lattice_constant": ("case", [STARTS[0]] * len(linear)),
             },
-            response_at_centre=(
-                ("case", "realization", "step"), np.repeat(0.07 * (1.0 - 0.1 * away)[:, None], few, axis=1)
-            ),
+            response_at_centre=(("case", "realization", "step"), 0.07 * (1.0 - 0.1 * away)),
+            profile_change=(("case", "realization", "step"), 0.1 * away),
             applied_force=(("case", "step"), np.tile(small, (len(linear), 1))),
         ),
     }  # fmt: skip
@@ -589,7 +587,6 @@ def everything():
         "friction_fields": fields_study(),
         "pile_dip": pile_study(),
         "torque": torque_study(),
-        "polydisperse_averages": averages_study(),
         "phase_diagram": phases_study(),
         "superposition": superposition_study(),
         "numerics": numerics_study(),

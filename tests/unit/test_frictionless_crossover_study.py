@@ -22,6 +22,8 @@ PARAMETERS = {
     "size_stiffnesses": [3000.0, 1e5],
     "size_forces": [1.0, 2.0],
     "size_tolerance": 0.05,
+    "region_layers": 5,
+    "region_forces": [1.5],
     "stiffnesses": [1000.0, 3000.0, 1e5],
     "stiffness_forces": [0.75],
     "compared_stiffnesses": [1000.0, 1e5],
@@ -34,8 +36,8 @@ def test_each_slab_is_one_task_with_all_its_forces() -> None:
     tasks = study.tasks(study.Parameters(**PARAMETERS))
     forces = {task.slab: task.forces for task in tasks}
     assert len(forces) == len(tasks) == 7
-    assert forces[Slab(5, 11, 3000.0)] == (0.5, 0.75, 1.0, 2.0)
-    assert forces[Slab(5, 11, 1e5)] == (0.75, 1.0, 2.0)
+    assert forces[Slab(5, 11, 3000.0)] == (0.5, 0.75, 1.0, 1.5, 2.0)
+    assert forces[Slab(5, 11, 1e5)] == (0.75, 1.0, 1.5, 2.0)
     assert forces[Slab(5, 11, 1000.0)] == (0.75,)
     assert forces[Slab(6, 12, 1e5)] == (1.0, 2.0)
     assert [task.slab for task in tasks if task.keep_states] == [Slab(5, 11, 3000.0)]

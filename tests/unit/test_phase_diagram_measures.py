@@ -21,7 +21,6 @@ from granular_response_paper.survey.crossover import (
     BELOW,
     FOUND,
     Ensemble,
-    agreement,
     censored_medians,
     cross,
     crossover,
@@ -31,7 +30,9 @@ from granular_response_paper.survey.crossover import (
     passed,
     ranked,
     shape,
+    shape_of_single,
     singles,
+    two_peaked_means,
     weights,
 )
 
@@ -146,18 +147,30 @@ def test_weights_count_a_realization_as_often_as_it_is_drawn() -> None:
     np.testing.assert_allclose(weighted, ensemble.response[[0, 0, 2]].mean(axis=0))
 
 
-def test_agreement_is_certain_far_from_the_crossover() -> None:
-    part = agreement(make_ensemble(1.5), X, 6.0, 5, draws=200, seed=0)
-    assert part[0] == 1.0
+def test_means_of_a_few_are_alike_far_from_the_crossover() -> None:
+    part = two_peaked_means(make_ensemble(1.5), X, 6.0, 5, draws=200, seed=0)
+    assert part[0] == 0.0
     assert part[-1] == 1.0
-    assert part.min() < 1.0
+    assert 0.0 < part[1:-1].max() < 1.0 or 0.0 < part[1:-1].min() < 1.0
+
+
+def test_one_peak_beside_the_middle_is_one() -> None:
+    """Made symmetric it would be two; two peaks of different height are two."""
+    both = np.concatenate([-X[:0:-1], X])
+    one = np.exp(-(((both - 12.0) / 6.0) ** 2))
+    assert shape(X, folded(one), 6.0) > 0.5
+    assert shape_of_single(X, one, 6.0) < 0.01
+    two = one + 0.5 * one[::-1]
+    assert shape_of_single(X, two, 6.0) == pytest.approx(0.5, abs=0.05)
+    symmetric = one + one[::-1]
+    assert shape_of_single(X, symmetric, 6.0) == pytest.approx(float(shape(X, folded(symmetric), 6.0)))
 
 
 def test_crossing_counts_draws_beyond_the_path() -> None:
     """Where the crossover lies at the end of the path, some draws have none, and the interval is open."""
     whole = make_ensemble(3.0, 12)
     ensemble = Ensemble(whole.force[:2], whole.response[:, :2])
-    found = cross(ensemble, X, 6.0, few=5, draws=200, seed=0)
+    found = cross(ensemble, X, 6.0, numbers=(5,), draws=200, seed=0)
     np.testing.assert_allclose(found.kinds.sum(), 1.0)
     assert 0.0 < found.kinds[ABOVE] < 1.0
     assert found.interval[-1] == np.inf
@@ -217,7 +230,7 @@ def test_cases_of_as_many_realizations_are_drawn_alike() -> None:
     """So the ratio of two crossovers that share their scatter has little of its own."""
     one = make_ensemble(1.5)
     twice = Ensemble(2.0 * one.force, one.response)
-    first, second = (cross(e, X, 6.0, few=5, draws=100, seed=0).draws for e in (one, twice))
+    first, second = (cross(e, X, 6.0, numbers=(5,), draws=100, seed=0).draws for e in (one, twice))
     known = np.isfinite(first) & np.isfinite(second)
     assert known.mean() > 0.9
     np.testing.assert_allclose(second[known] / first[known], 2.0)
@@ -256,7 +269,8 @@ def test_a_value_that_counts_several_times_is_as_many_values() -> None:
 
 def test_single_realizations_and_their_mean() -> None:
     """Two mirror images: each leans, their mean does not; one collapses before its crossover and is censored."""
-    side = np.exp(-(((np.concatenate([-X[:0:-1], X]) - 12.0) / 6.0) ** 2))
+    one = np.exp(-(((np.concatenate([-X[:0:-1], X]) - 12.0) / 6.0) ** 2))
+    side = one + 0.5 * one[::-1]
     middle = bumps(0.0)
     single = np.concatenate([middle[:0:-1], middle])
     response = np.array([[single, side], [single, side[::-1]], [single, np.full(side.size, np.nan)]])
@@ -265,11 +279,12 @@ def test_single_realizations_and_their_mean() -> None:
     assert found.force[2] == 1.0
     assert found.median == pytest.approx(found.force[0])
     np.testing.assert_allclose(found.leans[:, 0], 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.leans[:2, 1], 1.0, atol=1e-3)
-    # the mean's two bumps lie apart, each half as high as in one realization
-    np.testing.assert_allclose(found.differences[:2, 1], 1.0, atol=0.05)
+    np.testing.assert_allclose(found.leans[:2, 1], 0.5, atol=0.02)
+    # the mean's two bumps are three quarters as high as the larger one of a realization
+    np.testing.assert_allclose(found.differences[:2, 1], 1.0 / 3.0, atol=0.05)
     assert np.isnan(found.differences[2, 1])
-    np.testing.assert_allclose(found.step, found.shapes[0, 1] - found.shapes[0, 0], rtol=0.05)
+    means = shape(X, folded(response[:2].mean(axis=0)), 6.0)
+    np.testing.assert_allclose(found.step, means[1] - means[0])
     np.testing.assert_allclose(found.spread[0], 0.0, atol=1e-8)
     assert found.spread[1] > 0.05
 
@@ -344,7 +359,8 @@ def test_blocks_of_different_size_become_one(stored) -> None:
 
 def parameters(stored, **changes) -> Parameters:
     given = {
-        "draws": 50, "few": 5, "seed": 0, "least_part": 0.5, "spacing": 0.5, "reach": 30.0, "widths": [3.0, 6.0],
+        "draws": 50, "numbers": [5], "seed": 0, "least_part": 0.5,
+        "spacing": 0.5, "reach": 30.0, "widths": [3.0, 6.0],
         "tolerance": 0.01, "other_tolerances": [0.0, 0.05], "survey": str(stored), "blocks": list(SIZES),
         "linear_range": "few", "linear_width": 3.0, "compared": [{"polydispersity": 0.1, "force": 4.0}],
     }  # fmt: skip
@@ -374,7 +390,13 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     assert np.isnan(single["collapse_force"].values[1, 1:]).all()
     low, high = single["median_interval"].values[1, 2, [0, -1]]
     assert low <= single["median"].values[1, 2] <= high
+    medians = found["medians"]
+    assert medians["collapsed"].values.tolist() == [0, 1, 0]
+    np.testing.assert_array_equal(medians["force"], single["median"])  # none beyond a path
+    np.testing.assert_array_equal(medians["interval"], single["median_interval"])
     assert found["linear_range"]["response_at_centre"].shape == (1, 8, 4)
+    np.testing.assert_array_equal(found["linear_range"]["profile_change"].values[..., 0], 0.0)
+    assert np.nanmin(found["linear_range"]["profile_change"].values[..., -1]) > 0.1
     assert found["packings"]["horizontal_contacts"].shape == (3, 10)
     side = found["starts"]
     assert side["friction"].values.tolist() == [0.2, 0.5]

@@ -38,7 +38,8 @@ def stored():
     [
         ("delta_1", 0.01, 0.0, "touching-largest", 3),
         ("delta_1", 0.01, 0.2, "touching-largest", 7),
-        ("starts_1", 0.01, 0.2, 2.0, 1),
+        ("starts_1", 0.01, 0.2, 2.0025, 1),
+        ("starts_1_friction", 0.01, 0.2, 2.0, 1),
         ("delta_10", 0.1, 0.2, "touching-largest", 5),
     ],
 )

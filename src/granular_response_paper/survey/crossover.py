@@ -1,13 +1,14 @@
 """One peak or two: the shape of responses of an ensemble, and the force at which it changes (Sec. VI.A, Fig. 22).
 
 Two peaks. The mean over an ensemble of mirror-symmetric slabs is symmetric but for noise, so the mean smoothed
-response is made symmetric about x = 0 first. Its *shape* is
+response is made symmetric about x = 0 first (a single one is not: see ``shape_of_single``). Its *shape* is
 
     (largest value at distances from ``width`` to ``reach`` - value at x = 0) / largest value up to ``reach`` ,
 
 and the response has two peaks where the shape exceeds ``tolerance``: a dip that a printed curve shows. Peaks nearer
 than the smoothing width are not told apart from one. Figs. 19, 21 and 22 and all claims on disorder use this one
-definition, for single realizations too; what other tolerances give is stored beside it.
+definition; what other tolerances give is stored beside it. A single realization is not symmetric, and made so, one peak
+beside the middle would be two: its dip is that below the lower of the largest values on either side.
 
 Crossover. Between two phases there is one boundary, so the shape is taken to grow with the force: its
 least-squares non-decreasing fit along the load path keeps a chance dip of a finite ensemble from counting as a
@@ -21,7 +22,9 @@ radii, so the ratio of two crossovers has less scatter than either.
 
 Single realizations. Each has a crossover of its own. Where its packing collapses or its path ends before, all that
 is known is that the crossover lies higher: such values are censored, and the median over realizations is that of Kaplan
-and Meier, which counts them as long as they last.
+and Meier, which counts them as long as they last. Where packings collapse, this median is the crossover of the ensemble
+for the claims: those near their collapse have responses many times as large as the others, and those beyond it none, so
+the mean hangs on a few and leaves out the weakest.
 """
 
 from __future__ import annotations
@@ -84,6 +87,16 @@ def shape(x: FloatArray, response: FloatArray, width: float) -> FloatArray:
     return np.asarray((response[..., x >= width].max(axis=-1) - response[..., 0]) / largest)
 
 
+def shape_of_single(x: FloatArray, response: FloatArray, width: float) -> FloatArray:
+    """The shape of responses (..., 2 m + 1) that are not symmetric: by the lower of the largest values on both sides.
+
+    ``x`` runs from 0 to the reach, as for :func:`shape`.
+    """
+    m = response.shape[-1] // 2
+    sides = [side[..., x >= width].max(axis=-1) for side in (response[..., m:], response[..., m::-1])]
+    return np.asarray((np.minimum(*sides) - response[..., m]) / response.max(axis=-1))
+
+
 def lean(response: FloatArray) -> FloatArray:
     """Largest difference of a point and its mirror image in responses (..., 2 m + 1), per largest response."""
     return np.asarray(np.abs(response - response[..., ::-1]).max(axis=-1) / response.max(axis=-1))
@@ -142,21 +155,20 @@ def weights(realizations: int, draws: int, seed: int) -> FloatArray:
     return np.stack([np.bincount(row, minlength=realizations) for row in picked]).astype(float)
 
 
-def agreement(
-    ensemble: Ensemble, x: FloatArray, width: float, few: int, *, draws: int, seed: int, tolerance: float = 0.0
+def two_peaked_means(
+    ensemble: Ensemble, x: FloatArray, width: float, number: int, *, draws: int, seed: int, tolerance: float = 0.0
 ) -> FloatArray:
-    """(k,) part of the ``draws`` of ``few`` different realizations whose mean has as many peaks as that of all.
+    """(k,) part of the ``draws`` of ``number`` different realizations whose mean has two peaks.
 
-    nan where fewer than ``few`` realizations are at rest.
+    nan where fewer than ``number`` realizations are at rest.
     """
-    everybody = shape(x, ensemble.mean(), width) > tolerance
     rng = np.random.default_rng(seed)
     result = np.full(len(ensemble.force), np.nan)
     for k in range(len(ensemble.force)):
         rows = ensemble.response[np.isfinite(ensemble.response[:, k, 0]), k]
-        if len(rows) >= max(few, ensemble.least):
-            picked = rng.permuted(np.tile(np.arange(len(rows)), (draws, 1)), axis=1)[:, :few]
-            result[k] = np.mean((shape(x, rows[picked].mean(axis=1), width) > tolerance) == everybody[k])
+        if len(rows) >= max(number, ensemble.least):
+            picked = rng.permuted(np.tile(np.arange(len(rows)), (draws, 1)), axis=1)[:, :number]
+            result[k] = np.mean(shape(x, rows[picked].mean(axis=1), width) > tolerance)
     return result
 
 
@@ -184,7 +196,7 @@ class Crossing:
     draws: FloatArray  #: (draws,) of the bootstrap, in their order, infinite beyond bounds
     shapes: FloatArray  #: (k,)
     spread: FloatArray  #: (k, levels)
-    alike: FloatArray  #: (k,)
+    two_peaked: FloatArray  #: (k, numbers) part of the means of so many realizations that have two peaks
     others: tuple[tuple[float, int, FloatArray], ...] = field(default=())  #: force, kind, draws for other tolerances
 
     @property
@@ -208,7 +220,7 @@ def cross(
     x: FloatArray,
     width: float,
     *,
-    few: int,
+    numbers: Sequence[int],
     draws: int,
     seed: int,
     tolerance: float = 0.0,
@@ -229,8 +241,10 @@ def cross(
     spread = np.full((len(shapes), len(LEVELS)), np.nan)
     known = np.isfinite(drawn).all(axis=0)
     spread[known] = np.quantile(drawn[:, known], LEVELS, axis=0).T
-    alike = agreement(ensemble, x, width, few, draws=draws, seed=seed, tolerance=tolerance)
-    return Crossing(force, kind, limits, found, shapes, spread, alike, tuple(at(limit) for limit in others))
+    parts = [two_peaked_means(ensemble, x, width, n, draws=draws, seed=seed, tolerance=tolerance) for n in numbers]
+    return Crossing(
+        force, kind, limits, found, shapes, spread, np.stack(parts, axis=-1), tuple(at(limit) for limit in others)
+    )
 
 
 @dataclass(frozen=True)
@@ -247,14 +261,19 @@ class Singles:
     force: FloatArray  #: (r,) crossovers, or their bounds
     kind: NDArray[np.int8]  #: (r,)
     median: float
-    median_interval: FloatArray  #: (levels,)
+    median_draws: FloatArray  #: (draws,) infinite beyond bounds
+
+    @property
+    def median_interval(self) -> FloatArray:
+        """(levels,) quantiles of the draws."""
+        return quantiles(self.median_draws)
 
 
 def singles(
     ensemble: Ensemble, x: FloatArray, width: float, *, draws: int, seed: int, tolerance: float = 0.0
 ) -> Singles:
     """What the realizations of an ensemble do, on a grid that is symmetric about x = 0; ``x`` is its right half."""
-    shapes = shape(x, folded(ensemble.response), width)
+    shapes = shape_of_single(x, ensemble.response, width)
     drawn = weights(len(shapes), draws, seed)
     mean, means = ensemble.mean(), ensemble.means(drawn)
     off = np.sqrt(((ensemble.response - mean) ** 2).mean(axis=-1) / (mean**2).mean(axis=-1))
@@ -279,7 +298,7 @@ def singles(
         force,
         kind,
         float(censored_medians(value, censored, everybody)[0]),
-        quantiles(censored_medians(value, censored, drawn)),
+        censored_medians(value, censored, drawn),
     )
 
 

@@ -17,6 +17,7 @@ def read(folder: Path, blocks: Sequence[str]) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles`` and ``packings`` with the cases of all ``blocks``, in their order.
 
     Where a case has fewer realizations, forces or disks on the floor than another one, nan or NOT_REACHED fill it up.
+    What one of the files lacks is left out.
 
     Raises
     ------
@@ -33,7 +34,9 @@ def _joined(parts: list[xr.Dataset]) -> xr.Dataset:
         for name in {str(name) for part in parts for name in part.sizes} - {"case"}
     }
     variables = {}
-    for name, first in parts[0].variables.items():
+    # what files of earlier versions lack is left out
+    for name in [name for name in parts[0].variables if all(name in part.variables for part in parts)]:
+        first = parts[0].variables[name]
         filled = []
         for part in parts:
             variable = part.variables[name]

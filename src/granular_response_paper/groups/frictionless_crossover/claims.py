@@ -121,19 +121,27 @@ def teardrop(data: Data, words: Bounds) -> Finding:
     )
 
 
-def _slabs(data: Data, *names: str) -> xr.Dataset:
-    return data.get(GROUP, "sizes", "layers", "normal_stiffness", "force", *names).sortby("layers")
+def size_in_steps(size: np.ndarray, step: float) -> Quantity:
+    """The mean of a size over evenly spaced forces at which it grows by whole steps.
+
+    A size is rounded down, by half a step in the mean over each whole step that it grows. So the mean lacks half a
+    step, to within half a step over the number of steps grown.
+    """
+    steps = max(1.0, float(size.max() - size.min()) / step)
+    mean, off = float(size.mean()) + 0.5 * step, 0.5 * step / steps
+    return Quantity(mean, mean - off, mean + off, "bracket")
 
 
 @CLAIMS.add(
     "F6",
     "IV.B, Fig. 5",
-    "depth and width of the open region in deeper slabs over those in the thinnest, summed over the forces at "
-    "which the latter has not reached its floor",
+    "depth and width of the open region in deeper slabs over those in the thinnest, means over evenly spaced forces "
+    "at which the latter has not reached its floor",
     "the size decreases only slightly as the depth of the slab increases",
 )
 def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
-    study = _slabs(data, "teardrop_depth", "teardrop_width", "reaches_floor")
+    names = ("layers", "normal_stiffness", "force", "teardrop_depth", "teardrop_width", "reaches_floor")
+    study = data.get(GROUP, "regions", *names).sortby("layers")
     stiffnesses = np.unique(study["normal_stiffness"].values)
     stiffnesses = stiffnesses[np.argsort(np.abs(stiffnesses - STIFFNESS))]
     readings, texts = [], []
@@ -142,19 +150,12 @@ def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
         sizes = (("depth", "teardrop_depth", ROW), ("width", "teardrop_width", DISK))
         use = (slabs["reaches_floor"].values[0] == 0) & (slabs["teardrop_depth"].values[0] > 2.0 * ROW)
         if slabs.sizes["slab"] < 2 or not use.any():
-            raise NotMeasured(f"data/{GROUP}.nc: sizes holds one depth, or no open region away from the floor")
+            raise NotMeasured(f"data/{GROUP}.nc: regions holds one depth, or no open region away from the floor")
         for k in range(1, slabs.sizes["slab"]):
             conditions = []
             for what, name, step in sizes:
-                thin, deep = slabs[name].values[0, use], slabs[name].values[k, use]
-                # a size is a whole number of steps: known to half a step
-                blur = 0.5 * step * len(thin)
-                ratio = Quantity(
-                    float(deep.sum() / thin.sum()),
-                    float((deep.sum() - blur) / thin.sum()),
-                    float((deep.sum() + blur) / thin.sum()),
-                    "bracket",
-                )
+                thin, deep = (size_in_steps(slabs[name].values[slab, use], step) for slab in (0, k))
+                ratio = deep.per(thin)
                 conditions.append(
                     asked.hardly_lower(
                         f"{what} per that in {slabs['layers'].values[0]:.0f} layers", ratio, words, "slightly"
@@ -290,18 +291,26 @@ def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     5,
 )
 def crossover_and_stiffness(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "stiffness", "crossover_bracket", "normal_stiffness").sortby("normal_stiffness")
+    names = ("crossover_bracket", "crossovers", "dip", "normal_stiffness")
+    study = data.get(GROUP, "stiffness", *names).sortby("normal_stiffness")
     stiffness = study["normal_stiffness"].values
-    ends = [
-        Quantity.bracket(*study["crossover_bracket"].values[k])
-        for k in np.flatnonzero((stiffness >= 999.0) & (stiffness <= 1.001e5))
-    ]
-    if len(ends) < 2:
+    study = study.isel(normal_stiffness=(stiffness >= 999.0) & (stiffness <= 1.001e5))
+    if study.sizes["normal_stiffness"] < 2:
         raise NotMeasured(f"data/{GROUP}.nc: stiffness holds too few stiffnesses from 1000 to 1e5")
-    ratios = [end.per(ends[-1]) for end in ends[:-1]]
-    spread = Quantity(ratios[0].value, min(r.low for r in ratios), max(r.high for r in ratios), "range")
+
+    def spread_of(brackets: np.ndarray) -> Quantity:
+        ratios = [Quantity.bracket(*one).per(Quantity.bracket(*brackets[-1])) for one in brackets[:-1]]
+        return Quantity(ratios[0].value, min(r.low for r in ratios), max(r.high for r in ratios), "range")
+
+    ends = [Quantity.bracket(*one) for one in study["crossover_bracket"].values]
+    spread = spread_of(study["crossover_bracket"].values)
+    others = [
+        f"{spread_of(one).high:.4f} from a dip of {dip:.1%} on"
+        for dip, one in zip(study["dip"].values, np.moveaxis(study["crossovers"].values, 1, 0), strict=True)
+    ]
     return asked.one_reading(
         f"crossover from k_N = 1000 to 1e5: {ends[0].text('mg')} to {ends[-1].text('mg')}",
         "15 layers",
         asked.near("crossover force per that at the largest k_N", spread, words, "nearly"),
+        remark=f"Largest ratio by other definitions of two peaks: {', '.join(others)}",
     )

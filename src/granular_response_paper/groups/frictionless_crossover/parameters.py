@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from granular_response.scene import Scene
-from granular_response.scene.base import Positive, allowed
+from granular_response.scene.base import Count, Positive, allowed
 from granular_response.scene.errors import Problem
 from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over
 
@@ -30,12 +30,14 @@ class Parameters(SceneGroup):
         Scene, over(_FRICTIONLESS, "contact.friction", "wall.friction", "wall.normal_stiffness", "loads")
     ] = Field(description="The slab whose states are kept; walls are twice as stiff as the disks.")
     forces: Growing = Field(description="On it, in mean disk weights.")
-    tolerance: Positive = Field(description="Width of the brackets of its events, per force.")
+    tolerance: Positive = Field(description="Width of the brackets of its events, per force, at all stiffnesses.")
     sizes: Shapes = Field(description="Slabs of several depths: layers and disks in the lowest row.")
     widths: Shapes = Field(description="Slabs of several widths.")
     size_stiffnesses: Growing = Field(description="Normal stiffnesses of sizes and of widths.")
     size_forces: Growing = Field(description="On them.")
-    size_tolerance: Positive = Field(description="Width of the brackets of events of all slabs but the first.")
+    size_tolerance: Positive = Field(description="Width of the brackets of events of sizes and of widths.")
+    region_layers: Count = Field(description="Of the deepest of sizes whose open region is followed closely.")
+    region_forces: Growing = Field(description="On these, at which it is.")
     stiffnesses: Growing = Field(description="Normal stiffnesses of the first slab.")
     stiffness_forces: Growing = Field(description="On it at each of them.")
     compared_stiffnesses: Growing = Field(description="Two of them, whose responses are compared (Sec. IV.C).")
@@ -45,4 +47,6 @@ class Parameters(SceneGroup):
         if len(self.compared_stiffnesses) != 2 or not set(self.compared_stiffnesses) <= set(self.stiffnesses):
             key = ("compared_stiffnesses",)
             raise Problem("must be two of stiffnesses", key=key, value=list(self.compared_stiffnesses))
+        if self.region_layers < min(layers for layers, _ in self.sizes):
+            raise Problem("must be layers of one of sizes", key=("region_layers",), value=self.region_layers)
         return self

@@ -2,8 +2,8 @@
 
 One slab is followed from the linear range to large forces with all its states kept (``response``, ``rest``,
 ``states``, ``events``). Other slabs tell how the region of opened contacts and the crossover depend on the
-depth (``sizes``), on the distance of the side walls (``widths``) and on the stiffness of the disks
-(``stiffness``). Each slab is settled once and all its forces are reached on one path.
+depth (``sizes``, at close forces ``regions``), on the distance of the side walls (``widths``) and on the stiffness of
+the disks (``stiffness``). Each slab is settled once and all its forces are reached on one path.
 
 What sets the size of a slab apart from the stiffness of its disks is the overlap that gravity makes at its
 floor, so deep slabs are compared for the paper's stiffness and for much stiffer disks. Wide, deep or soft slabs
@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,12 @@ from granular_response_paper.groups.frictionless_crossover.parameters import Par
 
 #: What is not kept of the measurements: it is about friction.
 LEFT_OUT = ("third_peak", "third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")
+
+#: Dips at x = 0, per largest response, from which on a response can be said to have two peaks; the event has 0.001.
+DIPS = (0.0, 0.005, 0.01, 0.02)
+
+#: What is kept of the open region at close forces.
+REGION = ("teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal_stiffness")
 
 EVENTS = {
     "first_opening": "a contact within five lattice constants of the loaded disk is open that touches at rest",
@@ -70,6 +77,7 @@ class Task:
     forces: tuple[float, ...]
     tolerance: float  #: width of the brackets of events, per force at which they happen
     keep_states: bool
+    dips: tuple[float, ...]  #: of which the crossover is looked for
 
 
 @dataclass(frozen=True)
@@ -80,6 +88,7 @@ class Outcome:
     forces: tuple[float, ...]
     measured: xr.Dataset
     events: Mapping[str, slab_response.Event]
+    crossovers: tuple[slab_response.Event, ...]  #: by the dips of the task
     rest_asymmetry: float
     new_neighbours: int
     problem: Problem
@@ -104,6 +113,16 @@ def solve(task: Task) -> Outcome:
         )
         for name, text in EVENTS.items()
     }
+    crossovers = tuple(
+        slab_response.locate(
+            "crossover",
+            path,
+            task.forces,
+            slab_response.Happening(partial(_dips, measures, dip), f"a dip of more than {dip:g} at x = 0"),
+            task.tolerance,
+        )
+        for dip in task.dips
+    )
     packing = path.problem.packing
     kept = [path.rest, *states] if task.keep_states else [path.rest]
     kept = common_candidates(kept, packing.radius)
@@ -112,6 +131,7 @@ def solve(task: Task) -> Outcome:
         forces=task.forces,
         measured=slab_response.measured(measures, states),
         events=found,
+        crossovers=crossovers,
         rest_asymmetry=rest_asymmetry(packing.position, path.rest, packing.width),
         new_neighbours=new_neighbours(packing.position, path.rest),
         problem=path.problem,
@@ -119,6 +139,10 @@ def solve(task: Task) -> Outcome:
         states=tuple(kept[1:]),
         regions=np.stack([measures.region(s).contacts for s in states]) if task.keep_states else None,
     )
+
+
+def _dips(measures: slab_response.Measures, dip: float, state: State) -> bool:
+    return measures.dip(state) > dip
 
 
 def settle(scene: Scene) -> State:
@@ -148,7 +172,7 @@ def new_neighbours(position: FloatArray, rest: State) -> int:
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``widths`` and ``stiffness``.
+    """Datasets ``response``, ``rest``, ``states``, ``events``, ``sizes``, ``regions``, ``widths`` and ``stiffness``.
 
     SweepError
         If a slab cannot be solved.
@@ -163,6 +187,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "states": pictures(first, parameters.forces),
         "events": slab_response.events_dataset(list(first.events.values())),
         "sizes": table("slab", [outcomes[slab] for slab in sizes], parameters.size_forces),
+        "regions": regions(outcomes, parameters),
         "widths": table("slab", [outcomes[slab] for slab in widths], parameters.size_forces),
         "stiffness": stiffness_table(
             [outcomes[slab] for slab in stiff], parameters.stiffness_forces, parameters.compared_stiffnesses
@@ -181,12 +206,19 @@ def slabs(parameters: Parameters) -> tuple[Slab, list[Slab], list[Slab], list[Sl
     return main, sizes, widths, [replace(main, normal_stiffness=stiffness) for stiffness in parameters.stiffnesses]
 
 
+def followed(parameters: Parameters) -> list[Slab]:
+    """The slabs of several depths whose open region is measured at close forces."""
+    return [slab for slab in slabs(parameters)[1] if slab.layers <= parameters.region_layers]
+
+
 def tasks(parameters: Parameters) -> list[Task]:
     """One task for each different slab, the longest first."""
     main, sizes, widths, stiff = slabs(parameters)
     asked: dict[Slab, set[float]] = {main: set(parameters.forces)}
     for slab in [*sizes, *widths]:
         asked.setdefault(slab, set()).update(parameters.size_forces)
+    for slab in followed(parameters):
+        asked[slab].update(parameters.region_forces)
     for slab in stiff:
         asked.setdefault(slab, set()).update(parameters.stiffness_forces)
     return [
@@ -194,8 +226,9 @@ def tasks(parameters: Parameters) -> list[Task]:
             slab=slab,
             scene=slab.scene(parameters.base),
             forces=tuple(sorted(asked[slab])),
-            tolerance=parameters.tolerance if slab == main else parameters.size_tolerance,
+            tolerance=parameters.tolerance if slab in (main, *stiff) else parameters.size_tolerance,
             keep_states=slab == main,
+            dips=DIPS if slab in stiff else (),
         )
         for slab in sorted(asked, key=lambda s: (-s.layers * s.disks_per_row, s.normal_stiffness))
     ]
@@ -220,6 +253,11 @@ def pictures(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
     return data.isel(force=np.searchsorted(outcome.forces, forces))
 
 
+def regions(outcomes: Mapping[Slab, Outcome], parameters: Parameters) -> xr.Dataset:
+    """The size of the open region at close forces, in slabs of several depths."""
+    return table("slab", [outcomes[slab] for slab in followed(parameters)], parameters.region_forces)[list(REGION)]
+
+
 def stiffness_table(outcomes: Sequence[Outcome], forces: Sequence[float], compared: tuple[float, ...]) -> xr.Dataset:
     """As :func:`table`, and how much the response at x = 0 changes between two stiffnesses (Sec. IV.C)."""
     data = table("normal_stiffness", outcomes, forces)
@@ -229,6 +267,12 @@ def stiffness_table(outcomes: Sequence[Outcome], forces: Sequence[float], compar
         soft / stiff - 1.0,
         "relative change of the response at x = 0 from the second to the first of compared_stiffness",
     )
+    data["crossovers"] = variable(
+        ("normal_stiffness", "dip", "bracket"),
+        [[(one.low, one.high) for one in outcome.crossovers] for outcome in outcomes],
+        f"forces {FORCE} between which the dip at x = 0 comes to exceed this one; nan if not up to the first",
+    )
+    data["dip"] = variable("dip", DIPS, "dip at x = 0, per largest response, from which on there are two peaks")
     data["compared_stiffness"] = variable("compared", compared, "normal stiffnesses whose responses are compared")
     return data
 

@@ -184,14 +184,17 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
     deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
     frictions = sorted(set(crossovers["friction"].values.tolist()))
     widths = crossovers["width"].values.tolist()
-    what = f"means of {int(shapes.attrs['few'])} that agree"
+    tolerance, few = float(shapes.attrs["tolerance"]), shapes.isel(number=0)
+    what = f"means of {int(few['number'])} that agree"
     figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), "force over crossover force", what)
     drawn = {}
     for (width, delta), axes in panels.items():
         one = crossovers.sel(width=width)
         for case in np.flatnonzero((one["polydispersity"].values == delta) & (one["kind"].values == FOUND)):
             friction = float(one["friction"][case])
-            agree = shapes["few_agree"].sel(width=width).values[case]
+            row = few.sel(width=width).isel(case=case)
+            two_peaked = row["two_peaked_means"].values
+            agree = np.where(row["shape"].values > tolerance, two_peaked, 1.0 - two_peaked)
             look = style.marked_line(frictions.index(friction)) | {"linewidth": 0.9}
             force = shapes["applied_force"].values[case] / float(one["force"][case])
             (drawn[friction],) = axes.plot(force, agree, **look)

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
-from granular_response_paper.parameters import Path, Positives, some
+from granular_response_paper.parameters import Counts, Path, Positives, some
 
 Names = Annotated[tuple[str, ...], AfterValidator(some)]
 
@@ -34,5 +34,5 @@ class Parameters(Description):
     compared: Annotated[tuple[Compared, ...], AfterValidator(some)]
     draws: Count = Field(description="Of the bootstrap over realizations.")
     seed: Index = Field(description="Of the bootstrap.")
-    few: Count = Field(description="Size of the small averages.")
+    numbers: Counts = Field(description="Of realizations in the paper's means: Fig. 21, Fig. 19.")
     least_part: Part = Field(description="Part of the realizations that must be at rest.")

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, flags, variable
@@ -21,6 +22,9 @@ from granular_response_paper.ensembles import COLLAPSED, smoothed
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import (
+    ABOVE,
+    BELOW,
+    FOUND,
     KINDS,
     LEVELS,
     Crossing,
@@ -37,9 +41,9 @@ from granular_response_paper.survey.crossover import (
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """What the survey says of every case.
 
-    Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances; ``shapes``, the
-    shape against the force; ``realizations``, one by one; ``packings`` at rest; ``starts`` side by side;
-    ``linear_range``, the response at x = 0 under small forces beside smooth walls.
+    Datasets ``crossovers``, one entry for each case; ``definitions``, the same by other tolerances, and ``medians``, of
+    the median realization; ``shapes``, the shape against the force; ``realizations``, one by one; ``packings`` at rest;
+    ``starts`` side by side; ``linear_range``, the response under small forces beside smooth walls, and its change.
 
     Raises
     ------
@@ -67,7 +71,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
                     symmetric,
                     x,
                     width,
-                    few=parameters.few,
+                    numbers=parameters.numbers,
                     draws=draws,
                     seed=seed,
                     tolerance=tolerance,
@@ -78,11 +82,14 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             if progress := current().progress:
                 progress(row * cases + case + 1, len(widths) * cases, "crossovers")
     found = _datasets(source, parameters, table, single)
+    collapsed = (source["outcome"].values == COLLAPSED).any(axis=-1).sum(axis=-1).astype(np.int32)
+    found["medians"] = _medians(found["crossovers"], single, collapsed)
     packings = stored["packings"]
     found["packings"] = packings[[name for name in packings.data_vars if str(name) != "processor_time"]]
     found["starts"] = _starts(source, parameters, found["shapes"], packings)
     small = survey.read(Path(parameters.survey), [parameters.linear_range])["ensembles"]
-    found["linear_range"] = _linear_range(small, parameters.linear_width)
+    both_sides = np.concatenate([-x[:0:-1], x])
+    found["linear_range"] = _linear_range(small, parameters.linear_width, both_sides)
     return labelled(found)
 
 
@@ -92,6 +99,21 @@ def read_ensemble(source: xr.Dataset, case: int, x: FloatArray, width: float, le
     used = np.isfinite(one["force"].values)
     response = smoothed(one.isel(step=used), np.concatenate([-x[:0:-1], x]), width)
     return Ensemble(one["force"].values[used], response, max(1, int(np.ceil(least_part * len(response)))))
+
+
+def _medians(usual: xr.Dataset, table: Sequence[Sequence[Singles]], collapsed: NDArray[np.int32]) -> xr.Dataset:
+    """What ``crossovers`` holds, of the median realization; ``collapsed`` (case,) packings of each."""
+    smallest, largest = (usual["limits"].values[..., end] for end in (0, 1))
+    median = np.array([[one.median for one in row] for row in table])
+    columns = {
+        "force": np.clip(median, smallest, largest),
+        "kind": np.where(median == -np.inf, BELOW, np.where(median == np.inf, ABOVE, FOUND)).astype(np.int8),
+        "interval": np.array([[one.median_interval for one in row] for row in table]),
+        "draws": np.array([[one.median_draws for one in row] for row in table], np.float32),
+        "limits": usual["limits"].values,
+    }
+    data = usual[list(columns)].assign({name: usual[name].copy(data=values) for name, values in columns.items()})
+    return data.assign(collapsed=variable("case", collapsed, "packings that collapse along their load paths"))
 
 
 def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset) -> xr.Dataset:
@@ -149,16 +171,24 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
     )
 
 
-def _linear_range(source: xr.Dataset, width: float) -> xr.Dataset:
-    response = np.array(
-        [smoothed(source.isel(case=case), np.zeros(1), width)[..., 0] for case in range(source.sizes["case"])]
-    )
+def _linear_range(source: xr.Dataset, width: float, x: FloatArray) -> xr.Dataset:
+    profiles = [smoothed(source.isel(case=case), x, width) for case in range(source.sizes["case"])]
+    changes = []
+    for profile in profiles:
+        small = profile[:, :1]
+        changes.append(np.linalg.norm(profile - small, axis=-1) / np.linalg.norm(small, axis=-1))
+    each = ("case", "realization", "step")
     return xr.Dataset(
         {
             "response_at_centre": variable(
-                ("case", "realization", "step"),
-                response,
+                each,
+                np.array([profile[..., np.argmin(np.abs(x))] for profile in profiles]),
                 "smoothed response at x = 0 in 1/mean radius: stress per applied force",
+            ),
+            "profile_change": variable(
+                each,
+                np.array(changes),
+                "root mean square change of the smoothed response from that to the smallest force, relative to it",
             ),
             "applied_force": variable(("case", "step"), source["force"].values, f"applied force {FORCE}"),
         },
@@ -256,10 +286,10 @@ def _datasets(
             "shape_interval": variable(
                 (*step, "level"), along("spread", ["step", "level"]), "quantiles of the bootstrapped shape"
             ),
-            "few_agree": variable(
-                step,
-                along("alike", ["step"]),
-                f"part of the averages of {parameters.few} realizations with as many peaks as the mean of all",
+            "two_peaked_means": variable(
+                (*step, "number"),
+                along("two_peaked", ["step", "number"]),
+                "part of the means of so many realizations, drawn at random, that have two peaks",
             ),
             "spread": variable(
                 step,
@@ -280,8 +310,8 @@ def _datasets(
                 (*dims, "level"), grid("step_interval", single), "quantiles of the bootstrapped largest change"
             ),
         },
-        coords=coordinates,
-        attrs={"few": parameters.few},
+        coords={**coordinates, "number": variable("number", parameters.numbers, "realizations in a mean")},
+        attrs={"tolerance": parameters.tolerance},
     )
     outcome = source["outcome"].values
     gone = (outcome == COLLAPSED).any(axis=-1)
@@ -290,7 +320,11 @@ def _datasets(
     collapse = np.where(gone, np.take_along_axis(force, at[..., None], axis=-1)[..., 0], np.nan)
     realizations = xr.Dataset(
         {
-            "shape": variable(each, along("shapes", ["realization", "step"], single), "shape of each response"),
+            "shape": variable(
+                each,
+                along("shapes", ["realization", "step"], single),
+                "shape of each response, by the lower of the largest values on both sides",
+            ),
             "asymmetry": variable(
                 each,
                 along("leans", ["realization", "step"], single),
