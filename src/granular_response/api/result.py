@@ -18,6 +18,8 @@ import xarray as xr
 from ..observe.floor import origin_of
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
+from ..scene import text as scene_text
+from ..scene.arrays import shortened
 from ..scene.errors import show
 from ..solve.small_loads import influence
 from ..solve.solution import Progress, Solution, continue_solution, solve_scene
@@ -290,7 +292,7 @@ class Result:
 
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in self._rows())
-        scene = html.escape(self.scene.to_yaml())
+        scene = html.escape(scene_text.write(shortened(self.scene.to_dict())))
         return (
             f"<b>Result</b>: {len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
             f"<table>{rows}</table><details><summary>scene</summary><pre>{scene}</pre></details>"

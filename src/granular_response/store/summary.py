@@ -12,6 +12,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from ..scene import text as scene_text
+from ..scene.arrays import shortened
 from . import files as store
 from .checked import read_result
 from .result import EVENT_KINDS, NOT_DETERMINED, events_from
@@ -56,7 +58,12 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     for name in ("scene", "parameters"):
         if name in attributes:
             yield Text(f"\n{name}", style="bold")
-            yield _text(str(attributes[name]).rstrip())
+            yield _text(_readable(str(attributes[name])).rstrip())
+
+
+def _readable(scene: str) -> str:
+    """Stored keys without the numbers of a packing from arrays."""
+    return scene_text.write(shortened(scene_text.read(scene))) if "kind: arrays" in scene else scene
 
 
 def _result(result: xr.Dataset) -> Iterator[RenderableType]:
