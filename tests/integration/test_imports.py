@@ -83,6 +83,7 @@ SIGNATURES = {
         "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None, checkpoint=None,"
         " progress=True)"
     ),
+    "Result.contacts_table": "(self, *, state=-1)",
     "Result.continued": "(self, load_factors, *, progress=None)",
     "Result.influence": "(self, *, state=-1, sliding='refuse')",
     "Result.save": "(self, path)",

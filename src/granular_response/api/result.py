@@ -27,6 +27,7 @@ from ..state import Certificate, State
 from ..store import files
 from ..store.checked import read_result
 from ..store.result import scene_of, solution_from, state_from, to_dataset
+from .contact_table import contact_table
 from .event_table import Events
 
 
@@ -125,6 +126,33 @@ class Result:
         return data[[name for name in map(str, data.data_vars) if name.startswith(("contact_", "wall_"))]].copy(
             deep=True
         )
+
+    def contacts_table(self, *, state: int = -1) -> Any:
+        """The closed contacts of one state, a row for each, as a ``pandas.DataFrame``.
+
+        ``first`` and ``second`` are the disks, ``second`` is -1 at a ``wall`` ("floor", "left_wall" or "right_wall", ""
+        between disks); ``x``, ``z`` the point of contact from the left wall and the floor; ``status`` "sticking" or
+        "sliding"; ``normal_force`` positive in compression; ``tangential_force`` on ``first``, along z × n.
+        ``attrs["units"]`` names the units of the columns.
+
+        Parameters
+        ----------
+        state : 0 at rest, then one for each load factor; -1 is the last one.
+
+        Raises
+        ------
+        IndexError
+            For a state that there is not.
+        TypeError
+            For a ``state`` that is no integer.
+
+        Examples
+        --------
+        >>> table = result.contacts_table()
+        >>> table[table.status == "sliding"].to_csv("sliding.csv")
+        """
+        chosen = (self.rest, *self.loaded)[self._index(state)]
+        return contact_table(chosen, self._data["radius"].values)
 
     def stress(
         self,
