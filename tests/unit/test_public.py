@@ -1,10 +1,12 @@
 """The public namespace, with ``import granular_response as gr`` alone."""
 
+import numba as nb
 import numpy as np
 import pytest
 import xarray as xr
 
 import granular_response as gr
+from granular_response.api import compiling
 
 SMALL = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 21}, "loads": [{"disk": 93, "force": [0, -4]}]}
 
@@ -27,6 +29,14 @@ def test_contacts_are_those_of_the_states(result):
     assert set(contacts["contact_status"].dims) == {"state", "contact"}
     touching = [int((contacts["contact_status"].isel(state=k) > 0).sum()) for k in range(3)]
     assert touching == [int(state.pairs.touching.sum()) for state in (result.rest, *result.loaded)]
+
+
+def test_compilation_is_said_once(caplog):
+    with caplog.at_level("INFO", "granular_response"), compiling.logged():
+        for kind in (1, 1.0):
+            assert nb.njit(lambda x: x + x)(kind) == 2
+    assert [record.name for record in caplog.records] == ["granular_response"]
+    assert caplog.messages[0].startswith("compiling kernels")
 
 
 def test_contacts_as_a_table(result, tmp_path):

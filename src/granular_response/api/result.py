@@ -27,6 +27,7 @@ from ..state import Certificate, State
 from ..store import files
 from ..store.checked import read_result
 from ..store.result import scene_of, solution_from, state_from, to_dataset
+from . import compiling
 from .contact_table import contact_table
 from .event_table import Events
 
@@ -290,7 +291,9 @@ class Result:
         Raises as :func:`solve` does, and ResultError where the table of disks has changed since.
         """
         solution = self._solution or solution_from(self._data, folder=self._folder)
-        return _vouched(continue_solution(solution, load_factors, progress=progress))
+        with compiling.logged():
+            further = continue_solution(solution, load_factors, progress=progress)
+        return _vouched(further)
 
     @property
     def _data(self) -> xr.Dataset:
@@ -351,7 +354,9 @@ def solve(
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of a load so small that
     rounding is seen in its response, and of settings for another method, which have no effect.
     """
-    return _vouched(solve_scene(described(scene), load_factors=load_factors, progress=progress))
+    with compiling.logged():
+        solution = solve_scene(described(scene), load_factors=load_factors, progress=progress)
+    return _vouched(solution)
 
 
 # An import statement that goes through the package of this name (import granular_response.solve.path as path) meets the
