@@ -2,13 +2,9 @@
 A packing of your own
 =====================
 
-Any table of disks is a packing: columns x, z and radius, in one unit of length. Here, large and small disks at random
-places of a loose lattice, which fall into a disordered packing.
+Arrays of x, z and radius are a packing, in one unit of length. Here, large and small disks at random places of a loose
+lattice, which fall into a disordered packing.
 """
-
-import csv
-import tempfile
-from pathlib import Path
 
 import numpy as np
 
@@ -21,24 +17,19 @@ spacing = 2.8
 x = spacing * (np.arange(COLUMNS) + 0.5 + 0.5 * (np.arange(ROWS)[:, None] % 2))
 z = np.broadcast_to(spacing * (0.5 + 0.5 * np.sqrt(3.0) * np.arange(ROWS))[:, None], x.shape)
 
-folder = Path(tempfile.mkdtemp())
-with open(folder / "disks.csv", "w", newline="") as file:
-    writer = csv.writer(file)
-    writer.writerow(["x", "z", "radius"])
-    writer.writerows(np.column_stack([x.ravel(), z.ravel(), radius.ravel()]).tolist())
-
 # %%
-# The scene reads the table. A packing without order is settled fastest by Verlet's integrator with the longest step
-# that is stable.
+# A packing without order is settled fastest by Verlet's integrator with the longest step that is stable.
 
-scene = gr.Scene.from_dict(
-    {
-        "packing": {"kind": "file", "path": "disks.csv", "width": spacing * (COLUMNS + 0.5)},
+scene = gr.Scene.from_arrays(
+    x.ravel(),
+    z.ravel(),
+    radius.ravel(),
+    width=spacing * (COLUMNS + 0.5),
+    scene={
         "contact": {"friction": 0.4},
         "loads": [{"disk": "top-centre", "force": [0.0, -5.0]}],
         "protocol": {"integrator": "verlet", "time_step": "auto", "stop_kinetic_energy": 1e-9},
     },
-    folder=folder,
 )
 result = gr.solve(scene)
 print(result)

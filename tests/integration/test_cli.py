@@ -134,6 +134,33 @@ def test_run_and_show(tmp_path):
         assert part in shown.stdout
 
 
+@pytest.mark.parametrize(
+    ("home", "name"), [("granular_response.cli.main", ""), ("granular_response_paper.cli", "-paper")]
+)
+def test_a_shell_completes_commands(home, name):
+    program = f"granular-response{name}"
+    begun = {f"_{program.upper().replace('-', '_')}_COMPLETE": "complete_bash"}
+    script = f"import sys; sys.argv = [{program!r}]; from {home} import main; main()"
+    words = {"COMP_WORDS": f"{program} {'sim' if name else 'sh'}", "COMP_CWORD": "1"}
+    run = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, env={**os.environ, **begun, **words}
+    )
+    assert run.stdout.split() == ["simulate" if name else "show"], run.stderr
+
+
+def test_show_as_json(tmp_path):
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    assert call("run", "scene.yaml", "-o", "result.nc", folder=tmp_path).returncode == 0
+    shown = json.loads(call("show", "result.nc", "--json", folder=tmp_path).stdout)
+    result = store.read(tmp_path / "result.nc")[""]
+    assert shown["sealed"] is True and shown["scene"]["packing"]["layers"] == 3
+    assert shown["floor_response"] == result["floor_response"].values.tolist()
+    residuals = [state["certificate_force_residual"] for state in shown["states"]]
+    assert residuals == result["certificate_force_residual"].values.tolist()
+    study = json.loads(call("show", str(ROOT / "data" / "pile_dip.nc"), "--json", folder=tmp_path).stdout)
+    assert study["datasets"] and "states" not in study
+
+
 def test_stored_claims_are_listed_and_not_judged_anew():
     table = ROOT / "figures" / "claims.json"
     before = table.read_bytes()

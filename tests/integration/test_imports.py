@@ -83,11 +83,13 @@ SIGNATURES = {
         "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None, checkpoint=None,"
         " progress=True)"
     ),
+    "Result.contacts_table": "(self, *, state=-1)",
     "Result.continued": "(self, load_factors, *, progress=None)",
     "Result.influence": "(self, *, state=-1, sliding='refuse')",
     "Result.save": "(self, path)",
     "Result.stress": "(self, x=None, z=None, *, state=-1, added=None, width=2.0)",
     "Result.to_dataset": "(self)",
+    "Scene.from_arrays": ("(x, z, radius, *, mass=None, width=None, origin=(0.0, 0.0), sides='walls', scene=None)"),
     "Scene.from_dict": "(data, *, folder=None)",
     "Scene.from_text": "(text, *, folder=None)",
     "Scene.from_yaml": "(path)",

@@ -1,10 +1,12 @@
 """The public namespace, with ``import granular_response as gr`` alone."""
 
+import numba as nb
 import numpy as np
 import pytest
 import xarray as xr
 
 import granular_response as gr
+from granular_response.api import compiling
 
 SMALL = {"packing": {"kind": "slab", "layers": 5, "disks_per_row": 21}, "loads": [{"disk": 93, "force": [0, -4]}]}
 
@@ -27,6 +29,38 @@ def test_contacts_are_those_of_the_states(result):
     assert set(contacts["contact_status"].dims) == {"state", "contact"}
     touching = [int((contacts["contact_status"].isel(state=k) > 0).sum()) for k in range(3)]
     assert touching == [int(state.pairs.touching.sum()) for state in (result.rest, *result.loaded)]
+
+
+def test_compilation_is_said_once(caplog):
+    told: list[str] = []
+    with caplog.at_level("INFO", "granular_response"), compiling.logged(told.append):
+        for kind in (1, 1.0):
+            assert nb.njit(lambda x: x + x)(kind) == 2
+    assert [record.name for record in caplog.records] == ["granular_response"]
+    assert caplog.messages == told and told[0].startswith("compiling kernels")
+
+
+def test_contacts_as_a_table(result, tmp_path):
+    table = result.contacts_table()
+    state, data = result.loaded[-1], result.to_dataset()
+    assert len(table) == state.pairs.touching.sum() + state.walls.touching.sum()
+    assert list(table.columns) == ["first", "second", "wall", "x", "z", "status", "normal_force", "tangential_force"]
+    assert table.attrs["units"]["normal_force"] == "mean disk weight"
+    between = table[table.wall == ""]
+    for disk in ("first", "second"):  # the point of contact lies within both disks, half the overlap from their rims
+        centre, radius = state.position[between[disk]], data["radius"].values[between[disk]]
+        away = np.hypot(between.x - centre[:, 0], between.z - centre[:, 1])
+        np.testing.assert_allclose(away, radius - 0.5 * state.pairs.overlap[state.pairs.touching], atol=1e-12)
+    floor = table[table.wall == "floor"]
+    assert (floor.second == -1).all() and (floor.z == 0.0).all()
+    assert floor.normal_force.sum() == pytest.approx(float(data["floor_force"].isel(load=1).sum()))
+    assert set(table.status) <= {"sticking", "sliding"}
+    assert (table.status == "sliding").sum() == state.pairs.sliding.sum() + state.walls.sliding.sum()
+    assert len(result.contacts_table(state=0)) != len(table)
+    table.to_csv(tmp_path / "contacts.csv")
+    assert (tmp_path / "contacts.csv").read_text().startswith("contact,first,second,wall,x,z,status,")
+    with pytest.raises(IndexError, match="state = 3: must be from -3 to 2"):
+        result.contacts_table(state=3)
 
 
 def test_stress_carries_the_load(result):

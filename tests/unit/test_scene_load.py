@@ -105,7 +105,9 @@ def test_missing_disks(selector, message):
 
 def test_packings_from_files_have_no_rows():
     packing = scattered([(1.0, 1.0)], [1.0], 2.0)
-    with pytest.raises(SceneError, match=r"^loads\[0\]\.disk\.row = 'top': a packing from a file has no rows"):
+    with pytest.raises(
+        SceneError, match=r"^loads\[0\]\.disk\.row = 'top': a packing from a file or arrays has no rows"
+    ):
         resolve_disk(RowSelector(row="top"), packing, packing.position, key="loads[0].disk")
 
 

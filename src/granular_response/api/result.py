@@ -18,6 +18,8 @@ import xarray as xr
 from ..observe.floor import origin_of
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
+from ..scene import text as scene_text
+from ..scene.arrays import shortened
 from ..scene.errors import show
 from ..solve.small_loads import influence
 from ..solve.solution import Progress, Solution, continue_solution, solve_scene
@@ -25,6 +27,8 @@ from ..state import Certificate, State
 from ..store import files
 from ..store.checked import read_result
 from ..store.result import scene_of, solution_from, state_from, to_dataset
+from . import compiling
+from .contact_table import contact_table
 from .event_table import Events
 
 
@@ -123,6 +127,33 @@ class Result:
         return data[[name for name in map(str, data.data_vars) if name.startswith(("contact_", "wall_"))]].copy(
             deep=True
         )
+
+    def contacts_table(self, *, state: int = -1) -> Any:
+        """The closed contacts of one state, a row for each, as a ``pandas.DataFrame``.
+
+        ``first`` and ``second`` are the disks, ``second`` is -1 at a ``wall`` ("floor", "left_wall" or "right_wall", ""
+        between disks); ``x``, ``z`` the point of contact from the left wall and the floor; ``status`` "sticking" or
+        "sliding"; ``normal_force`` positive in compression; ``tangential_force`` on ``first``, along z × n.
+        ``attrs["units"]`` names the units of the columns.
+
+        Parameters
+        ----------
+        state : 0 at rest, then one for each load factor; -1 is the last one.
+
+        Raises
+        ------
+        IndexError
+            For a state that there is not.
+        TypeError
+            For a ``state`` that is no integer.
+
+        Examples
+        --------
+        >>> table = result.contacts_table()
+        >>> table[table.status == "sliding"].to_csv("sliding.csv")
+        """
+        chosen = (self.rest, *self.loaded)[self._index(state)]
+        return contact_table(chosen, self._data["radius"].values)
 
     def stress(
         self,
@@ -260,7 +291,9 @@ class Result:
         Raises as :func:`solve` does, and ResultError where the table of disks has changed since.
         """
         solution = self._solution or solution_from(self._data, folder=self._folder)
-        return _vouched(continue_solution(solution, load_factors, progress=progress))
+        with compiling.logged():
+            further = continue_solution(solution, load_factors, progress=progress)
+        return _vouched(further)
 
     @property
     def _data(self) -> xr.Dataset:
@@ -290,7 +323,7 @@ class Result:
 
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in self._rows())
-        scene = html.escape(self.scene.to_yaml())
+        scene = html.escape(scene_text.write(shortened(self.scene.to_dict())))
         return (
             f"<b>Result</b>: {len(self.rest.position)} disks in a box {self.rest.box.width:g} wide"
             f"<table>{rows}</table><details><summary>scene</summary><pre>{scene}</pre></details>"
@@ -321,7 +354,9 @@ def solve(
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of a load so small that
     rounding is seen in its response, and of settings for another method, which have no effect.
     """
-    return _vouched(solve_scene(described(scene), load_factors=load_factors, progress=progress))
+    with compiling.logged():
+        solution = solve_scene(described(scene), load_factors=load_factors, progress=progress)
+    return _vouched(solution)
 
 
 # An import statement that goes through the package of this name (import granular_response.solve.path as path) meets the

@@ -42,7 +42,6 @@ class CommandLine:
         self.app = typer.Typer(
             name=name,
             no_args_is_help=True,
-            add_completion=False,
             rich_markup_mode=None,  # plain help answers twice as fast
             pretty_exceptions_enable=False,
             context_settings={"help_option_names": ["-h", "--help"]},

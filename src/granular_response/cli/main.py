@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -74,6 +76,13 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
         raise typer.Exit(1)
 
 
+def _compilation_told() -> AbstractContextManager[Any]:
+    """Say on a terminal that kernels are compiled, where they are."""
+    from ..api.compiling import logged
+
+    return logged(commands.say if sys.stderr is not None and sys.stderr.isatty() else None)
+
+
 @commands.command("run examples/slab.yaml -o slab.nc", "run scene.yaml -o scene-by-dynamics.nc --method dynamics")
 def run(
     scene: Annotated[Path, typer.Argument(help="Scene file (YAML).", show_default=False)],
@@ -107,7 +116,7 @@ def run(
     loaded()
 
     try:
-        with using(threads or cores()), TerminalProgress() as progress:
+        with _compilation_told(), using(threads or cores()), TerminalProgress() as progress:
             solution = solve_scene(described, progress=progress)
     except (SceneError, *SOLVE_ERRORS) as error:
         if not str(error).startswith(str(scene)):
@@ -156,7 +165,7 @@ def continue_(
     try:
         solution = solution_from(stored, folder=folder)
         store.check_writable(output, solution.scene.files)
-        with using(threads or cores()), TerminalProgress() as progress:
+        with _compilation_told(), using(threads or cores()), TerminalProgress() as progress:
             solution = continue_solution(solution, to, progress=progress)
     except (ResultError, SceneError) as error:
         raise ResultError(f"{result}: {error}") from error
@@ -164,14 +173,23 @@ def continue_(
     _keep(output, solution, started, allow_unsettled, f"load factors {factors}")
 
 
-@commands.command("show slab.nc", "show data/pile_dip.nc")
+@commands.command("show slab.nc", "show data/pile_dip.nc", "show slab.nc --json")
 def show(
     file: Annotated[Path, typer.Argument(help="A stored result or study (netCDF).", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON, with all digits.")] = False,
 ) -> None:
     """Summarise a stored file.
 
     Scene, certificate and floor response of a result; groups and dimensions of a study.
     """
+    if as_json:
+        import json
+
+        from ..store.summary import as_data
+
+        typer.echo(json.dumps(as_data(file), indent=1, allow_nan=False))
+        return
+
     from rich.console import Console
     from rich.text import Text
 

@@ -5,6 +5,7 @@ of its packing. No mechanics here: what the disks do under these loads is for ``
 Whatever is wrong with a scene is a ``SceneError``: one line with the key, the value and what is allowed.
 """
 
+from .arrays import ArrayPacking
 from .errors import SceneError
 from .laboratory import LaboratoryUnits
 from .lattice import PilePacking, SlabPacking
@@ -16,6 +17,7 @@ from .scene import Scene
 from .table import FilePacking
 
 __all__ = [
+    "ArrayPacking",
     "Contact",
     "FilePacking",
     "LaboratoryUnits",

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidato
 
 from .errors import Problem, from_validation, suggestion
 
-PACKING_KINDS = ("slab", "pile", "file")
+PACKING_KINDS = ("slab", "pile", "file", "arrays")
 
 
 class Description(BaseModel):

@@ -130,7 +130,7 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
         raise Problem("must be top-centre, the index of a disk, or a RowSelector", value=selector)
     rows = len(row_count)
     if rows == 0:
-        rule = "a packing from a file has no rows, must be top-centre or the index of a disk"
+        rule = "a packing from a file or arrays has no rows, must be top-centre or the index of a disk"
         raise Problem(rule, key=("row",), value=selector.row)
     named = {"top": rows - 1, "bottom": 0}
     row = named[selector.row] if isinstance(selector.row, str) else selector.row

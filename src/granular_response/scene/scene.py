@@ -9,10 +9,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
 from ..inputs import read_text
 from . import text as yaml_text
+from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PACKING_KINDS, Description
 from .errors import Problem, SceneError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
@@ -24,7 +27,7 @@ from .table import FilePacking
 
 def _check_kind(value: Any) -> Any:
     """Say what is wrong with the kind before pydantic's tagged union looks at it."""
-    if isinstance(value, (SlabPacking, PilePacking, FilePacking)):
+    if isinstance(value, (SlabPacking, PilePacking, FilePacking, ArrayPacking)):
         return value
     choices = " or ".join(PACKING_KINDS)
     if not isinstance(value, Mapping):
@@ -51,7 +54,7 @@ class Scene(Description):
     """
 
     packing: Annotated[
-        Annotated[SlabPacking | PilePacking | FilePacking, Field(discriminator="kind")],
+        Annotated[SlabPacking | PilePacking | FilePacking | ArrayPacking, Field(discriminator="kind")],
         BeforeValidator(_check_kind),
     ] = Field(default_factory=SlabPacking, description="The disks before gravity acts, and the box.")
     contact: Contact = Field(default_factory=Contact, description="Contact law between disks.")
@@ -103,13 +106,13 @@ class Scene(Description):
 
     @model_validator(mode="after")
     def _check_loaded_disks(self) -> Scene:
-        if isinstance(self.packing, LatticePacking):
-            count = self.packing.row_count()
+        if total := self.packing.disk_count:  # 0: only the file knows
+            count = self.packing.row_count() if isinstance(self.packing, LatticePacking) else np.zeros(0, np.int64)
             for place, load in enumerate(self.loads):
                 if load.disk == TOP_CENTRE:
                     continue
                 try:
-                    check_disk(load.disk, int(count.sum()), count)
+                    check_disk(load.disk, total, count)
                 except Problem as problem:
                     path = ("loads", place, "disk", *problem.key)
                     raise Problem(problem.allowed, key=path, value=problem.value) from None
@@ -119,14 +122,14 @@ class Scene(Description):
         """What differs from the paper's scene."""
         named = self.model_dump(mode="json", exclude_defaults=True)
         if "packing" in named:
-            named["packing"] = {"kind": self.packing.kind, **named["packing"]}
+            named = shortened({**named, "packing": {"kind": self.packing.kind, **named["packing"]}})
         return f"Scene.from_dict({named})" if named else "Scene()"
 
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
         """All keys, folded up, for a notebook."""
-        keys = html.escape(self.to_yaml())
+        keys = html.escape(yaml_text.write(shortened(self.to_dict())))
         return f"<details><summary><code>{html.escape(repr(self))}</code></summary><pre>{keys}</pre></details>"
 
     @property
@@ -151,6 +154,54 @@ class Scene(Description):
             return cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
             raise from_validation(error, PACKING_KINDS) from None
+
+    @classmethod
+    def from_arrays(
+        cls,
+        x: ArrayLike,
+        z: ArrayLike,
+        radius: ArrayLike,
+        *,
+        mass: ArrayLike | None = None,
+        width: float | None = None,
+        origin: tuple[float, float] = (0.0, 0.0),
+        sides: str = "walls",
+        scene: Scene | Mapping[str, Any] | None = None,
+    ) -> Scene:
+        """A scene with a packing of one's own. The disks need not be in equilibrium: they fall first.
+
+        The scene holds the numbers themselves, so it is stored and read again without a further file.
+
+        Parameters
+        ----------
+        x, z : (n,) centres, z upwards, in any unit of length.
+        radius : (n,) radii in the same unit, or one for all disks.
+        mass : (n,) masses in any unit, or one for all; in proportion to the square of the radius if left out.
+        width : distance of the side walls, or the period of periodic sides, where it must be given; if left out, the
+            right wall touches the disk that reaches farthest.
+        origin : x of the left wall and z of the floor.
+        sides : "walls" or "periodic".
+        scene : all else, as a scene or nested mappings with its keys; that of ``Scene()`` if left out.
+
+        Raises
+        ------
+        SceneError
+            Where a number is not allowed, such as ``packing.x[3] = -1.0``, or the columns differ in length.
+
+        Examples
+        --------
+        >>> scene = gr.Scene.from_arrays(x=[1, 3, 5, 2, 4], z=[1, 1, 1, 2.74, 2.74], radius=1.0)
+        >>> scene.packing.build()
+        Packing(5 disks, radii from 1 to 1, box 6 wide)
+        """
+        columns = {"x": listed(x), "z": listed(z)}
+        count = len(columns["x"]) if isinstance(columns["x"], list) else None
+        columns |= {"radius": listed(radius, count), "mass": None if mass is None else listed(mass, count)}
+        if not isinstance(scene, (Scene, Mapping, type(None))):
+            raise SceneError(f"scene = {show(scene)}: must be a scene, or a mapping with its keys")
+        rest = scene.to_dict() if isinstance(scene, Scene) else scene or {}
+        packing = {"kind": "arrays", **columns, "width": width, "origin": origin, "sides": sides}
+        return cls.from_dict({**rest, "packing": packing})
 
     @classmethod
     def from_text(cls, text: str, *, folder: str | PathLike[str] | None = None) -> Scene:

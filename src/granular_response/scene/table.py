@@ -4,26 +4,19 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
-from ..state import FloatArray
-from ..state.box import FARTHEST
 from . import formats
 from .base import Description, Positive, Sides, Vector, allowed
+from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .packing import Packing, exact_mean
 
 _FORMATS = " or ".join(formats.SUFFIXES)
-#: By which lengths of a file may be off, relatively: some formats have single precision.
-_ROUNDING = 1e-6
-#: Least mass and radius of a disk as parts of the largest: what a smaller one does is lost in the rounding of others.
-LEAST_MASS, LEAST_RADIUS = 1e-12, 1e-6
 
 
 def _printable(text: str) -> str:
@@ -120,49 +113,18 @@ class FilePacking(Description):
         Warns (UserWarning) where a file of another program has disks of several sizes and no masses.
         """
         table = self._read()
-        radius, places = table.radius, table.places
         left, floor, width = self._sides(table.box)
-        x, z = table.x - left, table.z - floor
-        for name, values in (("x", x), ("z", z), ("radius", radius)):
-            self._check(name, values, np.isfinite(values), "must be a finite number", places)
-        self._check("radius", radius, radius > 0.0, "must be greater than 0", places)
-        mass = (radius / radius.max()) ** 2 if table.mass is None else table.mass
-        self._check("mass", mass, np.isfinite(mass), "must be a finite number", places)
-        mean = exact_mean(radius)
-        far = FARTHEST * mean
-        if width > far:
-            raise SceneError(describe(("packing", "width"), width, f"must be at most {far:g}, 1e9 mean radii"))
-        if self.periodic:
-            x = np.mod(x, width)
-        half = 0.5 * width
-        wide = half * (1.0 + _ROUNDING)
-        large, heavy = LEAST_RADIUS * radius.max(), LEAST_MASS * mass.max()
-        for name, values, good, rule in (
-            ("radius", radius, radius <= wide, f"must be at most {half:g}, half the width of the box"),
-            ("radius", radius, radius >= large, f"must be at least {large:g}, a millionth of the largest"),
-            ("x", x, self.periodic | ((x > 0.0) & (x < width)), f"must be between the side walls 0 and {width:g}"),
-            ("z", z, z > 0.0, "must be above the floor 0"),
-            ("z", z, z <= far, f"must be at most {far:g}, 1e9 mean radii"),
-            ("mass", mass, mass > 0.0, "must be greater than 0"),
-            ("mass", mass, mass >= heavy, f"must be at least {heavy:g}, 1e-12 of the largest"),
-        ):
-            self._check(name, values, good, rule, places)
-        if table.remark and np.ptp(radius) > _ROUNDING * mean:
+        try:
+            packing = packed(table, left, floor, width, self.periodic)
+        except Problem as problem:
+            *name, place = problem.key
+            if isinstance(place, str):
+                raise SceneError(describe(("packing", place), problem.value, problem.allowed)) from None
+            value = f"{name[0]} = {problem.value!r}: " if name else ""
+            raise self._error(value + problem.allowed, table.places[place]) from None
+        if table.remark and np.ptp(table.radius) > ROUNDING * exact_mean(table.radius):
             warnings.warn(f"{self.path}: {table.remark}", stacklevel=2)
-        order = np.lexsort((z, x))
-        same = np.flatnonzero((np.diff(x[order]) == 0.0) & (np.diff(z[order]) == 0.0))
-        if len(same):
-            one, two = sorted(order[same[0] : same[0] + 2])
-            raise self._error(f"disk is in the same place as that of {places[one]}", places[two])
-
-        return Packing(
-            position=np.ascontiguousarray(np.stack([x, z], axis=1) / mean),
-            radius=radius / mean,
-            row=np.full(len(radius), -1, dtype=np.int32),
-            width=float(width / mean),
-            periodic=self.periodic,
-            given_mass=None if table.mass is None else mass / exact_mean(mass),
-        )
+        return packing
 
     def _sides(self, box: formats.FileBox) -> tuple[float, float, float]:
         """Left wall, floor and width in coordinates of the file; SceneError where they are not known or disagree."""
@@ -179,16 +141,10 @@ class FilePacking(Description):
             given = f"must be given{both}" if key == "width" else "must be given as [left wall, floor]"
             where = " in coordinates of the file" if both else ""
             raise SceneError(describe(("packing", key), None, f"{given}{where}, {box.reason}"))
-        if box.periodic and box.width is not None and not math.isclose(width, box.width, rel_tol=_ROUNDING):
+        if box.periodic and box.width is not None and not math.isclose(width, box.width, rel_tol=ROUNDING):
             rule = f"must be {box.width!r} or left out, the period of the box of {show(self.path)}"
             raise SceneError(describe(("packing", "width"), width, rule))
         return left, floor, width
-
-    def _check(self, name: str, values: FloatArray, good: NDArray[np.bool_], rule: str, places: Sequence[str]) -> None:
-        """SceneError for the first of the ``values`` that is not ``good``."""
-        if not np.all(good):
-            bad = int(np.argmin(good))
-            raise self._error(f"{name} = {float(values[bad])!r}: {rule}", places[bad])
 
     def _read(self) -> formats.Table:
         try:

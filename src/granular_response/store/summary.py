@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator
 from os import PathLike
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,6 +14,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from ..scene import text as scene_text
+from ..scene.arrays import shortened
 from . import files as store
 from .checked import read_result
 from .result import EVENT_KINDS, NOT_DETERMINED, events_from
@@ -30,6 +34,51 @@ _HIDDEN = {
 
 #: What is shown of the work that each state took.
 _WORK = ("steps", "increments", "factorisations", "newton_iterations")
+
+
+def as_data(path: str | PathLike[str]) -> dict[str, Any]:
+    """The summary of a file as JSON has it, every number with all its digits; null is what is not known.
+
+    Raises as ``summarise`` does.
+    """
+    datasets, attributes = store.read(path, sealed=False), store.read_attributes(path, sealed=False)
+    root = datasets.get("")
+    found: dict[str, Any] = {"file": str(path), "sealed": store.is_sealed(path)}
+    for name, value in attributes.items():
+        nested = name in ("method", "method_reason") and isinstance(value, str)
+        found[name] = json.loads(value) if nested else _json(value)
+    if root is None or "floor_response" not in root:
+        found["datasets"] = {
+            name or "/": {"dimensions": dict(one.sizes), "variables": list(map(str, one.data_vars))}
+            for name, one in datasets.items()
+        }
+        return found
+    result = read_result(path, sealed=False)
+    found["scene"] = scene_text.read(str(attributes["scene"]))
+    states = {str(name): result[name] for name in result if result[name].dims == ("state",)}
+    events = events_from(result)
+    found["states"] = [
+        {name.removeprefix("state_"): _known(values.values[k]) for name, values in states.items()}
+        | {"events": dict(Counter(event.kind for state, event in events if state == k))}
+        for k in range(result.sizes["state"])
+    ]
+    for name in ("x", "total_force", "floor_response", "reaction"):
+        if name in result:
+            found[name] = _json(result[name].values)
+    return found
+
+
+def _known(value: np.generic) -> Any:
+    """A number of a state; None for the whole number that says that it is not known."""
+    return None if isinstance(value, np.integer) and value == NOT_DETERMINED else _json(value)
+
+
+def _json(value: Any) -> Any:
+    """A number, text or array as JSON has it: no NaN and no infinity."""
+    plain = value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
+    if isinstance(plain, list):
+        return [_json(one) for one in plain]
+    return None if isinstance(plain, float) and not np.isfinite(plain) else plain
 
 
 def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
@@ -56,7 +105,12 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     for name in ("scene", "parameters"):
         if name in attributes:
             yield Text(f"\n{name}", style="bold")
-            yield _text(str(attributes[name]).rstrip())
+            yield _text(_readable(str(attributes[name])).rstrip())
+
+
+def _readable(scene: str) -> str:
+    """Stored keys without the numbers of a packing from arrays."""
+    return scene_text.write(shortened(scene_text.read(scene))) if "kind: arrays" in scene else scene
 
 
 def _result(result: xr.Dataset) -> Iterator[RenderableType]:

@@ -1,0 +1,83 @@
+"""Packings from arrays: the same as from a file, stored with the scene, and the error for what cannot be."""
+
+import doctest
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import granular_response as gr
+from granular_response.scene import FilePacking
+from granular_response_paper.trials.random_scenes import write_table
+
+PYRAMID = {"x": [1.0, 3.0, 5.0, 2.0, 4.0], "z": [1.0, 1.0, 1.0, 2.75, 2.75], "radius": 1.0}
+QUIET = {"loads": [], "contact": {"friction": 0.0}}
+
+
+def test_it_is_the_packing_of_a_file_with_these_numbers(tmp_path):
+    table = np.random.default_rng(3).uniform([0.5, 0.5, 0.1], [9.0, 5.0, 0.4], (40, 3))
+    write_table(tmp_path / "disks.csv", table)
+    from_file = FilePacking(path=str(tmp_path / "disks.csv"), width=10.0).build()
+    packing = gr.Scene.from_arrays(*table.T, width=10.0).packing.build()
+    for name in ("position", "radius", "mass", "row"):
+        assert np.array_equal(getattr(packing, name), getattr(from_file, name))
+    assert packing.box == from_file.box
+
+
+def test_columns_of_any_kind_and_lone_numbers():
+    whole = gr.Scene.from_arrays(PYRAMID["x"], PYRAMID["z"], [1.0] * 5, mass=[2.0] * 5)
+    x, z = xr.DataArray(PYRAMID["x"]).to_series(), np.array(PYRAMID["z"], np.float32)
+    assert gr.Scene.from_arrays(x, z, 1, mass=2.0) == whole
+    assert whole.packing.build().width == 6.0
+    assert gr.Scene.from_arrays([11], [6], 1, origin=(10, 5)).packing.build().position.tolist() == [[1.0, 1.0]]
+
+
+def test_the_rest_of_the_scene():
+    base = gr.Scene().updated({"contact.friction": 0.7, "loads": []})
+    scene = gr.Scene.from_arrays(**PYRAMID, scene=base)
+    assert scene.updated({"packing": base.packing}) == base
+    assert scene == gr.Scene.from_arrays(**PYRAMID, scene={"contact": {"friction": 0.7}, "loads": []})
+    assert "5 numbers" in repr(scene) and "2.75" not in repr(scene) + scene._repr_html_()
+
+
+def test_a_stored_result_has_the_packing_and_goes_on(tmp_path):
+    third = {"x": np.array(PYRAMID["x"]) / 3, "z": np.array(PYRAMID["z"]) / 3, "radius": 1 / 3}
+    scene = gr.Scene.from_arrays(**third, scene={**QUIET, "loads": [{"disk": 4, "force": [0.0, -0.1]}]})
+    assert gr.Scene.from_text(scene.to_yaml()) == scene
+    result = gr.solve(scene)
+    result.save(tmp_path / "own.nc")
+    opened = gr.open_result(tmp_path / "own.nc")
+    assert opened.scene == scene
+    further = opened.continued([2.0]).loaded[-1]
+    assert np.array_equal(further.position, result.continued([2.0]).loaded[-1].position)
+    assert gr.plot.packing(opened).figure
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"x": [1, 3, 5, 2, -4]}, "packing.x[4] = -4.0: must be between the side walls 0 and 6"),
+        ({"x": [1, 3, 5, 2, 1], "z": [1] * 5}, "packing.x[4] = 1.0: disk is in the same place as that of disk 0"),
+        ({"z": [1, 1, np.nan, 2, 2]}, "packing.z[2] = nan: must be a finite number"),
+        ({"z": [1, 1]}, "packing.z = [1.0, 1.0]: must have as many numbers as x, has 2, not 5"),
+        ({"radius": [1, 1, 1, 1, 0]}, "packing.radius[4] = 0.0: must be greater than 0"),
+        ({"mass": -1}, "packing.mass[0] = -1.0: must be greater than 0"),
+        ({"x": "12345"}, "packing.x = '12345': must be a list of finite numbers, one for each disk"),
+        ({"z": np.ones((5, 1))}, "packing.z = [[1.0], [1.0], [1.0], [1.0], [1.0]]: must be a list of finite numbers"),
+        ({"radius": [1, 1, 1, 1, True]}, "packing.radius = [1, 1, 1, 1, True]: must be a list of finite numbers"),
+        ({"width": -1.0}, "packing.width = -1.0: must be a number greater than 0"),
+        ({"origin": (10.0, 0.0)}, "packing.x[0] = 1.0: must be between the side walls 10 and 6"),
+        ({"sides": "periodic"}, "packing.width = null: must be given with periodic sides"),
+        ({"scene": {"loads": [{"disk": 5, "force": [0, -1]}]}}, "loads[0].disk = 5: must be from 0 to 4"),
+        ({"scene": 3}, "scene = 3: must be a scene, or a mapping with its keys"),
+    ],
+)
+def test_mistakes_name_the_key_the_value_and_what_is_allowed(changes, message):
+    with pytest.raises(gr.SceneError) as caught:
+        gr.Scene.from_arrays(**{**PYRAMID, **changes})
+    assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+
+
+def test_the_example_of_the_docstring_runs():
+    (example,) = doctest.DocTestFinder(recurse=False).find(gr.Scene.from_arrays, "from_arrays", globs={"gr": gr})
+    assert doctest.DocTestRunner().run(example) == (0, 2)
