@@ -135,8 +135,8 @@ def rows(counts: Sequence[int], *, kind: str = "slab") -> str:
     layers, disks = len(counts), [*dict.fromkeys(counts)]
     if kind == "pile":
         return f"pile of {layers} layers, {disks[0]} disks in the lowest"
-    each = "each" if len(disks) == 1 else "in turn"
-    return f"slab of {layers} layers, {values(disks)} disks {each}"
+    each = f"{disks[0]}" if len(disks) == 1 else f"alternately {values(disks)}"
+    return f"{layers} layers of {each} disks"
 
 
 def values(given: Value) -> str:

@@ -17,6 +17,7 @@ from granular_response_paper import captions
 from granular_response_paper.captions import Caption, of_scene
 from granular_response_paper.groups import NAMES
 from granular_response_paper.pipeline import GroupError, drawing, group_member
+from granular_response_paper.pipeline import stored as stored_data
 
 ROOT = Path(__file__).parents[2]
 GROUPS = ROOT / "src" / "granular_response_paper" / "groups"
@@ -28,7 +29,7 @@ def test_parameters_end_the_caption_in_the_papers_symbols():
     given = of_scene(scene, force=[4.0, 10.0, 20.0], width=6.0, realizations=15)
     assert Caption("Response.", "A curve.", given).whole == (
         "Response. F_ext = 4, 10 and 20 m̄g, µ = 0.2, µ_wall = 0, k_T/k_N = 0.8, k_N = 3000 m̄g/R̄, δ = 0.01, "
-        "15 realizations, w = 6 R̄, slab of 15 layers, 61 and 60 disks in turn."
+        "15 realizations, w = 6 R̄, 15 layers of alternately 61 and 60 disks."
     )
 
 
@@ -44,7 +45,7 @@ def test_other_packings_have_their_own_words():
     pile = Scene(packing=PilePacking(layers=11), loads=())
     assert "pile of 11 layers, 31 disks in the lowest" in Caption("", "", of_scene(pile)).whole
     periodic = Scene().updated({"packing.sides": "periodic", "packing.disks_per_row": 60})
-    assert of_scene(periodic)["packing"] == "slab of 15 layers, 60 disks each"
+    assert of_scene(periodic)["packing"] == "15 layers of 60 disks"
 
 
 def test_of_many_values_the_ends_are_said():
@@ -90,7 +91,7 @@ def test_fields_of_a_template_are_filled_in_and_lists_put_in_words():
     )
     said = captions.of_group("numerics", given, p=parameters)["numerics"].whole
     assert "for µ = 0.2 and 1 at 15 m̄g" in said and "under 1, 2 and 15 m̄g put back" in said
-    assert said.endswith("µ = 0.2. µ = 0.2.")
+    assert said.endswith("µ = 0.2. Not in the paper. µ = 0.2.")
     with pytest.raises(KeyError, match="p"):
         captions.of_group("numerics", given)
 
@@ -130,3 +131,26 @@ def test_captions_are_made_from_the_parameters_that_the_file_stores(tmp_path):
     store.write(tmp_path / "theory.nc", {}, {"group": "theory", "parameters": "stifness_ratio: 0.8"})
     with pytest.raises(GroupError, match=r"was made with parameters that theory does not have now: .*stifness_ratio"):
         drawing.draw("theory", tmp_path / "theory.nc", tmp_path)
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_captions_begin_with_their_message(group):
+    """A sentence of its own stands before the panels and the mark of a picture that the paper does not have."""
+    templates = yaml.read((GROUPS / group / captions.TEMPLATES).read_text("utf-8"))
+    assert set(templates) == {path.stem for path in STORED[group].parent.glob("*.png")}
+    for stem, one in templates.items():
+        message = one["text"].split(". ")[0]
+        assert not re.search(r"^Not in the paper|\([a-z]\) ", message), f"{stem}: {message}"
+        assert one["text"].endswith("Not in the paper.") or "Not in the paper" not in one["text"], stem
+        assert one["alternative"].strip(), stem
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_filled_captions_have_at_most_120_words(group):
+    try:
+        path, datasets = stored_data.datasets(group)
+        filled = group_member(group, "draw", "captions")(datasets, drawing._parameters(group, path))
+    except (GroupError, store.StoreError) as error:
+        pytest.skip(f"no datasets of {group} as it is now: {error}")
+    for stem, caption in filled.items():
+        assert len(caption.whole.split()) <= 120, f"{stem}: {len(caption.whole.split())} words"

@@ -38,7 +38,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
                 markersize=3.0, markerfacecolor="none",
             )  # fmt: skip
             # one entry for the line and the symbols of a force
-            name = f"${force:g}\\,{style.WEIGHT}$: {100 * difference:.1f} % apart"
+            name = f"${force:g}\\,{style.WEIGHT}$: {100 * difference:.0f} % apart"
             axes.plot([], [], **look, marker=style.MARKERS[k], markersize=3.0, markerfacecolor="none", label=name)
         axes.set_xlabel(style.POSITION)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), handlelength=3.0)

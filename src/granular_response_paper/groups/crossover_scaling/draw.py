@@ -29,7 +29,7 @@ NEXT_LABEL = 1.25
 
 #: Events of the first figure.
 NAMES = {
-    "crossover": "two peaks from",
+    "crossover": "onset of two peaks",
     "reaches_floor": "open region at the floor",
     "first_opening": "first contact opens",
 }
@@ -38,7 +38,7 @@ NAMES = {
 APART = {
     "disks_per_layer": "disks in a row / layers",
     "stiffness_per_layer": rf"stiffness per layer $k_N{style.RADIUS}/(N{style.WEIGHT})$",
-    "confinement": rf"confinement $P/{style.WEIGHT}$",
+    "confinement": rf"lateral prestress $P/{style.WEIGHT}$",
 }
 
 
@@ -65,7 +65,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         dict.fromkeys(("crossover_scaling", "crossover_scaling_regions", "crossover_scaling_apart"), said),
         p=parameters,
         layers=sorted(set(slabs["layers"].values.tolist())),
-        survey=" Black edges: slabs of the survey, simulated apart from the pipeline." if surveyed else "",
+        survey=" Black edges: slabs of the survey." if surveyed else "",
     )
 
 
@@ -119,7 +119,7 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         low, high = axes.get_ylim()
         if low > 0.0:
             axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
-        axes.legend(loc="upper left", title="power of $N$", fontsize=7, ncols=2, columnspacing=1.0)
+        axes.legend(loc="upper left", title="exponent of $N$", fontsize=7, ncols=2, columnspacing=1.0)
     key = panels[1, 1]
     key.set_axis_off()
     for look, series in enumerate(of_layers(powers)):
@@ -213,5 +213,5 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
         axes.legend(loc="upper left", fontsize=7)
         style.letter(axes, letter, place="above")
-    panels[0, 0].set_ylabel(rf"two peaks from ${style.F_EXT}/{style.WEIGHT}$")
+    panels[0, 0].set_ylabel(f"onset of two peaks, {style.FORCE}")
     return figure

@@ -29,7 +29,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
             **style.marked_line(lines[disordered]),
         )  # fmt: skip
         lines[disordered] += 1
-    for axes, what in zip(panels, (style.RESPONSE, "smoothed response$\\,\\times\\,\\bar R$"), strict=True):
+    for axes, what in zip(panels, (style.RESPONSE, style.FLOOR_STRESS), strict=True):
         axes.set(xscale="log", xlabel=style.FORCE, ylabel=f"{what} at $x = 0$")
         axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)

@@ -116,7 +116,7 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         lines = sorted(level for level in levels if off.min() < level < off.max())
         if lines:
             axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
-        style.letter(axes, letters[rows + index], place="above", text=f"{name}, less ({letters[len(maps)]})")
+        style.letter(axes, letters[rows + index], place="above", text=f"{name}, minus ({letters[len(maps)]})")
     for axes in [*panels[:, 0], *panels[:-1, 1]]:
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
         axes.axhspan(0.0, width, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)

@@ -71,8 +71,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     }
     fields: dict[str, Any] = {"crossover": PAPER_CROSSOVER, "third": PAPER_THIRD_PEAK, "symmetric": PAPER_SYMMETRIC}
     fields["stops"] = "".join(
-        f" The curve of µ = {end.friction:g} ends at {end.force:g} {WEIGHT} to save time; the slab bears more."
-        for end in parameters.ends
+        f" µ = {end.friction:g} is computed up to {end.force:g} {WEIGHT} only." for end in parameters.ends
     )
     if np.isin(PROFILE_FRICTIONS, frictions).all():
         force = at_forces(response.sel(friction=0.2), PROFILE_FORCES)["force"].values.tolist()

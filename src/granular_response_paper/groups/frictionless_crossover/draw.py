@@ -229,7 +229,7 @@ def _stiffness(data: xr.Dataset) -> Figure:
         known = held & np.isfinite(bracket).all(axis=1)
         events.plot(k[known], bracket[known].mean(axis=1), **style.marked_line(at), label=label)
     style.logarithmic(events, "y")
-    events.set(ylabel=f"force of the event, {style.FORCE}")
+    events.set(ylabel=f"onset force, {style.FORCE}")
     events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
     events.yaxis.set_major_formatter("{x:g}")
     events.yaxis.set_minor_formatter("")
@@ -270,10 +270,10 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
                 slabs["layers"].values[known],
                 bracket[known].mean(axis=1),
                 **style.marked_line(index),
-                label=f"{EVENTS[name]}, {style.equals('k_N', stiffness)}",
+                label=f"{EVENTS[name]}, {style.equals('k_N', stiffness, style.STIFFNESS_UNIT)}",
             )
             index += 1
-    events.set(xlabel="layers", ylabel=f"force of the event, {style.FORCE}")
+    events.set(xlabel="layers", ylabel=f"onset force, {style.FORCE}")
     events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
     events.legend(fontsize=7, loc="upper left")
     force = float(at_force["force"])

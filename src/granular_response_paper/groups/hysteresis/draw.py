@@ -54,7 +54,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         friction=parameters.cases[one].friction,
         part=f"{100.0 * parameters.left:g} %",
         most=max(case.realizations + case.surveyed for case in parameters.cases),
-        survey=f", {further} of which the survey has simulated" if further else "",
+        survey=f", {further} of them of the survey" if further else "",
     )
 
 
@@ -102,9 +102,10 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
         dots = {"linestyle": "none", "marker": "o", "markersize": 2.6} if branch == 2 else {}
         below.plot(x[near], added[branch, near], label=label, **style.line(branch) | dots)
     zero(below)
-    below.set(xlabel=style.POSITION, ylabel=rf"floor force less that at rest$\,/\,{style.WEIGHT}$")
+    below.set(xlabel=style.POSITION, ylabel=rf"incremental floor force$\,/\,{style.WEIGHT}$")
     below.legend(loc="upper right")
-    titles((loops, below), ("lattices", f"the floor, {style.equals(style.FRICTION, friction[one])}"))
+    under = style.equals(style.F_EXT, float(curves["load"].isel(case=one).max()), style.WEIGHT)
+    titles((loops, below), ("lattices", f"the floor, {style.equals(style.FRICTION, friction[one])}, {under}"))
     return figure
 
 
@@ -129,7 +130,7 @@ def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
             part = _shown((values / loops["work"]).isel(case=case))
             lost.plot(force, part, **look | {"markerfacecolor": look["color"] if filled else "white"})
     left.axhline(events.attrs["left"], color=style.BLACK, linewidth=0.7, linestyle=(0, (4, 2)))
-    for axes, label in ((left, "left on the floor, per change"), (lost, "lost, per work of the load")):
+    for axes, label in ((left, "remainder / change on the floor"), (lost, "dissipated / work of the load")):
         axes.set(xscale="log", yscale="log", ylim=(LEAST, 1.0), xlabel=style.FORCE, ylabel=label)
         axes.xaxis.set_minor_formatter("")
     materials = [

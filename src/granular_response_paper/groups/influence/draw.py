@@ -116,6 +116,6 @@ def _decay(data: xr.Dataset) -> Figure:
     powers.axhline(2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
     zero(powers)
     powers.set_xticks(list(cases), [_name(data, case) for case in cases], rotation=30, ha="right")
-    powers.set(ylabel="power of the height")
-    titles((falls, powers), ("a force and its two halves", "how fast it falls"))
+    powers.set(ylabel="exponent of the decay")
+    titles((falls, powers), ("a force and its two halves", "decay with height"))
     return figure

@@ -52,7 +52,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         {"moduli_packings": said, "moduli_response": said, "moduli_size": said, "moduli_lattice": lattice},
         p=parameters,
         ensemble=f"{min(most)} to {max(most)}" if min(most) != max(most) else f"{most[0]}",
-        survey=f" Packings of the survey, which the pipeline reads: {', '.join(stored)}." if stored else "",
+        survey=f" Of the survey: {', '.join(stored)}." if stored else "",
         edges=" Black edges: at least half of the packings are the survey's." if stored else "",
         tolerances=[100.0 * tolerance for tolerance in parameters.tolerances],
     )
@@ -81,7 +81,7 @@ def _moduli(data: xr.Dataset) -> Figure:
                 mean, spread = _mean_and_spread(modulus.isel(case=case).sel(following=following))
                 face = look["color"] if filled else "white"
                 axes.errorbar(across, mean, spread, beside, markerfacecolor=face, markeredgecolor=look["color"], **look)
-        axes.set(xlabel="contacts per disk", ylim=(0.0, None))
+        axes.set(xlabel="coordination number $z$", ylim=(0.0, None))
     bulk.set_ylabel(r"bulk modulus $(a + b + 2c)\,/\,4k_N$")
     shear.set_ylabel(r"shear modulus $(a + b - 2c + 2d)\,/\,8k_N$")
     shape.set_ylabel(r"$a\,/\,b$, horizontal over vertical")
@@ -111,7 +111,7 @@ def _responses(data: xr.Dataset) -> Figure:
         axes.fill_between(place, mean - spread, mean + spread, color=style.COLOURS[0], alpha=0.2, linewidth=0.0)
         axes.plot(place, mean, **style.line(0), label="packings")
         for solid, look, label in (
-            ("free", {"color": style.BLACK, "linestyle": (0, (4, 2))}, "slab of their moduli"),
+            ("free", {"color": style.BLACK, "linestyle": (0, (4, 2))}, "slab with the measured moduli"),
             ("isotropic", {"color": style.COLOURS[1], "linestyle": (0, (1.2, 1.2))}, "isotropic slab"),
         ):
             axes.plot(place, one["predicted"].sel(solid=solid).mean("realization"), label=label, **look)
@@ -188,7 +188,7 @@ def _lattice(data: xr.Dataset) -> Figure:
     turn.plot(steps, ends, color=look["color"], linewidth=0.7, linestyle=(0, (1.2, 1.2)))
     turn.set(xlabel="1 / layers", ylabel=f"${style.STIFFNESS_RATIO}$ where two peaks end")
     turn.set_xlim(-0.006, None)
-    titles((closed, opened, turn), ("horizontal contacts closed", "open", ""))
+    titles((closed, opened, turn), ("horizontal contacts closed", "open", "end of two peaks"))
     keys = [(key, name) for axes in (opened, turn) for key, name in zip(*axes.get_legend_handles_labels(), strict=True)]
     figure.legend(*zip(*keys, strict=True), loc="outside lower center", ncols=3)
     return figure

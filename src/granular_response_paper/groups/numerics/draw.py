@@ -52,7 +52,7 @@ def _stop_energy(panel: Axes, study: xr.Dataset) -> None:
             )
             index += 1
     style.paper_value(panel, FORCE_ERROR, "paper: 1 %", along="y", at=0.45)
-    panel.set(xlabel=rf"$E_\mathrm{{stop}}/{style.ENERGY_UNIT}$", ylabel="error, per largest")
+    panel.set(xlabel=rf"$E_\mathrm{{stop}}/{style.ENERGY_UNIT}$", ylabel="relative error")
     panel.legend(**BELOW)
 
 

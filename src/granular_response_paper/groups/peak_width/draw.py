@@ -47,18 +47,16 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     surveyed = [layers for case in parameters.cases for layers in case.surveyed]
     stored = f"packings of the survey, {min(surveyed)} to {max(surveyed)} layers" if surveyed else ""
     slabs = (
-        f"Walls and floor have the friction of the disks; rows have {parameters.disks_per_layer} disks for each layer; "
-        f"k_N = {parameters.base.contact.normal_stiffness:g} {WEIGHT}/{RADIUS} at {parameters.reference_layers} layers "
-        f"grows as their number. Forces F, in {WEIGHT}, are those at {parameters.reference_layers} layers and grow as "
-        "the square of the number; without one the limit of small forces. * gravity acts on disks without friction, "
-        "which rub from then on."
+        f"Forces F, in {WEIGHT}, and k_N = {parameters.base.contact.normal_stiffness:g} {WEIGHT}/{RADIUS} are those at "
+        f"{parameters.reference_layers} layers; F grows as their square, k_N with them. "
+        "* Friction only after settling. Walls rub as the disks."
     )
     realizations = " or ".join(map(str, sorted(counts)))
     return of_group(
         "peak_width",
         {"peak_width_depth": said, "peak_width_powers": said},
         p=parameters,
-        disorder=f"Disorder: of the mean profile of {realizations} realizations. " if counts else "",
+        disorder=f"Disorder: mean profiles of {realizations} packings. " if counts else "",
         edges=f"Black edges: {stored}. " if stored else "",
         along=f"With {stored}. " if stored else "",
         slabs=slabs,
@@ -160,7 +158,7 @@ def _powers(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
                     [float(one["elastic_power"][0])], [y], marker="|", markersize=7, color=style.BLACK,
                     linestyle="none", label="elastic slab" if row == 0 and k else None,
                 )  # fmt: skip
-        axes.set(xlabel="power with which the width grows")
+        axes.set(xlabel="exponent of the width")
     panels[0].set_yticks(range(len(cases)), [name(inside, case) for case in cases])
     panels[0].set_ylim(len(cases) - 0.4, -0.6)
     panels[1].legend(loc="upper right", fontsize=7)

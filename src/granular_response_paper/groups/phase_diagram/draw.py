@@ -185,7 +185,7 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
     frictions = sorted(set(crossovers["friction"].values.tolist()))
     widths = crossovers["width"].values.tolist()
     tolerance, few = float(shapes.attrs["tolerance"]), shapes.isel(number=0)
-    what = f"means of {int(few['number'])} that agree"
+    what = f"fraction of means of {int(few['number'])}"
     figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), "force over crossover force", what)
     drawn = {}
     for (width, delta), axes in panels.items():
@@ -257,11 +257,14 @@ def _starts(starts: xr.Dataset) -> Figure:
             axes.axvline(touching, color=style.MUTED, linewidth=0.6, linestyle="--", zorder=0)
         dips.axhline(0.0, color=style.FAINT, linewidth=0.6, linestyle="-", zorder=0)
         style.letter(
-            dips, "abc"[column], place="above", text=f"$\\delta = {delta:g}$, $F_{{\\mathrm{{ext}}}} = {force:g}\\,mg$"
+            dips,
+            "abc"[column],
+            place="above",
+            text=f"$\\delta = {delta:g}$, $F_{{\\mathrm{{ext}}}} = {force:g}\\,{style.WEIGHT}$",
         )
         style.letter(contacts, "def"[column], place="above")
-        contacts.set_xlabel("lattice constant of the start / $\\bar R$")
-    panels[0, 0].set_ylabel("dip per largest response")
-    panels[1, 0].set_ylabel("contacts per disk, walls counted")
+        contacts.set_xlabel("initial lattice constant / $\\bar R$")
+    panels[0, 0].set_ylabel("relative depth of the dip")
+    panels[1, 0].set_ylabel("coordination number $z$, with walls")
     panels[0, 0].legend(loc="best")
     return figure

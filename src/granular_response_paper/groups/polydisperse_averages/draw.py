@@ -193,7 +193,7 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         axes.tick_params(labelleft=False)
     one.set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
     names = list(map(packing, deltas))
-    titles(panels[0], [f"{names[0]}, one packing", f"{names[0]}, means", *names[1:], ""])
+    titles(panels[0], [f"{names[0]}, one packing", f"{names[0]}, rough walls", *names[1:], ""])
     ends = others[-1]
     for index, (delta, name) in enumerate(zip(deltas, names, strict=True)):
         here = data["polydispersity"].values == delta
@@ -342,12 +342,12 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
         look |= {"markersize": 3.5, "elinewidth": 0.8, "capsize": 2.0}
         coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=packing(delta))
-    coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="contacts per disk in the bulk")
+    coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="coordination number $z$ in the bulk")
     paper = rf"paper: {PAPER_CONTACTS:g} at $\delta = 0.01$, $\mu = 0$"
     style.paper_value(coordination, PAPER_CONTACTS, paper, along="y")
     coordination.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
     _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), deltas)
-    bearing.set(xlabel=style.FORCE, ylabel="part of the packings at rest", xscale="log", ylim=(0.0, 1.05))
+    bearing.set(xlabel=style.FORCE, ylabel="fraction of stable packings", xscale="log", ylim=(0.0, 1.05))
     bearing.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
     style.letters(panels, place="above")
     return figure

@@ -18,9 +18,9 @@ from .parameters import Parameters
 #: Events in the order of the panels, with what they are called there.
 PANELS = {
     "first_opening": "first opening",
-    "linear_range": "response 1 % off",
+    "linear_range": "1 % departure from linearity",
     "reaches_floor": "open region at the floor",
-    "crossover": "two peaks",
+    "crossover": "onset of two peaks",
     "third_peak": "third peak",
     "loss_of_symmetry_path": "loss of symmetry",
 }
@@ -44,7 +44,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     for panel in axes[-1]:
         panel.set_xticks(range(len(slabs)), [f"{mu:g}\nrough" if wall else f"{mu:g}" for wall, mu in slabs])
         panel.tick_params(axis="x", which="both", length=0)
-    outer(axes, "friction", style.FORCE)
+    outer(axes, f"${style.FRICTION}$", style.FORCE)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=min(4, len(ways)))
     return {"preparation": figure}
 

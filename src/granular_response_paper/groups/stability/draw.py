@@ -35,6 +35,9 @@ AXES = {
 #: Markers without a line.
 DOTS: dict[str, Any] = {"linestyle": "none", "markersize": 4.5}
 
+#: Laws of friction, with their names in the legend.
+FRICTION_LAWS = {"cut": "default", "literal": "literal"}
+
 #: Outcomes of random scenes in the order of their codes.
 RANDOM = ("certified", "uncertified", "not settled", "no equilibrium", "time step refused", "scene refused", "wrong")
 
@@ -154,9 +157,9 @@ def _sliding(panel: Axes, study: xr.Dataset) -> None:
 
 def _collisions(panel: Axes, study: xr.Dataset) -> None:
     worst = study["energy_ratio"].max(["spin", "friction"])
-    for k, (law, body) in enumerate((law, body) for law in ("cut", "literal") for body in ("floor", "disk")):
+    for k, (law, body) in enumerate((law, body) for law in FRICTION_LAWS for body in ("floor", "disk")):
         one = worst.sel(friction_law=law, body=body, damping_ratio=0.0)
-        panel.plot(one["angle"], one, label=f"{law} rule, {body}", **style.marked_line(k))
+        panel.plot(one["angle"], one, label=f"{FRICTION_LAWS[law]} rule, {body}", **style.marked_line(k))
     panel.axhline(1.0, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=0)
     panel.set_xlabel("angle from grazing [degrees]")
     panel.set_ylabel("largest energy, after / before")

@@ -98,7 +98,7 @@ def _draw_dips(axes: Axes, response: xr.Dataset, elastic: xr.Dataset, events: xr
         panel.plot(fine, dip.sel(body="half plane"), **style.line(1), label="half plane")
         panel.plot(fine, dip.sel(body="smooth floor"), **style.line(2), label="slab")
         panel.plot(ratio, response["central_dip"], **simulated, label="simulation")
-    axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylabel="dip at $x = 0$ per largest response", xlim=(-0.03, 1.03))
+    axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylabel="relative depth of the dip at $x = 0$", xlim=(-0.03, 1.03))
     axes.legend(loc="upper right", borderaxespad=0.3)
     inset.set(xlim=(0.24, 0.41), ylim=(-0.012, 0.045))
     inset.tick_params(labelsize=7)

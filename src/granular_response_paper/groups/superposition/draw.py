@@ -58,9 +58,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         tolerance=100.0 * parameters.tolerance,
         until=LINEAR_UNTIL,
     )
-    for (stem, force), how in zip(FORCES.items(), ("lie on", "nearly lie on"), strict=True):
+    for stem, force in FORCES.items():
         said: dict[str, Value] = {**given, "force": force, "distance": distances}
-        found |= of_group("superposition", {stem: said}, panels=panels, force=force, how=how)
+        found |= of_group("superposition", {stem: said}, panels=panels, force=force)
     return found
 
 
@@ -129,7 +129,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
         axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
     change = linear["contact_change"].values.mean(axis=0)[1:]  # zero at the first force, by definition
     (dotted,) = contacts.plot(linear["force"].values[1:], change, color=style.BLACK, linestyle=(0, (1.2, 1.2)))
-    floor.set_ylabel("difference of both and sum, relative")
+    floor.set_ylabel("relative deviation from superposition")
     last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
     for k, look in family(range(len(distances))):

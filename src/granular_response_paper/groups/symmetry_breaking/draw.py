@@ -59,10 +59,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     """By file stem."""
     steps = {step for protocol in parameters.protocols for step in protocol.time_steps}
     contacts = (
-        " (e), (f) Contacts in the central third of the slab at the last symmetric and the first asymmetric force of "
-        f"the ramp that lasts {parameters.protocols[0].ramp_time:g}: thin lines are unchanged, thick ones opened, and "
-        "the marked ones are near the Coulomb limit. Arrow and circle: the force and its disk; the line below is the "
-        "floor."
+        " (e), (f) Contact network at the last symmetric and the first asymmetric force, ramp of "
+        f"{parameters.protocols[0].ramp_time:g}."
     )
     forces = sorted(set(datasets["runs"]["force"].values.tolist()))
     return of_group(
