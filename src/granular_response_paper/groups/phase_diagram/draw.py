@@ -54,12 +54,13 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         sorted(set(crossovers[name].values[usual].tolist())) for name in ("friction", "polydispersity")
     )
     rubbing, disordered = [mu for mu in frictions if mu], {"polydispersity": [delta for delta in deltas if delta]}
-    realizations, rows = int(crossovers["realizations"].values[usual].max()), len(parameters.widths)
+    realizations = sorted(set(crossovers["realizations"].values[usual & (crossovers["polydispersity"] > 0.0)].tolist()))
+    rows = len(parameters.widths)
     given: dict[str, Value] = {
         "friction": frictions,
         "wall_friction": frictions,
         "polydispersity": deltas,
-        "realizations": realizations,
+        "realizations": realizations or 1,
         "width": parameters.widths,
     }
     last, last_of_few = (chr(ord("a") - 1 + columns * rows) for columns in (len(deltas), len(deltas) - 1))
@@ -74,7 +75,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         p=parameters,
         last=last,
         last_of_few=last_of_few,
-        realizations=realizations,
         dip=100 * parameters.tolerance,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -49,7 +49,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     disordered = sorted({case.polydispersity for case in parameters.columns if case.polydispersity})
     frictions = sorted({case.friction for case in parameters.columns})
     forces = sorted({force for case in parameters.columns for force in case.forces})
-    ensemble = of_scene(scene, frictions=frictions, polydispersity=disordered, realizations=parameters.realizations)
+    ensemble = of_scene(
+        scene, frictions=frictions, polydispersity=disordered, realizations=_counts(parameters, disordered)
+    )
     return of_group(
         "polydisperse_averages",
         {
@@ -70,7 +72,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
                 friction=linear.frictions,
                 wall_friction=0.0,
                 polydispersity=linear.polydispersities,
-                realizations=parameters.realizations,
+                realizations=_counts(parameters, linear.polydispersities),
                 width=linear.width,
             ),
             "fig21_disordered_forces": {
@@ -84,6 +86,14 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         tolerance=100.0 * float(datasets["linear_range"].attrs["tolerance"]),
         last=chr(ord("a") - 1 + len(disordered) * len(frictions)),
         contacts=PAPER_CONTACTS,
+    )
+
+
+def _counts(parameters: Parameters, polydispersities: Sequence[float]) -> list[int]:
+    """Numbers of realizations of the disordered cases from the usual initial lattice."""
+    usual = [case for case in parameters.columns if case.lattice_constant == parameters.lattice_constant]
+    return sorted(
+        {case.realizations for case in usual if case.polydispersity and case.polydispersity in polydispersities}
     )
 
 
