@@ -157,7 +157,7 @@ def test_show_as_json(tmp_path):
     assert shown["floor_response"] == result["floor_response"].values.tolist()
     residuals = [state["certificate_force_residual"] for state in shown["states"]]
     assert residuals == result["certificate_force_residual"].values.tolist()
-    study = json.loads(call("show", str(ROOT / "data" / "pile_dip.nc"), "--json", folder=tmp_path).stdout)
+    study = json.loads(call("show", str(ROOT / "survey" / "data" / "hysteresis.nc"), "--json", folder=tmp_path).stdout)
     assert study["datasets"] and "states" not in study
 
 

@@ -17,7 +17,7 @@ from granular_response.observe.teardrop import teardrop
 from granular_response.scene import Scene, SceneError
 from granular_response.solve import Problem, solve_scene
 from granular_response.solve.close_pairs import close_pairs
-from granular_response.store.result import to_labelled
+from granular_response.store.result import to_dataset
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import response_of_layers
@@ -108,7 +108,7 @@ def distance_to_the_elastic_slab(sides: str, disks_per_row: int) -> float:
     """Largest difference of the response of 15 pressed layers under a small force, per largest elastic response."""
     packing = {"layers": 15, "disks_per_row": disks_per_row, "sides": sides, "lattice_constant": 1.9998}
     changes = {"contact.friction": 1.0, "loads": [{"disk": "top-centre", "force": [0.0, -0.2]}]}
-    stored = to_labelled(solve_scene(Scene().updated({"packing": packing, **changes}))).dataset()
+    stored = to_dataset(solve_scene(Scene().updated({"packing": packing, **changes})))
     width = stored.attrs["width"]
     inside = np.abs(stored["x"].values) < 0.5 * width - 1.5
     x, response = stored["x"].values[inside], stored["floor_response"].values[inside]
