@@ -104,6 +104,12 @@ class Equations:
     def dof(self) -> int:
         return self.problem.n * self.problem.freedoms
 
+    @cached_property
+    def friction(self) -> FloatArray:
+        """(m + w,) coefficient of each candidate."""
+        laws = self.problem.pair_law.friction, self.problem.wall_law.friction
+        return np.repeat(laws, [len(self.first), len(self.wall_disk)])
+
     def keys(self) -> NDArray[np.int64]:
         """(m + w,) one number for the two bodies of each candidate."""
         n = self.problem.n

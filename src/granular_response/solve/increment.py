@@ -74,9 +74,7 @@ def solve_increment(
         return trial
     if not system.problem.rotations:
         return None
-    pair_mu, wall_mu = system.problem.pair_law.friction, system.problem.wall_law.friction
-    friction = np.repeat([pair_mu, wall_mu], [len(system.first), len(system.wall_disk)])
-    limits = friction * system.trial(known, known.q).normal
+    limits = system.friction * system.trial(known, known.q).normal
     q = system.held_as_in(guess, known.q)
     before_rounds = work.factorisations
     for done in range(1, OPTIONS.rounds + 1):
@@ -87,7 +85,7 @@ def solve_increment(
         if held is None:
             return None
         q = held.configuration.q
-        before, limits = limits, friction * held.normal
+        before, limits = limits, system.friction * held.normal
         change = float(np.abs(limits - before).max(initial=0.0))
         if done >= OPTIONS.settled_by and change > OPTIONS.slow:
             return None

@@ -113,8 +113,6 @@ class RateProblem:
         load[system.held] = 0.0
         self._load = load
         self._right = system.interleave(load)
-        friction = system.problem.pair_law.friction, system.problem.wall_law.friction
-        self._frictional = np.repeat(np.array(friction) > 0.0, [len(system.first), len(system.wall_disk)])
         #: (dof,) rates of what loads hold
         self._held = np.zeros(system.dof)
         self._held[system.held] = direction * system.problem.held.travel
@@ -176,7 +174,8 @@ class RateProblem:
                     rates = found.rate[due]
                     due = due[rates >= OPTIONS.as_bad * rates.max()]
                 now = changed(now, due, found.what)
-                for c in due[self._frictional[due] & np.isin(found.what[due], (events.OPENS, events.CLOSES))].tolist():
+                touches = (self.system.friction > 0.0) & np.isin(found.what, (events.OPENS, events.CLOSES))
+                for c in due[touches[due]].tolist():
                     # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
                     had.setdefault(c, {int(sense[c])})
                     now[c] = next((way for way in (now[c], SLIDING, -SLIDING) if int(way) not in had[c]), now[c])

@@ -41,19 +41,17 @@ def as_data(path: str | PathLike[str]) -> dict[str, Any]:
 
     Raises as ``summarise`` does.
     """
-    datasets, attributes = store.read(path, sealed=False), store.read_attributes(path, sealed=False)
-    root = datasets.get("")
+    datasets, attributes, result = _opened(path)
     found: dict[str, Any] = {"file": str(path), "sealed": store.is_sealed(path)}
     for name, value in attributes.items():
         nested = name in ("method", "method_reason") and isinstance(value, str)
         found[name] = json.loads(value) if nested else _json(value)
-    if root is None or "floor_response" not in root:
+    if result is None:
         found["datasets"] = {
             name or "/": {"dimensions": dict(one.sizes), "variables": list(map(str, one.data_vars))}
             for name, one in datasets.items()
         }
         return found
-    result = read_result(path, sealed=False)
     found["scene"] = scene_text.read(str(attributes["scene"]))
     states = {str(name): result[name] for name in result if result[name].dims == ("state",)}
     events = events_from(result)
@@ -66,6 +64,14 @@ def as_data(path: str | PathLike[str]) -> dict[str, Any]:
         if name in result:
             found[name] = _json(result[name].values)
     return found
+
+
+def _opened(path: str | PathLike[str]) -> tuple[dict[str, xr.Dataset], dict[str, Any], xr.Dataset | None]:
+    """Datasets and attributes of a file, and the result, if it is one."""
+    datasets, attributes = store.read(path, sealed=False), store.read_attributes(path, sealed=False)
+    root = datasets.get("")
+    result = read_result(path, sealed=False) if root is not None and "floor_response" in root else None
+    return datasets, attributes, result
 
 
 def _known(value: np.generic) -> Any:
@@ -91,9 +97,7 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     granular_response.store.result.ResultError
         If it is a result that is not whole.
     """
-    datasets, attributes = store.read(path, sealed=False), store.read_attributes(path, sealed=False)
-    root = datasets.get("")
-    result = read_result(path, sealed=False) if root is not None and "floor_response" in root else None
+    datasets, attributes, result = _opened(path)
     yield _text(path, style="bold")
     if not store.is_sealed(path):
         yield Text("not sealed: rewritten by another program, so its numbers are not vouched for", style="bold")
