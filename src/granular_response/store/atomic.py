@@ -1,7 +1,8 @@
 """A whole file or none: bytes go to a temporary file beside the target, which then replaces it in one step.
 
 Whatever happens in between (no space left, an error, a killed process), a file that stood there before is
-untouched. What a killed process leaves is named ``.NAME.RANDOM.partial``.
+untouched. What a killed process leaves is named ``.NAME.RANDOM.partial`` and removed by the next write of the
+same file; a lock held by the living tells it from a write that is still going on.
 
 Only a regular file is replaced: a link is followed and stays, a device, a pipe or a folder is refused, and so is a
 file that the same command reads (``check_writable``).
@@ -11,6 +12,8 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
+import glob
 import os
 import secrets
 import stat
@@ -36,6 +39,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
         If the file cannot be written, or reads back differently.
     """
     target = _regular(path)
+    remove_leftovers(target)
     with _temporary(target) as (descriptor, temporary):
         with contextlib.suppress(FileNotFoundError):
             os.fchmod(descriptor, stat.S_IMODE(os.stat(target).st_mode))
@@ -85,11 +89,33 @@ def _regular(path: str | os.PathLike[str]) -> Path:
     return target
 
 
+def remove_leftovers(path: str | os.PathLike[str]) -> list[Path]:
+    """Remove the temporary files that killed writes of ``path`` left beside it; returns their paths."""
+    target = Path(path)
+    removed: list[Path] = []
+    for leftover in target.parent.glob(f".{glob.escape(target.name)}.*.partial"):
+        with contextlib.suppress(OSError):
+            descriptor = os.open(leftover, os.O_RDWR)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)  # fails while its writer lives
+                os.unlink(leftover)
+                removed.append(leftover)
+            finally:
+                os.close(descriptor)
+    return removed
+
+
 @contextlib.contextmanager
 def _temporary(target: Path) -> Iterator[tuple[int, Path]]:
-    """A new file beside ``target``, gone at the end unless it was moved away."""
-    temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.partial")
-    descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+    """A new, locked file beside ``target``, gone at the end unless it was moved away."""
+    while True:
+        temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.partial")
+        descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        with contextlib.suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(descriptor), os.stat(temporary)):
+                break
+        os.close(descriptor)  # another writer took it for a leftover before it was locked
     try:
         yield descriptor, temporary
     finally:
