@@ -2,7 +2,9 @@
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, Stop, relax, solve_scene
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import solve_scene
 
 PACKING = {"kind": "slab", "layers": 4, "disks_per_row": 26}
 LOADS = [{"disk": "top-centre", "force": [0.0, -2.0]}]

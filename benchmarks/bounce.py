@@ -22,7 +22,8 @@ import peers
 import yade_dem
 
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Dynamics, Problem
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.problem import Problem
 
 FRICTION = 0.5
 #: From the normal, degrees.

@@ -16,7 +16,11 @@ from dataclasses import replace
 import numpy as np
 from timing import floor, scene, write
 
-from granular_response.solve import Dynamics, Problem, Stop, finish, follow, relax, rest_state
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.equilibrium import finish
+from granular_response.solvers.path import follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 CASES = {0.2: (15.0, 40.0), 1.0: (30.0, 65.0, 70.0)}
 RAMPS = (20.0, 50.0, 100.0, 200.0, 400.0)

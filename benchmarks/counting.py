@@ -70,7 +70,7 @@ def main(layers: str, per_row: str, friction: str) -> None:
 
     from granular_response.kernels import forces
     from granular_response.kernels.integrators import stepping
-    from granular_response.solve import Dynamics
+    from granular_response.solvers.dynamics import Dynamics
 
     problem = kernel.slab(int(layers), int(per_row), float(friction))
     dynamics = Dynamics(problem, problem.bare_state(), "beeman", kernel.TIME_STEP)

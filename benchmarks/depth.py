@@ -15,7 +15,8 @@ import numpy as np
 from timing import write
 
 from granular_response.scene import Scene
-from granular_response.solve import Problem, rest_state
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 from granular_response_paper.slab_response import LoadPath, Measures
 
 #: layers and disks in the bottom row: both odd or both even, so that the load is in the middle

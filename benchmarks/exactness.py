@@ -18,8 +18,9 @@ from timing import write
 
 from granular_response.errors import SolveError
 from granular_response.scene import Scene
-from granular_response.solve import Problem, rest_state
-from granular_response.solve.path import PathRecord, follow
+from granular_response.solvers.path import PathRecord, follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 from granular_response.state import State
 
 #: Increments of the reference, in mean weights, and how many a path has at most.

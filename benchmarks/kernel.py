@@ -20,7 +20,8 @@ from granular_response.kernels.integrators import stepping
 from granular_response.kernels.integrators.stepping import LOOK_EVERY, moved_beyond
 from granular_response.machine.lanes import aligned, aligned_zeros
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.problem import Problem
 
 #: layers, disks per row, settling steps, timed steps
 SLABS = [(8, 31, 20_000, 2000), (15, 61, 20_000, 800), (30, 121, 5_000, 200), (60, 242, 1500, 50), (100, 1000, 400, 8)]

@@ -27,7 +27,7 @@ import peers
 
 from granular_response.contact import Hertz, Linear
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 
 #: Timed runs after the settling.
 REPEATS = 8

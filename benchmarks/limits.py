@@ -35,7 +35,7 @@ from scipy.linalg import blas, lapack  # noqa: E402
 from timing import interleaved, write  # noqa: E402
 
 from granular_response.machine import lanes  # noqa: E402
-from granular_response.solve import Dynamics  # noqa: E402
+from granular_response.solvers.dynamics import Dynamics  # noqa: E402
 
 LAYERS, PER_ROW, SETTLE = 15, 61, 20_000
 #: Calls of a kernel that are timed together, and repeats of them.

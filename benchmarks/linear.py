@@ -22,10 +22,11 @@ from scipy.linalg import lapack  # noqa: E402
 from scipy.sparse.linalg import splu  # noqa: E402
 from timing import interleaved, write  # noqa: E402
 
+from granular_response.linalg import Storage, ordering  # noqa: E402
 from granular_response.scene import Scene  # noqa: E402
-from granular_response.solve import Problem, rest_state  # noqa: E402
-from granular_response.solve.linear import Storage, ordering  # noqa: E402
-from granular_response.solve.system import OPTIONS, StaticSystem  # noqa: E402
+from granular_response.solvers.problem import Problem  # noqa: E402
+from granular_response.solvers.solution import rest_state  # noqa: E402
+from granular_response.solvers.system import OPTIONS, StaticSystem  # noqa: E402
 
 try:
     from pypardiso import PyPardisoSolver

@@ -14,7 +14,8 @@ import numpy as np
 from precision import fastest
 from timing import floor, scene, write
 
-from granular_response.solve import Problem, loaded_states, rest_state
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states, rest_state
 from granular_response.state import State
 
 FRICTIONS, FORCES = (0.05, 0.2, 1.0), (4.0, 15.0, 50.0)

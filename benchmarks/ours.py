@@ -17,7 +17,8 @@ import numpy as np
 import peers
 
 from granular_response.scene import Packing
-from granular_response.solve import Dynamics, Problem
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.problem import Problem
 
 
 def settled(layers: int, per_row: int, friction: float, steps: int, time_step: float) -> Packing:

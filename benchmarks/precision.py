@@ -21,7 +21,9 @@ import numpy as np
 from timing import floor, scene, write
 
 from granular_response.scene import Scene
-from granular_response.solve import Problem, follow, loaded_states, rest_state
+from granular_response.solvers.path import follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states, rest_state
 
 SCENES = {"friction": (0.2, 15.0), "frictionless": (0.0, 4.0)}
 #: Increments of the other way with friction, in disk weights, each by the return map.

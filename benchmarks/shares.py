@@ -16,14 +16,15 @@ import scale
 from timing import scene, write
 
 from granular_response.scene import Scene
-from granular_response.solve import Problem, loaded_states, rest_state
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states, rest_state
 
 #: What a function's file has in its name, by part of the code, the first that fits; kernels count as those files.
 PARTS = (
-    ("factorisations", ("solve/linear/", "scipy/linalg")),
-    ("forces and tangents", ("kernels/statics", "kernels/events", "solve/rates")),
-    ("dynamics", ("kernels/", "solve/dynamics")),
-    ("matrices and arrays", ("scipy/sparse", "numpy", "~", "solve/system")),
+    ("factorisations", ("linalg/", "scipy/linalg")),
+    ("forces and tangents", ("kernels/statics", "kernels/events", "solvers/rates")),
+    ("dynamics", ("kernels/", "solvers/dynamics")),
+    ("matrices and arrays", ("scipy/sparse", "numpy", "~", "solvers/system")),
 )
 REST = "the rest"
 

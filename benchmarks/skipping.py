@@ -12,7 +12,10 @@ from dataclasses import replace
 import numpy as np
 from timing import interleaved, scene, write
 
-from granular_response.solve import Dynamics, Problem, Stop, certify, finish, relax, rest_state
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.equilibrium import certify, finish
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 from granular_response.state import wall_normals
 
 TIME_STEP = 4e-4

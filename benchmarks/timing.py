@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from granular_response.scene import Scene
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
 
 

@@ -15,7 +15,8 @@ from timing import write
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Dynamics, Problem
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.problem import Problem
 
 SWING_STEPS = (8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5)
 SWING_TIME, AMPLITUDE, DAMPING = 0.1, 1e-5, 0.2

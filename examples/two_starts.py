@@ -14,7 +14,7 @@ import numpy as np
 from granular_response.observe.floor import smoothed_response
 from granular_response.observe.network import HORIZONTAL, bulk_disks, coordination_number, lattice_direction
 from granular_response.scene import Scene
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.store.result import to_dataset
 from granular_response.sweeps.tasks import map_tasks
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from granular_response.kernels.integrators import Integrator
 from granular_response.scene import Scene
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 
 
 class Cubic(NamedTuple):

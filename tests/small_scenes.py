@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 from granular_response.state import State
 
 

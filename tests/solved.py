@@ -6,7 +6,7 @@ import numpy as np
 
 from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene
-from granular_response.solve import Solution, solve_scene
+from granular_response.solvers.solution import Solution, solve_scene
 
 FLOOR_DISKS = np.arange(61)
 

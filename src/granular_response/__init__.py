@@ -55,11 +55,6 @@ _HOME = {
     "sweep": "api.sweep",
 }
 
-# Import statements find the package solve as ever; the attribute of that name is the function. Loading a package
-# binds it to its parent once, so it is loaded (it is light) and unbound before the function is asked for.
-import_module(".solve", __name__)
-del globals()["solve"]
-
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:

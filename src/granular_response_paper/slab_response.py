@@ -22,7 +22,9 @@ from granular_response.observe import events, network, peaks
 from granular_response.observe.floor import floor_disks, floor_response, interior_mask
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, follow, loaded_states
+from granular_response.solvers.path import follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states
 from granular_response.state import OPEN, STICKING, FloatArray, State
 from granular_response.state import Event as PathEvent
 from granular_response.store.result import (
@@ -81,7 +83,7 @@ class LoadPath:
     """States of one scene under a growing load, each found from the one below it.
 
     With dynamics as the protocol (``method: dynamics``) every state starts at rest instead, as in the paper.
-    A path stops (``solve.path.Collapsed``) where the load has pushed its disk below ``lowest``.
+    A path stops (``solvers.path.Collapsed``) where the load has pushed its disk below ``lowest``.
     """
 
     scene: Scene  #: with one load, of unit force

@@ -7,7 +7,7 @@ import pytest
 from small_scenes import free_disks
 
 from granular_response.contact import LAWS
-from granular_response.solve import Dynamics
+from granular_response.solvers.dynamics import Dynamics
 
 
 def head_on(

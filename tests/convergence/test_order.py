@@ -7,7 +7,7 @@ import pytest
 from small_scenes import free_disks
 
 from granular_response.kernels.integrators import INTEGRATORS
-from granular_response.solve import Dynamics
+from granular_response.solvers.dynamics import Dynamics
 
 STIFFNESS = 6000.0
 AMPLITUDE = 1e-5

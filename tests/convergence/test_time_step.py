@@ -7,7 +7,7 @@ import pytest
 from small_scenes import scene
 
 from granular_response.observe.floor import floor_force
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 
 FLOOR = np.arange(13)
 

@@ -29,7 +29,7 @@ import granular_response
 from granular_response.cli import main as cli
 from granular_response.scene import FilePacking, Packing, Scene, SceneError
 from granular_response.scene.formats.table import NO_MASSES
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.export import export
 from granular_response.store.result import to_dataset

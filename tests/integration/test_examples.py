@@ -13,7 +13,7 @@ from commands import call
 from nbclient import NotebookClient
 
 from granular_response.scene import Scene
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.result import to_dataset
 

@@ -38,19 +38,12 @@ def test_a_command_line_loads_nothing_heavy(module):
     assert fresh(f"import sys, {module}; print(sorted({HEAVY - {'pydantic'}} & set(sys.modules)))") == "[]"
 
 
-#: Statements, and what they bind ``found`` to: of a name that is a package and a function, the function or the package.
+#: Statements, and what they bind ``found`` to.
 FORMS = {
-    "import granular_response.solve.dynamics as found": "module granular_response.solve.dynamics",
-    "from granular_response.solve import dynamics as found": "module granular_response.solve.dynamics",
-    "import granular_response.solve.linear.band as found": "module granular_response.solve.linear.band",
-    "from granular_response.solve.linear import band as found": "module granular_response.solve.linear.band",
+    "import granular_response.solvers.dynamics as found": "module granular_response.solvers.dynamics",
+    "from granular_response.solvers import dynamics as found": "module granular_response.solvers.dynamics",
+    "from granular_response.linalg import band as found": "module granular_response.linalg.band",
     "import granular_response.api.result as found": "module granular_response.api.result",
-    "import granular_response.solve; from granular_response.solve import Problem as found": (
-        "type granular_response.solve.problem.Problem"
-    ),
-    "import granular_response.solve.problem; from granular_response import solve as found": (
-        "function granular_response.api.result.solve"
-    ),
     "from granular_response import solve as found": "function granular_response.api.result.solve",
     "import granular_response as gr; found = gr.solve": "function granular_response.api.result.solve",
     "from granular_response import *; found = solve": "function granular_response.api.result.solve",
@@ -144,7 +137,7 @@ def test_a_law_from_elsewhere_does_not_trouble_other_processes(tmp_path):
     """Machine code for it is not kept: a process without its module could not read the list of what is."""
     small = {"packing": {"kind": "slab", "layers": 2, "disks_per_row": 5}, "contact": {"friction": 0.0}}
     plain = (
-        "from granular_response.scene import Scene; from granular_response.solve import Problem;"
+        "from granular_response.scene import Scene; from granular_response.solvers import Problem;"
         f"Problem.from_scene(Scene.from_dict({small})).bare_state()"
     )
     tests = str(Path(__file__).parents[1])

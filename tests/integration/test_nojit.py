@@ -16,7 +16,11 @@ SCRIPT = """
 import json
 import numpy as np
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, finish, minimise, solve_scene
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.equilibrium import finish
+from granular_response.solvers.energy import minimise
+from granular_response.solvers.solution import solve_scene
 
 base = {"packing": {"kind": "slab", "layers": 2, "disks_per_row": 3}, "wall": {"friction": 0.3},
         "loads": [{"disk": 3, "force": [0.2, -1.0], "torque": 0.1}]}

@@ -20,9 +20,7 @@ from hypothesis import strategies as st
 
 from granular_response.cli import main as cli
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import (
-    solve_scene,
-)
+from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.result import to_dataset
 from granular_response_paper import cli as paper

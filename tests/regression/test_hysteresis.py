@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.solve import Problem, loaded_states
-from granular_response.solve import solution as solvers
+from granular_response.solvers import solution as solvers
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
 from granular_response_paper.groups.hysteresis import draw, simulate

@@ -7,15 +7,15 @@ import odd_settings
 import pytest
 import reduced
 
+from granular_response.errors import SolveError
 from granular_response.plot import style
 from granular_response.scene import SceneError, text
-from granular_response.solve import SOLVE_ERRORS
 from granular_response.sweeps.errors import SweepError
 from granular_response_paper.groups import NAMES
 from granular_response_paper.pipeline import GroupError, drawing, measuring, simulation
 
 #: What the command line tells in one line.
-LINES = (GroupError, SceneError, *SOLVE_ERRORS)
+LINES = (GroupError, SceneError, SolveError)
 #: The group that measures what another pipeline has simulated.
 MEASURES_THE_SURVEY = "phase_diagram"
 

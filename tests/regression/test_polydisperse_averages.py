@@ -11,10 +11,9 @@ from granular_response.plot import style
 from granular_response.store import files as store
 from granular_response.sweeps.resources import using
 from granular_response_paper import ensembles
-from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED
+from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, realizations
 from granular_response_paper.groups.polydisperse_averages import draw as figures
 from granular_response_paper.groups.polydisperse_averages import simulate as study
-from granular_response_paper.groups.polydisperse_averages.ensemble import realizations
 
 PARAMETERS = reduced.parameters("polydisperse_averages")
 

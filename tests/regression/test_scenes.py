@@ -8,7 +8,7 @@ import pytest
 from small_scenes import scene
 
 from granular_response.scene import Scene
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.store.result import to_dataset
 
 DOWN = [{"disk": "top-centre", "force": [0.0, -3.0]}]

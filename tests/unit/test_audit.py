@@ -7,7 +7,9 @@ import pytest
 from small_scenes import scene
 
 from granular_response.scene import Scene
-from granular_response.solve import PathError, Problem, Solution, solve_scene
+from granular_response.solvers.path import PathError
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import OPEN, SLIDING, Contacts, Reached
 from granular_response_paper.trials.audit import ContactRule, audit
 from granular_response_paper.trials.random_scenes import (

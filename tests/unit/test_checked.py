@@ -9,7 +9,7 @@ from commands import call
 from small_scenes import scene
 
 import granular_response as gr
-from granular_response.solve import continue_solution, solve_scene
+from granular_response.solvers.solution import continue_solution, solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
 from granular_response.store.result import ResultError, indexed, load_coordinates, solution_from, state_from, to_dataset

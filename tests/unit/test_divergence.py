@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
-from granular_response.solve import Dynamics, Problem, follow, rest_state
-from granular_response.solve.equilibrium import external_force, newton
-from granular_response.solve.stability import divergence, negative_modes, unstable_direction
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.equilibrium import external_force, newton
+from granular_response.solvers.path import follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.stability import divergence, negative_modes, unstable_direction
+from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 

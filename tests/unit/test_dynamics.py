@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
-from granular_response.solve import Dynamics, DynamicsError, Problem, Stop, relax
+from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
+from granular_response.solvers.problem import Problem
 
 INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 

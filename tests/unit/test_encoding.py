@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 from granular_response.scene import Scene
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import State
 from granular_response.sweeps.encoding import NotDecodable, NotEncodable, decode, encode
 from granular_response.sweeps.keys import key

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
-from granular_response.solve import EquilibriumError, Problem, certify, finish, rest_state
+from granular_response.solvers.equilibrium import EquilibriumError, certify, finish
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from small_scenes import scene
 import granular_response as gr
 from granular_response.observe.events import EventNotBracketed
 from granular_response.scene.protocol import Protocol, without_replaced
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import CONTACT_EVENTS
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result

@@ -12,7 +12,7 @@ import pytest
 
 import granular_response as gr
 from granular_response.scene import Scene
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.export import ExportError, contact_force_sums, export
 from granular_response.store.result import ResultError, to_dataset

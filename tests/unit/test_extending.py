@@ -6,8 +6,13 @@ from demonstration import RECORD, problem
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, certify, follow, minimise, rest_state
-from granular_response.solve.timestep import oscillator_limit
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.energy import minimise
+from granular_response.solvers.equilibrium import certify
+from granular_response.solvers.path import follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.timestep import oscillator_limit
 
 
 def test_a_law_of_ones_own_is_minimised():

@@ -5,8 +5,10 @@ import pytest
 from small_scenes import free_disks, scene
 
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, Relaxation, Stop, solve_scene
-from granular_response.solve.timestep import resolve_time_step
+from granular_response.solvers.dynamics import Dynamics, Relaxation, Stop
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.timestep import resolve_time_step
 
 
 def test_a_disk_that_falls_from_high_is_not_at_rest_before_it_has_landed(tmp_path):

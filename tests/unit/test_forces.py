@@ -12,7 +12,7 @@ from granular_response.kernels import neighbours
 from granular_response.kernels.forces import SCRATCH, add_pair_forces, add_wall_forces
 from granular_response.kernels.model import Pairs, Walls
 from granular_response.scene import SlabPacking
-from granular_response.solve.close_pairs import close_pairs
+from granular_response.solvers.close_pairs import close_pairs
 
 
 def run_kernel(position, velocity, spin, radius, first, second, springs, material, dt, rule=CUT, **runs_options):

@@ -10,8 +10,9 @@ import granular_response as gr
 from granular_response.machine import memory
 from granular_response.scene import FilePacking, Scene, SceneError, formats
 from granular_response.scene.errors import show
-from granular_response.solve import solution, solve_scene
-from granular_response.solve.size import STATICS, check_memory
+from granular_response.solvers import solution
+from granular_response.solvers.size import STATICS, check_memory
+from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.export import export
 from granular_response.store.result import to_dataset

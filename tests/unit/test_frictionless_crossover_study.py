@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Packing
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 from granular_response_paper.groups.frictionless_crossover import simulate as study
 from granular_response_paper.groups.frictionless_crossover.draw import nearest
 from granular_response_paper.groups.frictionless_crossover.simulate import Slab

@@ -11,13 +11,14 @@ from small_scenes import free_disks, scene
 import granular_response as gr
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.scene import Load, Scene, SceneError
-from granular_response.solve import Problem, continue_solution, rest_state, solve_scene
-from granular_response.solve.dynamics import Dynamics
-from granular_response.solve.equilibrium import certify, external_force, newton, reaction
-from granular_response.solve.path import PathRecord, follow
-from granular_response.solve.stability import negative_modes
-from granular_response.solve.system import StaticSystem
-from granular_response.solve.work import slid, stored, work
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.equilibrium import certify, external_force, newton, reaction
+from granular_response.solvers.path import PathRecord, follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import continue_solution, rest_state, solve_scene
+from granular_response.solvers.stability import negative_modes
+from granular_response.solvers.system import StaticSystem
+from granular_response.solvers.work import slid, stored, work
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
 from granular_response.store.summary import summarise

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.solve import Problem, rest_state
-from granular_response.solve import increment as module
-from granular_response.solve.equilibrium import external_force
-from granular_response.solve.increment import Work, solve_increment
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers import increment as module
+from granular_response.solvers.equilibrium import external_force
+from granular_response.solvers.increment import Work, solve_increment
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.system import StaticSystem
 
 
 @pytest.fixture(scope="module")

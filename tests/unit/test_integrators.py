@@ -6,7 +6,7 @@ from small_scenes import free_disks
 
 from granular_response.kernels.integrators import INTEGRATORS
 from granular_response.kernels.integrators.stepping import moved_beyond, ramp
-from granular_response.solve import Dynamics
+from granular_response.solvers.dynamics import Dynamics
 
 
 @pytest.mark.parametrize("name", INTEGRATORS)

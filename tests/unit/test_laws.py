@@ -10,7 +10,7 @@ from granular_response.contact import LAWS
 from granular_response.contact.law import elastic_force, energy, stiffness
 from granular_response.scene import Scene, SceneError
 from granular_response.scene.material import Contact
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 
 
 def law(name, reduced_radius=0.5, friction=0.2):

@@ -90,7 +90,7 @@ def inside_imports(part: Path) -> set[str]:
 def test_every_part_is_in_the_table_of_imports():
     assert set(table_of_imports()) == {part.stem for part in PLACES}
     store = next(part for part in PARTS if part.stem == "store")
-    assert {"observe", "solve"} <= inside_imports(store)
+    assert {"observe", "solvers"} <= inside_imports(store)
 
 
 @pytest.mark.parametrize("part", PLACES, ids=lambda part: part.stem)

@@ -8,19 +8,14 @@ from small_scenes import free_disks, scene
 
 import granular_response
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import (
-    Dynamics,
-    DynamicsError,
-    EquilibriumError,
-    NotSettled,
-    finish,
-    rest_state,
-    solve_scene,
-)
-from granular_response.solve import solution as solving
-from granular_response.solve.problem import Problem
-from granular_response.solve.stability import OPTIONS, negative_modes, unstable_direction
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers import solution as solving
+from granular_response.solvers.dynamics import Dynamics, DynamicsError
+from granular_response.solvers.equilibrium import EquilibriumError, finish
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.settle import NotSettled
+from granular_response.solvers.solution import rest_state, solve_scene
+from granular_response.solvers.stability import OPTIONS, negative_modes, unstable_direction
+from granular_response.solvers.system import StaticSystem
 
 DOWN = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 

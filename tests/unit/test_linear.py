@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from granular_response.solve.linear.band import Band
-from granular_response.solve.linear.band_lu import rounded
-from granular_response.solve.linear.ordering import node_order
+from granular_response.linalg.band import Band
+from granular_response.linalg.band_lu import rounded
+from granular_response.linalg.ordering import node_order
 
 
 def banded(n, b, seed, symmetric=False, dominant=True):

@@ -93,7 +93,7 @@ def test_the_first_folder_that_can_be_written_is_taken(tmp_path, monkeypatch):
 #: Solutions with matrices up to a wide band, in hexadecimal: sums over lanes, and fused products.
 SUMS = """
 import numpy as np
-from granular_response.solve.linear.band_lu import eliminate, padded, solve, stride
+from granular_response.linalg.band_lu import eliminate, padded, solve, stride
 found = []
 for b in range(8, 129, 8):
     n = 2 * b + 3

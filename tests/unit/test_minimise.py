@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
-from granular_response.solve import EquilibriumError, Problem, Stop, finish, minimise, relax
-from granular_response.solve.dynamics import Dynamics
-from granular_response.solve.energy import energy
-from granular_response.solve.equilibrium import external_force
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.energy import energy, minimise
+from granular_response.solvers.equilibrium import EquilibriumError, external_force, finish
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.system import StaticSystem
 
 
 def test_one_disk_on_the_floor_by_hand():

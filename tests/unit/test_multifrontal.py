@@ -9,14 +9,16 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 from small_scenes import scene
 
+from granular_response.linalg import Sequence, multifrontal, nearby, ordering
+from granular_response.linalg.dissection import Dissection
+from granular_response.linalg.multifrontal import Multifrontal
+from granular_response.linalg.nearby import Nearby
 from granular_response.machine import threads
-from granular_response.solve import Problem, follow, rest_state
-from granular_response.solve.linear import Sequence, multifrontal, nearby, ordering
-from granular_response.solve.linear.dissection import Dissection
-from granular_response.solve.linear.multifrontal import Multifrontal
-from granular_response.solve.linear.nearby import Nearby
-from granular_response.solve.stability import negative_modes
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers.path import follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.stability import negative_modes
+from granular_response.solvers.system import StaticSystem
 
 
 def lattice(columns, rows):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from granular_response.kernels.neighbours import make_runs, run_pairs
 from granular_response.scene import SlabPacking
-from granular_response.solve.close_pairs import close_pairs
+from granular_response.solvers.close_pairs import close_pairs
 
 
 def brute_force(position, radius, skin):

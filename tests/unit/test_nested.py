@@ -8,7 +8,10 @@ from small_scenes import scene
 
 from granular_response.observe.network import mirror_disks
 from granular_response.scene import Scene
-from granular_response.solve import Problem, energy, minimise, nested, rest_state
+from granular_response.solvers import energy, nested
+from granular_response.solvers.energy import minimise
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 
 def slab(layers, disks_per_row, **changes) -> Problem:

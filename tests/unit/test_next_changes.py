@@ -9,11 +9,13 @@ from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import LAWS
 from granular_response.kernels import events
-from granular_response.solve import PathRecord, Problem, follow, rest_state
-from granular_response.solve.linear.band import Band
-from granular_response.solve.linear.updated import Updated
-from granular_response.solve.rates import next_changes
-from granular_response.solve.system import StaticSystem
+from granular_response.linalg.band import Band
+from granular_response.linalg.updated import Updated
+from granular_response.solvers.path import PathRecord, follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.rates import next_changes
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 SENSES = (OPEN, STICKING, SLIDING, -SLIDING)

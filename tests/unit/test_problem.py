@@ -8,9 +8,9 @@ from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import Linear
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import Problem, solve_scene
-from granular_response.solve.problem import carry_springs, static_contacts
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers.problem import Problem, carry_springs, static_contacts
+from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.system import StaticSystem
 from granular_response.state import FLOOR
 
 

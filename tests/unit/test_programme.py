@@ -6,7 +6,7 @@ from small_scenes import scene
 
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import continue_solution, solve_scene
+from granular_response.solvers.solution import continue_solution, solve_scene
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -6.0]}]
 PROGRAMME = (0.5, 1.0, 0.5, 0.0, 1.0)

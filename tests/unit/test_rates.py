@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene, shaken
 
-from granular_response.solve import PathError, PathRecord, Problem, finish, follow
-from granular_response.solve.path import OPTIONS
-from granular_response.solve.rates import RateProblem
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers.equilibrium import finish
+from granular_response.solvers.path import OPTIONS, PathError, PathRecord, follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.rates import RateProblem
+from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 

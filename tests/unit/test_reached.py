@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from small_scenes import scene
 
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import Event, Reached
 from granular_response.store import files as store
 from granular_response.store.result import state_from, to_dataset

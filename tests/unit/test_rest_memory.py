@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.solve import Problem
-from granular_response.solve import solution as solve
+from granular_response.solvers import solution as solve
+from granular_response.solvers.problem import Problem
 from granular_response.store import atomic
 from granular_response.sweeps import rest as settled
 from granular_response.sweeps.keys import key

@@ -9,7 +9,9 @@ from small_scenes import scene
 
 import granular_response
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import Dynamics, Problem, continue_solution, solve_scene
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import continue_solution, solve_scene
 from granular_response.state import Contacts
 from granular_response.store import files as store
 from granular_response.store.result import ResultError, scene_of, solution_from, state_from, states_dataset, to_dataset

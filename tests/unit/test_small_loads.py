@@ -7,7 +7,9 @@ import granular_response as gr
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
 from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.scene import Scene
-from granular_response.solve import EquilibriumError, contact_answers, influence, solve_scene
+from granular_response.solvers.equilibrium import EquilibriumError
+from granular_response.solvers.small_loads import contact_answers, influence
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR
 
 SMALL = np.array([3e-5, -1e-4, 2e-5])

@@ -5,16 +5,13 @@ import pytest
 from small_scenes import scene
 
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import (
-    DynamicsError,
-    EquilibriumError,
-    NotSettled,
-    PathError,
-    Problem,
-    path,
-    rest_state,
-    solve_scene,
-)
+from granular_response.solvers import path
+from granular_response.solvers.dynamics import DynamicsError
+from granular_response.solvers.equilibrium import EquilibriumError
+from granular_response.solvers.path import PathError
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.settle import NotSettled
+from granular_response.solvers.solution import rest_state, solve_scene
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]
 

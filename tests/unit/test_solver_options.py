@@ -7,28 +7,16 @@ from dataclasses import fields, replace
 import pytest
 from small_scenes import free_disks, scene
 
-from granular_response.solve import (
-    Dynamics,
-    EquilibriumError,
-    Problem,
-    Stop,
-    dynamics,
-    energy,
-    equilibrium,
-    finish,
-    follow,
-    increment,
-    minimise,
-    path,
-    rates,
-    relax,
-    rest_state,
-    system,
-)
-from granular_response.solve.equilibrium import external_force, newton
-from granular_response.solve.linear import multifrontal, nearby
-from granular_response.solve.stability import OPTIONS, negative_modes
-from granular_response.solve.system import StaticSystem
+from granular_response.linalg import multifrontal, nearby
+from granular_response.solvers import dynamics, energy, equilibrium, increment, path, rates, system
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.energy import minimise
+from granular_response.solvers.equilibrium import EquilibriumError, external_force, finish, newton
+from granular_response.solvers.path import follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
+from granular_response.solvers.stability import OPTIONS, negative_modes
+from granular_response.solvers.system import StaticSystem
 from granular_response.state import State
 
 RECORDS = [dynamics.OPTIONS, energy.OPTIONS, equilibrium.OPTIONS, system.OPTIONS, OPTIONS, path.OPTIONS]

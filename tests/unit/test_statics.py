@@ -11,10 +11,13 @@ from small_scenes import free_disks, scene, shaken
 
 from granular_response.contact import LAWS
 from granular_response.kernels.statics import SMALL_TURN, _angle
-from granular_response.solve import Dynamics, Problem, solve_scene, stability
-from granular_response.solve.pattern import Pattern
-from granular_response.solve.stability import OPTIONS, negative_modes, unstable_direction
-from granular_response.solve.system import StaticSystem
+from granular_response.solvers import stability
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.pattern import Pattern
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.stability import OPTIONS, negative_modes, unstable_direction
+from granular_response.solvers.system import StaticSystem
 from granular_response.state import OPEN, SLIDING, STICKING
 
 FRICTION = {"none": (0.0, 0.0), "pairs": (0.3, 0.0), "both": (0.3, 0.4), "walls": (0.0, 0.4)}

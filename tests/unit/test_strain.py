@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.solve import EquilibriumError, solve_scene, strained
-from granular_response.solve.strain import FOLLOWING
+from granular_response.solvers.equilibrium import EquilibriumError
+from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import STICKING
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs

@@ -8,7 +8,7 @@ from observe_states import slab, with_pairs
 
 from granular_response.observe import stress as coarse
 from granular_response.scene import PilePacking, Scene, SlabPacking
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 from granular_response.theory.lattice import poisson_ratio
 from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Slab

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 from granular_response.sweeps import executor, keys, memory, processes
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning

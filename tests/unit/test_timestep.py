@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
-from granular_response.solve import Dynamics, DynamicsError, Problem, Stop, UnstableTimeStep, relax, solve_scene
-from granular_response.solve.timestep import oscillator_limit, resolve_time_step, stability_limit
+from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.timestep import UnstableTimeStep, oscillator_limit, resolve_time_step, stability_limit
 
 
 def test_unstable_time_step_is_one_clear_line():

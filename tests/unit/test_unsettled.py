@@ -6,8 +6,9 @@ from small_scenes import scene
 
 import granular_response as gr
 from granular_response.scene import Scene
-from granular_response.solve import certify, solve_scene
-from granular_response.solve.timestep import resolve_time_step
+from granular_response.solvers.equilibrium import certify
+from granular_response.solvers.solution import solve_scene
+from granular_response.solvers.timestep import resolve_time_step
 from granular_response.store.result import solution_from, to_dataset
 
 LOAD = [{"disk": "top-centre", "force": [0.0, -2.0]}]

@@ -6,7 +6,7 @@ from solved import FLOOR_DISKS, response, slab
 
 from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
 
 CASES = [(0.0, 4.0, "auto"), (0.2, 4.0, "path"), (0.2, 4.0, "dynamics"), (1.0, 4.0, "path"), (1.0, 4.0, "dynamics")]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.solve import solve_scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR
 from granular_response_paper.trials.random_scenes import check, contradiction, rounding_of
 

@@ -5,7 +5,10 @@ import pytest
 from small_scenes import scene
 
 from granular_response.contact import LAWS
-from granular_response.solve import Dynamics, NotSettled, Problem, Stop, relax, solve_scene
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.settle import NotSettled
+from granular_response.solvers.solution import solve_scene
 from granular_response_paper.trials.closed_forms import collision, mechanical_energy
 
 

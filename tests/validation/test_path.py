@@ -9,21 +9,13 @@ from solved import slab
 
 import granular_response as gr
 from granular_response.observe.floor import floor_force
-from granular_response.solve import (
-    Dynamics,
-    PathError,
-    PathRecord,
-    Problem,
-    Stop,
-    continue_solution,
-    finish,
-    follow,
-    minimise,
-    relax,
-    rest_state,
-    solve_scene,
-)  # fmt: skip
-from granular_response.solve.rates import RateProblem
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.energy import minimise
+from granular_response.solvers.equilibrium import finish
+from granular_response.solvers.path import PathError, PathRecord, follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.rates import RateProblem
+from granular_response.solvers.solution import continue_solution, rest_state, solve_scene
 from granular_response.state import OPEN, SLIDING, STICKING, State
 from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset

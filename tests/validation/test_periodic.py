@@ -15,8 +15,9 @@ from granular_response.observe.stress import (
 )
 from granular_response.observe.teardrop import teardrop
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import Problem, solve_scene
-from granular_response.solve.close_pairs import close_pairs
+from granular_response.solvers.close_pairs import close_pairs
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import solve_scene
 from granular_response.store.result import to_dataset
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.solve import Problem, rest_state
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 
 def horizontal_force(layers: int, stiffness: float) -> float:

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from granular_response.scene import Scene
-from granular_response.solve import PathRecord, Problem, follow, rest_state
+from granular_response.solvers.path import PathRecord, follow
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 
 def drawn(seed: int) -> Scene:

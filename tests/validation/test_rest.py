@@ -8,7 +8,10 @@ from solved import FLOOR_DISKS, slab
 
 from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, Stop, finish, relax, rest_state
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.equilibrium import finish
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 
 def largest_energy(problem, state, steps: int) -> float:

@@ -8,7 +8,7 @@ import pytest
 import reduced
 
 from granular_response.scene import Scene, SceneError
-from granular_response.solve import NotSettled
+from granular_response.solvers.settle import NotSettled
 from granular_response_paper.groups.stability import draw as figures
 from granular_response_paper.groups.stability import simulate as stability
 from granular_response_paper.pipeline import simulation

@@ -13,7 +13,7 @@ from typing import Any
 from ..observe.events import Bracket, EventNotBracketed, bisect_event
 from ..observe.positive import check_positive
 from ..scene import Scene, SceneError
-from ..solve.solution import Solution
+from ..solvers.solution import Solution
 from ..state import Event
 from ..sweeps.tasks import Progress
 from .event_table import check_kind
@@ -75,7 +75,7 @@ def find_event(
     ValueError
         For an empty range, a tolerance or a smallest load that is not positive, a kind that there is not, and for
         ``where`` with a function of the result.
-    granular_response.scene.SceneError, granular_response.solve.SOLVE_ERRORS
+    granular_response.scene.SceneError, granular_response.solvers.SolveError
         For a key or a value that is not allowed, for a scene without loads where these grow, for a kind of event where
         no path is followed, and where there is no equilibrium.
 

@@ -21,8 +21,8 @@ from ..scene import Scene
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
-from ..solve.small_loads import influence
-from ..solve.solution import Progress, Solution, continue_solution, solve_scene
+from ..solvers.small_loads import influence
+from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
 from ..state import Certificate, State
 from ..store import files
 from ..store.checked import read_result
@@ -233,7 +233,7 @@ class Result:
             For a ``state`` that is no integer.
         ValueError
             For another ``sliding``.
-        granular_response.solve.EquilibriumError
+        granular_response.solvers.EquilibriumError
             For a state that is not stable, or has contacts at the Coulomb limit where these are refused.
         """
         state = self._index(state)
@@ -348,7 +348,7 @@ def solve(
     ------
     granular_response.scene.SceneError
         For a scene that is not allowed.
-    granular_response.solve.NotSettled, DynamicsError, EquilibriumError, PathError
+    granular_response.solvers.NotSettled, DynamicsError, EquilibriumError, PathError
         For one that has no such states, each with one line that says what to change.
 
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of a load so small that
@@ -357,11 +357,6 @@ def solve(
     with compiling.logged():
         solution = solve_scene(described(scene), load_factors=load_factors, progress=progress)
     return _vouched(solution)
-
-
-# An import statement that goes through the package of this name (import granular_response.solve.path as path) meets the
-# function, and goes on by what that is called.
-solve.__name__ = "granular_response.solve"
 
 
 def _vouched(solution: Solution) -> Result:

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..errors import SolveError
 from ..scene import Scene
 from ..scene.errors import show
-from ..solve import SOLVE_ERRORS, solve_scene
-from ..solve.solution import Solution, checked_problem, load_programme
+from ..solvers.solution import Solution, checked_problem, load_programme, solve_scene
 from ..sweeps.errors import SweepError
 from ..sweeps.memory import Memory
 from ..sweeps.resources import current, using
@@ -158,7 +158,7 @@ def _solved(scene: Scene) -> Solution | str:
     """The solution of a scene, or why it has no equilibrium."""
     try:
         return solve_scene(scene)
-    except SOLVE_ERRORS as error:
+    except SolveError as error:
         return " ".join(str(error).split())
 
 

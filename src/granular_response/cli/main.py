@@ -13,7 +13,7 @@ from .. import __version__
 from .command_line import CommandLine, loaded
 
 if TYPE_CHECKING:
-    from ..solve import Solution
+    from ..solvers.solution import Solution
 
 PAPER = (
     "C. Goldenberg and I. Goldhirsch, Effects of Friction and Disorder on the Quasi-Static Response of "
@@ -110,15 +110,16 @@ def run(
         described = described.updated({"protocol.method": method})
     store.check_writable(output, [scene, *described.files])
 
+    from ..errors import SolveError
     from ..machine.threads import cores, using
-    from ..solve import SOLVE_ERRORS, solve_scene
+    from ..solvers.solution import solve_scene
 
     loaded()
 
     try:
         with _compilation_told(), using(threads or cores()), TerminalProgress() as progress:
             solution = solve_scene(described, progress=progress)
-    except (SceneError, *SOLVE_ERRORS) as error:
+    except (SceneError, SolveError) as error:
         if not str(error).startswith(str(scene)):
             error.args = (f"{scene}: {error}", *error.args[1:])
         raise
@@ -155,7 +156,7 @@ def continue_(
 
     from ..machine.threads import cores, using
     from ..scene import SceneError
-    from ..solve import continue_solution
+    from ..solvers.solution import continue_solution
     from ..store.checked import read_result
     from ..store.result import ResultError, solution_from
 

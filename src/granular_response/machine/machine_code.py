@@ -20,7 +20,7 @@ import numba as nb
 
 _PACKAGE = Path(__file__).parents[1]
 #: Folders of the package whose files make kernels or are inlined into them.
-SOURCES = ("contact", "kernels", "machine", "solve/linear", "state")
+SOURCES = ("contact", "kernels", "machine", "linalg", "state")
 
 
 def kernel(function: Callable | None = None, **options: Any) -> Any:

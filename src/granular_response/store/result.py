@@ -22,9 +22,9 @@ from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
 from ..scene import text as scene_text
 from ..scene.protocol import without_replaced
-from ..solve.problem import Problem
-from ..solve.solution import Solution
-from ..solve.timestep import time_step_reason
+from ..solvers.problem import Problem
+from ..solvers.solution import Solution
+from ..solvers.timestep import time_step_reason
 from ..state import CONTACT_EVENTS, LOST_EVENTS, Box, Certificate, Contacts, Event, Reached, State, box, status
 
 LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
@@ -508,7 +508,7 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
 
 
 def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = None) -> Solution:
-    """The solution that a dataset was made from, to be continued (``solve.continue_solution``).
+    """The solution that a dataset was made from, to be continued (``solvers.continue_solution``).
 
     ``folder`` is that of the scene file, for a packing from a table.
 

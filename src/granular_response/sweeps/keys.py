@@ -53,7 +53,7 @@ def sources(*parts: str) -> str:
     """Key of the present code of some parts of this package, of all if none is named, and of what computes in it.
 
     A part is a folder or a file of this package, or another package by its name, with a folder or a file in it after
-    that or not: ``solve/linear``, ``state/box.py``, ``other``, ``other/tasks.py``.
+    that or not: ``linalg``, ``state/box.py``, ``other``, ``other/tasks.py``.
     """
     files = sorted({file for part in parts or ("",) for file in _files(part)})
     versions = [metadata.version(package) for package in ("numba", "numpy", "scipy")]

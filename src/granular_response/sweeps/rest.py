@@ -9,20 +9,20 @@ whether it finds a state or computes it.
 from __future__ import annotations
 
 from ..scene import Scene
-from ..solve import Problem
-from ..solve import solution as solvers
-from ..solve.timestep import UnstableTimeStep, resolve_time_step
+from ..solvers import solution as solvers
+from ..solvers.problem import Problem
+from ..solvers.timestep import UnstableTimeStep, resolve_time_step
 from ..state import State
 from .keys import key
 from .memory import Memory
 from .resources import current
 
 #: The code that settles a packing.
-_PARTS = ("contact", "kernels", "machine", "scene", "solve", "state")
+_PARTS = ("contact", "kernels", "linalg", "machine", "scene", "solvers", "state")
 
 
 def rest_state(problem: Problem) -> State:
-    """The certified state at rest under gravity, kept or computed; see ``solve.rest_state``.
+    """The certified state at rest under gravity, kept or computed; see ``solvers.solution.rest_state``.
 
     Raises what that raises. A kept state that cannot be read counts as none.
     """

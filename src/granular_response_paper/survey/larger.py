@@ -27,7 +27,7 @@ GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
 
 def sources_of(group: str) -> tuple[str, ...]:
     """The sources that an outcome depends on."""
-    mechanics = ("contact", "kernels", "machine", "observe", "scene", "solve", "state", "theory")
+    mechanics = ("contact", "kernels", "linalg", "machine", "observe", "scene", "solvers", "state", "theory")
     return (*mechanics, f"{PACKAGE}/slab_response.py", f"{PACKAGE}/groups/{group}/simulate.py")
 
 

@@ -30,8 +30,8 @@ from granular_response.sweeps.resources import using
 from granular_response.sweeps.tasks import Progress, map_tasks
 from granular_response_paper import PACKAGE
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.polydisperse_averages.ensemble.datasets import ensembles_dataset, packings_dataset
-from granular_response_paper.groups.polydisperse_averages.ensemble.realizations import (
+from granular_response_paper.ensembles.datasets import ensembles_dataset, packings_dataset
+from granular_response_paper.ensembles.realizations import (
     Realization,
     Task,
     ensemble_task,
@@ -46,12 +46,13 @@ Found = TypeVar("Found")
 SOURCES = (
     "contact",
     "kernels",
+    "linalg",
     "machine",
     "observe",
     "scene",
-    "solve",
+    "solvers",
     "state",
-    f"{PACKAGE}/groups/polydisperse_averages/ensemble",
+    f"{PACKAGE}/ensembles",
     f"{PACKAGE}/slab_response.py",
 )
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from granular_response.kernels.statics import elastic_energies
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Dynamics, Problem
+from granular_response.solvers.dynamics import Dynamics
+from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 
 #: Distance of the side walls from what happens.

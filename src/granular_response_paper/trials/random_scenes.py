@@ -21,8 +21,9 @@ from typing import Any
 
 import numpy as np
 
+from granular_response.errors import SolveError
 from granular_response.scene import Load, Scene, SceneError
-from granular_response.solve import SOLVE_ERRORS, Solution, solve_scene
+from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import FLOOR, State
 from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.records import column, record
@@ -238,7 +239,7 @@ def attempt(description: dict[str, Any], folder: str, *, twin: bool = False) -> 
         solution = solve_scene(scene)
         if twin:
             difference = twin_difference(description, solution, folder)
-    except (SceneError, *SOLVE_ERRORS) as error:
+    except (SceneError, SolveError) as error:
         outcome, message = _ERRORS[type(error).__name__], str(error)
         if not message or "\n" in message:
             outcome, message = "wrong", f"the error is not one line: {message!r}"
@@ -359,7 +360,7 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
         file = {"kind": "file", "path": "twin.csv", "width": float(width), "sides": sides}
         try:
             solved.append(solve_scene(Scene.from_dict(description | {"packing": file, "loads": loads}, folder=folder)))
-        except (SceneError, *SOLVE_ERRORS):
+        except (SceneError, SolveError):
             return float("nan")
     one, other = solved
     both = [(one.rest, other.rest), *zip(one.loaded, other.loaded, strict=True)]

@@ -14,8 +14,10 @@ import numpy as np
 
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.scene import Scene
-from granular_response.solve import Problem, loaded_states, minimise, rest_state
-from granular_response.solve.equilibrium import finish
+from granular_response.solvers.energy import minimise
+from granular_response.solvers.equilibrium import finish
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states, rest_state
 from granular_response.state import State
 from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost

@@ -14,9 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from granular_response.errors import SolveError
 from granular_response.scene import Scene
-from granular_response.solve import SOLVE_ERRORS, Dynamics, DynamicsError, Problem, loaded_states, rest_state
-from granular_response.solve.timestep import stability_limit
+from granular_response.solvers.dynamics import Dynamics, DynamicsError
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states, rest_state
+from granular_response.solvers.timestep import stability_limit
 from granular_response.state import State
 from granular_response_paper.records import column, record
 
@@ -50,7 +53,7 @@ def tried(scene: Scene, integrators: Sequence[str], ratios: Sequence[float], ste
     limits = [stability_limit(problem, integrator) for integrator in integrators]
     try:
         problem, state, load = prepared(problem)
-    except SOLVE_ERRORS:
+    except SolveError:
         return [Steps(limit, np.full(len(ratios), NO_REST, np.int8)) for limit in limits]
     kicked = kick(problem, state, seed)
     found = []

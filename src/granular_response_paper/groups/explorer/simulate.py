@@ -11,11 +11,10 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
+from granular_response.errors import SolveError
 from granular_response.observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
 from granular_response.observe.peaks import peak_count
 from granular_response.scene import Scene
-from granular_response.solve import SOLVE_ERRORS
-from granular_response.solve.path import Collapsed
 from granular_response.state import State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
 from granular_response_paper.datasets import labelled
@@ -64,7 +63,7 @@ def states(scene: Scene, forces: tuple[float, ...], collapse_depth: float, width
     for force in forces:
         try:
             state = path.at(force)
-        except (Collapsed, *SOLVE_ERRORS):
+        except SolveError:
             break
         if state.position[int(path.problem.load_disk[0]), 1] < path.lowest:  # a minimum of the energy
             break

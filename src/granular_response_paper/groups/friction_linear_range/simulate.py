@@ -19,7 +19,7 @@ import xarray as xr
 
 from granular_response.observe import events
 from granular_response.scene import Scene
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 from granular_response.state import State
 from granular_response.store.result import FORCE, variable
 from granular_response_paper import slab_response as slab

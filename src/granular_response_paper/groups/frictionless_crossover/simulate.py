@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 
 from granular_response.observe import network
 from granular_response.scene import Scene
-from granular_response.solve import Problem
-from granular_response.solve.equilibrium import Rearranged
+from granular_response.solvers.equilibrium import Rearranged
+from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state

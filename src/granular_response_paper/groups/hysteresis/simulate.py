@@ -3,7 +3,7 @@
 Each packing is loaded along one path of equilibria. From every force F at which the load turns it goes back to none
 and up to F again; the paths begin at the state that loading has reached, so that each loop is the first one of its
 packing. Inertia and dashpots have no part in a path: what a load does and the packing does not store has slid away
-(``solve.work``), but where an equilibrium is lost and the motion of the disks leads to the next one: what goes
+(``solvers.work``), but where an equilibrium is lost and the motion of the disks leads to the next one: what goes
 there into dashpots and sliding together is booked apart.
 
 Events, along the first loading: the first opening of a contact, the end of the linear range (the response at x = 0
@@ -24,8 +24,9 @@ import xarray as xr
 from granular_response.observe.events import bisect_event
 from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.scene import Scene
-from granular_response.solve import Problem, loaded_states
-from granular_response.solve.work import slid, stored, work
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states
+from granular_response.solvers.work import slid, stored, work
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response_paper.datasets import labelled

@@ -1,6 +1,6 @@
 """Where a packing is most sensitive, and Saint-Venant's principle (Sec. VI.C), from the influence of every disk.
 
-The influence of a disk is what a small force on it adds to each floor disk (``solve.small_loads``). ``packings`` has,
+The influence of a disk is what a small force on it adds to each floor disk (``solvers.small_loads``). ``packings`` has,
 for one packing of each case, what every disk sets in motion; ``saint_venant`` compares a force on a disk with two
 halves of it on disks of the same row, to the left and to the right: the same force and the same torque. In an elastic
 body what they differ by falls as the square of their separation over the distance: the force is the first of their
@@ -16,8 +16,8 @@ import xarray as xr
 
 from granular_response.observe.floor import floor_disks, interior_mask
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, influence
-from granular_response.solve.small_loads import at_limit
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.small_loads import at_limit, influence
 from granular_response.state import FloatArray, State
 from granular_response.store.result import LENGTH
 from granular_response.sweeps.rest import rest_state

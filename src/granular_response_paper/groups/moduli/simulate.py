@@ -1,9 +1,9 @@
 """Elastic moduli of packings from their own stiffness, and the response of the elastic slab that they predict.
 
-A packing at rest is strained as a whole (``solve.strain``): disks follow the strain (affine), or relax with rotations
+A packing at rest is strained as a whole (``solvers.strain``): disks follow the strain (affine), or relax with rotations
 suppressed or free. The last moduli are those of the packing, and the elastic slab (``theory.slab``) of the same height
 and width with them has a response to a small force on its top with nothing to fit. The packing's own response to small
-forces on each disk of the top row is exact in the limit (``solve.small_loads``); periodic sides make all of them
+forces on each disk of the top row is exact in the limit (``solvers.small_loads``); periodic sides make all of them
 comparable. ``packings`` has both and what they differ by: for single loads, and for the mean over the loads of a
 packing. ``lattice`` has the moduli of lattices beside the closed form, and where the response turns from one peak to
 two by the closed form's moduli, by measured ones, and in lattices themselves.
@@ -20,9 +20,9 @@ import xarray as xr
 from granular_response.observe.floor import floor_disks, smoothed_response
 from granular_response.scene import Packing, Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
-from granular_response.solve import Problem, influence, strained
-from granular_response.solve.small_loads import at_limit
-from granular_response.solve.strain import FOLLOWING
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.small_loads import at_limit, influence
+from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import FloatArray, State
 from granular_response.store.result import LENGTH, variable
 from granular_response.sweeps.rest import rest_state

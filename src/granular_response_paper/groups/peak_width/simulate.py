@@ -23,7 +23,9 @@ from granular_response.observe.floor import interior_mask
 from granular_response.observe.stress import ContactForces, given_forces, line_forces, line_stress, load_forces
 from granular_response.observe.widths import DEFINITIONS, FITS, lengths, powers
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, contact_answers, loaded_states
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.small_loads import contact_answers
+from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state

@@ -23,7 +23,8 @@ from granular_response.observe.network import contact_centre, mirror_disks
 from granular_response.observe.peaks import central_dip
 from granular_response.observe.teardrop import open_region
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, minimise
+from granular_response.solvers.energy import minimise
+from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, STATUSES, certificates_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_state

@@ -17,11 +17,11 @@ import numpy as np
 import xarray as xr
 
 from granular_response.scene import SceneError
-from granular_response.solve import Problem
+from granular_response.solvers.problem import Problem
 from granular_response.store.result import FORCE, LENGTH, common_candidates, states_dataset, variable
 from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.polydisperse_averages.ensemble import averages, datasets, realizations
+from granular_response_paper.ensembles import averages, datasets, realizations
 from granular_response_paper.groups.polydisperse_averages.parameters import Case, Parameters
 
 

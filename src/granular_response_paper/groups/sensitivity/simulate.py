@@ -17,8 +17,10 @@ import xarray as xr
 
 from granular_response.observe.floor import floor_disks, floor_response
 from granular_response.scene import Scene
-from granular_response.solve import Dynamics, Problem, Stop, loaded_states, relax
-from granular_response.solve.timestep import resolve_time_step
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states
+from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import FloatArray, State
 from granular_response.store.result import variable
 from granular_response.sweeps.rest import rest_state

@@ -17,8 +17,8 @@ import xarray as xr
 
 from granular_response.scene import Scene
 from granular_response.scene.protocol import Integrator
-from granular_response.solve import Problem
-from granular_response.solve.timestep import stability_limit
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, variable
 from granular_response_paper.datasets import labelled

@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.scene import Scene
-from granular_response.solve import Problem, loaded_states
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_of

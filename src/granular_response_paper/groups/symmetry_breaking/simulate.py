@@ -22,8 +22,9 @@ import xarray as xr
 from granular_response.observe import network
 from granular_response.observe.events import EventNotBracketed, bisect_event
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Dynamics, Problem, Stop, relax
-from granular_response.solve.timestep import resolve_time_step
+from granular_response.solvers.dynamics import Dynamics, Stop, relax
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response.sweeps.rest import rest_of

@@ -21,7 +21,8 @@ from granular_response.observe import stress as coarse
 from granular_response.observe.difference import pair_force_difference
 from granular_response.observe.network import contact_centre
 from granular_response.scene import Packing, Scene
-from granular_response.solve import Problem, loaded_states
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
 from granular_response.sweeps.rest import rest_of

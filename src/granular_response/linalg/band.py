@@ -11,8 +11,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from ...machine.lanes import aligned_zeros
-from ...state import FloatArray
+from ..machine.lanes import aligned_zeros
+from ..state import FloatArray
 from . import band_lu
 from .factor import AcrossDiagonal, Factor
 

@@ -13,10 +13,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..kernels import events
+from ..linalg import Eliminated, Factor, Sequence
+from ..linalg.updated import Updated
 from ..state import FloatArray, State
 from .equations import Configuration, Equations, Trial
-from .linear import Eliminated, Factor, Sequence
-from .linear.updated import Updated
 from .problem import Problem
 
 __all__ = ["OPTIONS", "Configuration", "StaticSystem", "SystemOptions", "Trial"]

@@ -6,8 +6,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from ..linalg import Elimination
 from ..state import FloatArray
-from .linear import Elimination
 
 #: The last pattern with a band, after what it was made for.
 _last: list[tuple[int, tuple, Pattern]] = []

@@ -1,4 +1,4 @@
-"""Stored ensembles of disordered slabs (Sec. VI): what becomes of a realization, and its smoothed responses."""
+"""Ensembles of disordered slabs (Sec. VI), below the groups and the survey: how they are made, smoothed, averaged."""
 
 from __future__ import annotations
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...machine.machine_code import kernel
-from ...state import FloatArray
+from ..machine.machine_code import kernel
+from ..state import FloatArray
 from .factor import Eliminated
 
 #: Pivot of ``C``, or its inverse, from which on half of the digits of a solution are lost.

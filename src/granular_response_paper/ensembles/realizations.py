@@ -12,12 +12,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from granular_response.errors import SolveError
 from granular_response.observe import network
 from granular_response.observe.floor import floor_disks, floor_force
 from granular_response.scene import Scene
-from granular_response.solve import SOLVE_ERRORS, Problem
-from granular_response.solve.path import Collapsed
-from granular_response.solve.timestep import stability_limit
+from granular_response.solvers.path import Collapsed
+from granular_response.solvers.problem import Problem
+from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED
@@ -90,7 +91,7 @@ def realize(task: Task) -> Realization:
     message = ""
     try:
         path = LoadPath.of(task.scene)
-    except SOLVE_ERRORS as error:
+    except SolveError as error:
         none = np.zeros(0)
         outcome[:1] = FAILED
         return Realization(
@@ -113,7 +114,7 @@ def realize(task: Task) -> Realization:
         except Collapsed as collapse:
             outcome[k], loaded["sink"][k] = COLLAPSED, rest.position[disk, 1] - collapse.height
             break
-        except SOLVE_ERRORS as error:
+        except SolveError as error:
             outcome[k], message = FAILED, f"force {force:g}: {error}"
             break
         moved = state.position - rest.position

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from ...state import FloatArray
+from ..state import FloatArray
 
 #: Groups of nodes that are not cut any more.
 SMALLEST_CUT = 40

@@ -27,9 +27,9 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import lapack
 
-from ...machine import threads
-from ...machine.lapack import addresses
-from ...state import FloatArray
+from ..machine import threads
+from ..machine.lapack import addresses
+from ..state import FloatArray
 from . import frontal
 from .dissection import Dissection
 from .factor import AcrossDiagonal

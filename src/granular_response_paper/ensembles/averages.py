@@ -11,7 +11,7 @@ from granular_response.observe.floor import smoothed_response
 from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response_paper.ensembles import AT_REST, OUTCOMES, smoothed
-from granular_response_paper.groups.polydisperse_averages.ensemble.realizations import LOADED, Realization
+from granular_response_paper.ensembles.realizations import LOADED, Realization
 from granular_response_paper.groups.polydisperse_averages.parameters import Individual
 
 

@@ -18,9 +18,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ..kernels import statics
+from ..linalg import REMEMBERED, elimination
 from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .close_pairs import close_pairs
-from .linear import REMEMBERED, elimination
 from .pattern import pattern
 from .problem import Problem
 

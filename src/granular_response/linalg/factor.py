@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 import scipy.sparse as sp
 
-from ...state import FloatArray
+from ..state import FloatArray
 
 
 class Factor(Protocol):

@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.store.result import FORCE, LENGTH, flags, variable
-from granular_response_paper.ensembles import NOT_REACHED, OUTCOMES
-from granular_response_paper.groups.polydisperse_averages.ensemble import realizations
+from granular_response_paper.ensembles import NOT_REACHED, OUTCOMES, realizations
 from granular_response_paper.groups.polydisperse_averages.parameters import Case
 
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..kernels import events
+from ..linalg.updated import Updated
 from ..state import OPEN, SLIDING, STICKING, FloatArray
-from .linear.updated import Updated
 from .system import Configuration, StaticSystem, Trial
 
 

@@ -32,11 +32,11 @@ from scipy.optimize import brentq
 
 from ..errors import SolveError
 from ..kernels import events
+from ..linalg.updated import Updated
 from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
 from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
 from .increment import Work, solve_increment
-from .linear.updated import Updated
 from .problem import Problem
 from .rates import Changes, RateProblem, Rates, changed
 from .settle import CROSSING, CROSSING_STOP, NotSettled, nudged, settle

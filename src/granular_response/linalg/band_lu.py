@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...machine.lanes import WIDTH, less_product, put, spread, take, total
-from ...machine.machine_code import kernel
-from ...state import FloatArray
+from ..machine.lanes import WIDTH, less_product, put, spread, take, total
+from ..machine.machine_code import kernel
+from ..state import FloatArray
 
 #: Zeros behind the numbers of a row. Kernels read up to eight of them and three before a row, which are the last of
 #: the row before.

@@ -1,4 +1,4 @@
-"""The fronts of a multifrontal factorisation (see ``solve.linear.multifrontal``), one after the other.
+"""The fronts of a multifrontal factorisation (see ``linalg.multifrontal``), one after the other.
 
 A front is a dense matrix over the unknowns ``start ... stop`` that it eliminates and the boundary, the later unknowns
 that these are tied to; its blocks are ``f11`` (own, own), ``f21`` (boundary, own), ``f12`` and ``f22``, its update,
@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from ...machine import lapack as la
-from ...machine.lapack import at, call
-from ...machine.machine_code import kernel
+from ..machine import lapack as la
+from ..machine.lapack import at, call
+from ..machine.machine_code import kernel
 
 
 class Tree(NamedTuple):

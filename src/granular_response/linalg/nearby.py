@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ...state import FloatArray
+from ..state import FloatArray
 from .factor import Factor, Renewable, Storage
 
 

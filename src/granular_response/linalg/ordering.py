@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from ...state import FloatArray
+from ..state import FloatArray
 from .band import Band
 from .dissection import Dissection
 from .factor import Storage

@@ -1,1 +1,0 @@
-"""How an ensemble of polydisperse slabs is made and averaged."""
