@@ -75,7 +75,7 @@ def find_event(
     ValueError
         For an empty range, a tolerance or a smallest load that is not positive, a kind that there is not, and for
         ``where`` with a function of the result.
-    granular_response.scene.SceneError, granular_response.solvers.SolveError
+    granular_response.scene.SceneError, granular_response.SolveError
         For a key or a value that is not allowed, for a scene without loads where these grow, for a kind of event where
         no path is followed, and where there is no equilibrium.
 

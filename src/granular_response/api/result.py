@@ -233,7 +233,7 @@ class Result:
             For a ``state`` that is no integer.
         ValueError
             For another ``sliding``.
-        granular_response.solvers.EquilibriumError
+        granular_response.solvers.equilibrium.EquilibriumError
             For a state that is not stable, or has contacts at the Coulomb limit where these are refused.
         """
         state = self._index(state)
@@ -348,7 +348,7 @@ def solve(
     ------
     granular_response.scene.SceneError
         For a scene that is not allowed.
-    granular_response.solvers.NotSettled, DynamicsError, EquilibriumError, PathError
+    granular_response.SolveError
         For one that has no such states, each with one line that says what to change.
 
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of a load so small that

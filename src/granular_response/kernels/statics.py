@@ -259,6 +259,33 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, fixe
 
 
 @kernel
+def add_slip_of_curved_way(q, q0, ahead, n, pairs, status, spring):
+    """Add to ``spring`` (m,) of pairs that stick the slip along a curved way, less mean distance times turn.
+
+    On its way from ``q0`` to ``q`` a pair sets out as by ``ahead`` (dof,), the displacement were the rates those of the
+    start, and the rest of its displacement grows as the square of the part done. With a the relative displacement by
+    ``ahead``, w the whole, p the separation and d its length, the integral of distance over angle exceeds mean distance
+    times turn by (a x w) / 6 d - (p x a) ((p x a)^2 + 2 (p . a)^2) / 12 d^5, to third order in the displacement.
+    """
+    for c in range(pairs.first.size):
+        if status[c] != STICKING:
+            continue
+        i = pairs.first[c]
+        j = pairs.second[c]
+        px = pairs.dx[c] + q0[i] - q0[j]
+        pz = pairs.dz[c] + q0[n + i] - q0[n + j]
+        wx = q[i] - q0[i] - (q[j] - q0[j])
+        wz = q[n + i] - q0[n + i] - (q[n + j] - q0[n + j])
+        ax = ahead[i] - ahead[j]
+        az = ahead[n + i] - ahead[n + j]
+        part = 1.0 / pairs.distance[c]
+        along_n = (px * ax + pz * az) * part
+        along_t = (px * az - pz * ax) * part
+        turned = along_t * (along_t * along_t + 2.0 * along_n * along_n)
+        spring[c] += (ax * wz - az * wx - 0.5 * turned * part) * part / 6.0
+
+
+@kernel
 def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, fixed, out, tangent, force):
     """As :func:`pair_statics` for disk-wall contacts; ``walls`` : :class:`Walls`."""
     law = walls.law

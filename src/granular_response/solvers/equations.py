@@ -181,6 +181,18 @@ class Equations:
         tangents = np.empty((0, 3, 3)) if local is None else local
         return Trial(Configuration(q, spring, overlap), force, normal, tangential, out.status, tangents)
 
+    def along(self, known: Configuration, q: FloatArray, ahead: FloatArray, sense: np.ndarray) -> Configuration:
+        """``known`` with what its springs collect on the curved way to ``q`` beside what :meth:`trial` counts.
+
+        ``ahead`` (dof,) : the displacement were the rates those at ``known``; ``sense`` (m + w,) : signed statuses, of
+        which those that stick count. Walls do not turn.
+        """
+        if not self.problem.pair_friction:
+            return known
+        spring = known.spring.copy()
+        statics.add_slip_of_curved_way(q, known.q, ahead, self.problem.n, self.pairs, sense, spring)
+        return replace(known, spring=spring)
+
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
 

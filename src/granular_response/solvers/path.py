@@ -12,9 +12,8 @@ frictionless arrays):
 
 An equilibrium is lost where the rates have no solution, where there is no equilibrium a little further with these
 statuses (a snap-through), or where the tangent has an unstable direction along which the contacts that slide go on
-sliding (divergence; at a bifurcation of a symmetric branch). The next one is looked for nearby under a slightly larger
-load, with the limits of friction held fixed (:func:`.increment.solve_increment`); where there is none the motion of the
-disks leads to it (:mod:`.settle`). All are events of the result.
+sliding (divergence; at a bifurcation of a symmetric branch). The motion of the disks leads to the next one
+(:mod:`.settle`). Losses are events of the result.
 
 In packings too large for a banded factorisation events are taken together within an increment of the load; what that
 leaves out is measured by a path in increments of twice the length.
@@ -57,6 +56,9 @@ class PathOptions:
     #: Newton steps with one factorisation, and part of the residual that a step may leave; two or three are usual.
     same_tangent: int = 6
     slow: float = 0.3
+    #: Force of a spring from the bend of its contact's way within an increment; what is left of it is smaller, and falls
+    #: as the third power of the length. Increments in which it is larger are shortened.
+    bent: float = 1e-8
     #: Unbalanced force that is left at an event: the next increment takes it up.
     passing: float = 1e-10
     #: Newton steps of an increment; with the 3/2 law, whose stiffness changes on the way, up to 12 were needed.
@@ -69,11 +71,8 @@ class PathOptions:
     straight: float = 1e-3
     #: Points at one load after which no more are looked for there; 8 in turn were the most that led on.
     still: int = 30
-    #: Load by which the next equilibrium is looked for, with limits of friction held fixed, where no statuses are found
-    #: for the rates. In lattices the path mostly goes on there, only with other statuses.
-    beyond: float = 1e-4
-    #: Displacement up to which such an equilibrium counts as the next one; farther ones are for the motion to find.
-    nearby: float = 1e-3
+    #: Load below which an increment is not shortened further: there is no equilibrium beyond its start.
+    shortest: float = 1e-4
     #: Load to which the loss of stability between two events is found.
     stability: float = 1e-6
     #: Load by which the motion goes on where an equilibrium is lost, doubled while the path does not go on after it.
@@ -177,6 +176,7 @@ class _Path:
         self.load = external_force(problem, 1.0) - self.weight
         self.jump = options.jump / self.unit
         laws = problem.pair_law, problem.wall_law
+        self.stiffest = max(law.tangential_stiffness for law in laws)
         #: whether the stiffness of contacts varies with their overlap
         self.varying = any(law.stiffest(2.0) != law.stiffest(1.0) for law in laws)
 
@@ -309,14 +309,16 @@ class _Path:
             self.singly_until = new
         rates = None if stuck else self.rates.solve(point.trial, point.due)
         if rates is None:
-            return self._relisted(self._lost(point, "no statuses of the contacts go on"))
+            return self._relisted(self._by_motion(point, "jump", "no statuses of the contacts go on", None))
         self._record(point, rates.sense)
         self.velocity = rates.velocity
         direction = self._unstable(point, rates)
         if direction is not None:
             return self._by_motion(point, "bifurcation", "unstable", direction)
         landed = self._landed(point, rates)
-        return self._relisted(self._lost(point, "no equilibrium with these statuses") if landed is None else landed)
+        if landed is None:
+            landed = self._by_motion(point, "jump", "no equilibrium with these statuses", None)
+        return self._relisted(landed)
 
     def _look_down(self, point: Point) -> None:
         """Raise where the first loaded disk has sunk too far."""
@@ -344,7 +346,7 @@ class _Path:
             found = self._smooth(point, rates, min(length, left), event)
             if found is None:
                 left = 0.5 * min(length, left)
-                if left * self.unit < self.options.beyond:
+                if left * self.unit < self.options.shortest:
                     return None
                 continue
             factor, trial = found
@@ -367,6 +369,13 @@ class _Path:
             if turn is not None:
                 left, length = turn, np.inf
                 continue
+            bent = self._bent(point, rates, factor, trial)
+            if bent > self.options.bent:
+                left, length = (
+                    abs(factor - point.factor) * min(0.5, 0.8 * (self.options.bent / bent) ** (1 / 3)),
+                    np.inf,
+                )
+                continue
             self.record.work.increments += 1
             self.jump = self.options.jump / self.unit
             due = then.due(self.event)
@@ -374,6 +383,12 @@ class _Path:
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
             return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
         return None
+
+    def _bent(self, point: Point, rates: Rates, factor: float, trial: Trial) -> float:
+        """Largest force of a spring that sticks from the bend of its contact's way within the increment to a trial."""
+        ahead = abs(factor - point.factor) * rates.velocity
+        way = self.system.along(point.known, trial.configuration.q, ahead, rates.sense)
+        return self.stiffest * float(np.abs(way.spring - point.known.spring).max(initial=0.0))
 
     def _velocity(self, trial: Trial, sense: np.ndarray) -> FloatArray:
         """(dof,) rates at a trial with signed statuses ``sense``; zero where the tangent is singular."""
@@ -431,7 +446,8 @@ class _Path:
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
         before, enough, stalled = np.inf, ENOUGH if event is None else options.passing, False
         for done in range(options.newton):
-            trial = system.trial(known, q, fixed=rates.sense, tangent=False)
+            way = system.along(known, q, abs(factor - point.factor) * rates.velocity, rates.sense)
+            trial = system.trial(way, q, fixed=rates.sense, tangent=False)
             force = trial.contact_force + self._external(factor)
             size = float(np.abs(force).max(initial=0.0))
             left = 0.0 if event is None else self.rates.left(trial, *event)
@@ -491,20 +507,6 @@ class _Path:
         sense, due = (carried(keys, self.system.keys(), status) for status in (point.sense, point.due))
         trial = self.system.trial(new.known, new.known.q, fixed=sense)
         return Point(point.factor, trial, sense, due)
-
-    def _lost(self, point: Point, reason: str) -> Point:
-        """The equilibrium under a load that is a little larger, if it is near; else the one that motion leads to."""
-        new = self._towards(point.factor, self.options.beyond / self.unit)
-        found = self._increased(point, new)
-        if found is not None:
-            n = 2 * self.problem.n
-            moved = found.configuration.q - point.known.q
-            far = float(np.abs(moved[:n]).max(initial=0.0))
-            if far <= self.options.nearby:
-                self._record_lost("stepped over", point, new, moved, reason)
-                self._record(point, found.sense, until=new)
-                return Point(new, found, found.sense, found.sense)
-        return self._by_motion(point, "jump", reason, None)
 
     def _by_motion(self, point: Point, kind: str, reason: str, direction: FloatArray | None) -> Point:
         """The equilibrium that the disks move to from a lost one, displaced a little along ``direction``.
@@ -567,8 +569,8 @@ class _Path:
         )
         return replace(state, reached=reached)
 
-    def _record(self, point: Point, after: np.ndarray, until: float | None = None) -> None:
-        """The events in which contacts get the signed statuses ``after`` (m + w,), at the latest ``until``."""
+    def _record(self, point: Point, after: np.ndarray) -> None:
+        """The events in which contacts get the signed statuses ``after`` (m + w,)."""
         contacts = np.flatnonzero(point.sense != after)
         if not len(contacts):
             return
@@ -582,10 +584,9 @@ class _Path:
         towards = np.concatenate([apart, -system.wall_normals[wall]])
         place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
         kinds = map(_kinds, point.sense[contacts].tolist(), after[contacts].tolist())
-        until = point.factor if until is None else until
         rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
         self.record.events += [
-            Event(point.factor, kind, i, j, wall_contact, x, z, until)
+            Event(point.factor, kind, i, j, wall_contact, x, z, point.factor)
             for does, i, j, wall_contact, x, z in rows
             for kind in does
         ]

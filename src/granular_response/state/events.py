@@ -8,8 +8,8 @@ from .box import WALL_MEANINGS
 
 #: What a contact does at an event.
 CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
-#: What happens to an equilibrium that ends: a longer increment finds the next one nearby, the motion of the disks leads
-#: to it, or one of several branches is taken.
+#: What happens to an equilibrium that ends: the motion of the disks leads to the next one, or one of several branches is
+#: taken. The first kind stands in files of earlier versions alone: an increment with fixed friction bounds led to it.
 LOST_EVENTS = ("stepped over", "jump", "bifurcation")
 
 
@@ -18,9 +18,9 @@ class Event:
     """One change on a load path: a contact changes its status, or an equilibrium is lost.
 
     ``kind`` is, for a contact, ``"opens"``, ``"closes"``, ``"slides"`` (reaches Coulomb's limit), ``"sticks"`` (leaves
-    it) or ``"reverses"`` (slides the other way). Where an equilibrium is lost it is ``"stepped over"`` (the next one is
-    near, under a slightly larger load), ``"jump"`` (the motion of the disks leads to it) or ``"bifurcation"`` (it is
-    unstable, and the motion leads to one of the branches). Lengths are in mean disk radii.
+    it) or ``"reverses"`` (slides the other way). Where an equilibrium is lost it is ``"jump"`` (the motion of the disks
+    leads to the next one) or ``"bifurcation"`` (it is unstable, and the motion leads to one of the branches). Lengths
+    are in mean disk radii.
 
     >>> event = Event(0.25, "opens", first=3, second=1, x=2.0, z=1.0)
     >>> event.lost, event.where
