@@ -1,0 +1,63 @@
+"""Force chains from centre to centre, for pictures in which they are small: an overview, an animation."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+
+from ..state import OPEN
+from . import network, style
+from .pictures import Shown
+
+#: Colours of disks, of the forces that press them together, and of those that the load takes away.
+DISKS, CHAINS, LOST = "#EFEDE8", "#12233F", "#8FA3BF"
+#: Points; a thinner line is left out.
+THINNEST = 0.3
+
+
+def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0, half_width: float) -> None:
+    """What the load adds at each contact as a line from centre to centre, the contacts that it opens, the load.
+
+    Widths go as the square root of the force and reach ``widest`` points at ``largest`` (mean disk weights); larger
+    forces have that width. Dark lines press disks together, pale ones take compression away. What is within
+    ``half_width`` of the loaded disk is drawn, without axes.
+    """
+    left, right = shown.origin - half_width, shown.origin + half_width
+    near = (shown.position[:, 0] > left - 2.0) & (shown.position[:, 0] < right + 2.0)
+    first, second = shown.pairs
+    kept = near[first] & near[second]
+    at_wall, index = shown.values("wall_disk"), shown.values("wall_index")
+    pair, wall = shown.forces(added=True)
+    network.draw_disks(axes, shown.position[near], shown.radius[near], facecolor=DISKS, edgecolor="none", zorder=0)
+    separation = shown.box.separation(shown.position[first], shown.position[second])
+    foot = shown.box.on_wall(shown.position[at_wall], index)
+    towards = shown.position[at_wall] - foot
+    for sign, colour, order in ((-1.0, LOST, 2), (1.0, CHAINS, 3)):
+        look = {"color": colour, "capstyle": "round", "zorder": order}
+        presses = kept & (sign * np.sum(pair * separation, axis=1) > 0.0)
+        width = _widths(pair, largest, widest)
+        drawn = presses & (width > THINNEST)
+        lines = (first[drawn], second[drawn])
+        network.draw_contacts(axes, shown.position, *lines, box=shown.box, linewidth=width[drawn], **look)
+        width = _widths(wall, largest, widest)
+        drawn = near[at_wall] & (sign * np.sum(wall * towards, axis=1) > 0.0) & (width > THINNEST)
+        ends = np.stack([shown.position[at_wall][drawn], foot[drawn]], axis=1)
+        axes.add_collection(LineCollection(ends, linewidths=width[drawn], **look), autolim=False)
+    opened = kept & (shown.values("contact_status", 0) != OPEN) & (shown.values("contact_status") == OPEN)
+    look = {"color": style.VERMILION, "linewidth": 0.5 * widest, "capstyle": "butt", "zorder": 4}
+    network.draw_contacts(axes, shown.position, first[opened], second[opened], box=shown.box, **look)
+    axes.axhline(0.0, color=style.MUTED, linewidth=1.0, linestyle="-", zorder=5)
+    for disk, force, _ in shown.loads:
+        size = float(np.hypot(*force))
+        if size > 0.0:
+            tip = shown.position[disk] - shown.radius[disk] * force / size
+            network.draw_load(axes, tip, force, length=0.15 * shown.top)
+    style.no_axes(axes)
+    axes.set(xlim=(left, right), ylim=(-0.5, 1.2 * shown.top + 0.5))
+
+
+def _widths(force: np.ndarray, largest: float, widest: float) -> np.ndarray:
+    """(m,) points."""
+    part = np.linalg.norm(force, axis=1) / largest if largest > 0.0 else np.zeros(len(force))
+    return widest * np.sqrt(np.minimum(part, 1.0))
