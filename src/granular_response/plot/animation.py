@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -11,16 +12,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation, PillowWriter
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
 from ..state import FloatArray
 from ..store import atomic
-from . import style
-from .chains import CHAINS, draw_chains
-from .pictures import HasDataset, PictureError, Shown, _has_response, _why_no_response
+from . import chains, style
+from .chains import draw_chains, draw_key, draw_response
+from .pictures import HasDataset, PictureError, Shown, _has_response, _new_figure, _why_no_response
 
 Results = HasDataset | xr.Dataset | Mapping[str, HasDataset | xr.Dataset]
 
@@ -46,6 +45,7 @@ def animate(
     fps: float = 6.0,
     dpi: float = 120.0,
     width: float = style.DOUBLE,
+    figure: Figure | None = None,
 ) -> FuncAnimation:
     """Animation of a growing load: force chains and opened contacts above the floor response, a frame for each load.
 
@@ -59,6 +59,7 @@ def animate(
     half_width : draw what is within this distance of the loaded disk, in mean radii; by default all.
     fps : frames per second; in a .gif or .webp the last one stays for at least a second and a half.
     dpi, width : pixels per inch, and inches from side to side.
+    figure : drawn into, or a new one of pyplot's.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def animate(
     ending = Path(output).suffix if output is not None else ""
     if output is not None and ending not in FORMATS:
         raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
-    frames = Frames(results, half_width=half_width, width=width)
+    frames = Frames(results, half_width=half_width, width=width, figure=figure)
     frames.figure.set_dpi(dpi)
     animation = FuncAnimation(frames.figure, frames.draw, frames=frames.count, interval=1000.0 / fps, blit=False)
     if output is not None:
@@ -94,7 +95,7 @@ def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0
     """The file of an animation in memory; of .gif and .webp the same bytes every time."""
     with style.context():
         if ending == ".html":
-            return animation.to_jshtml(fps=fps).encode()
+            return animation.to_jshtml(fps=round(fps)).encode()
         with tempfile.TemporaryDirectory() as folder:
             target = Path(folder) / f"animation{ending}"
             animation.save(target, writer=_Writer(fps, ending), dpi=dpi)
@@ -104,7 +105,14 @@ def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0
 class Frames:
     """The figure of an animation, and what draws each of its frames into it."""
 
-    def __init__(self, results: Results, *, half_width: float | None = None, width: float = style.DOUBLE) -> None:
+    def __init__(
+        self,
+        results: Results,
+        *,
+        half_width: float | None = None,
+        width: float = style.DOUBLE,
+        figure: Figure | None = None,
+    ) -> None:
         """Parameters and errors are those of :func:`animate`."""
         for name, value in {"half_width": half_width, "width": width}.items():
             if value is not None and not (np.isfinite(value) and value > 0.0):
@@ -125,7 +133,7 @@ class Frames:
         seen = np.concatenate([one[:, here].ravel() for one, here in zip(self.responses, near, strict=True)])
         self.limits = min(0.0, 1.05 * float(np.nanmin(seen))), 1.08 * float(np.nanmax(seen))
         with style.context():
-            self.figure, self.panels = _panels(shown, self.half, width)
+            self.figure, self.panels = _panels(shown, self.half, width, figure)
 
     @property
     def count(self) -> int:
@@ -143,30 +151,27 @@ class Frames:
                 draw_chains(above, Shown(shown.data, frame + 1), largest=FULL * force, half_width=self.half)
                 above.set_title(title, pad=0.0)
                 below.clear()
-                self._draw_response(below, shown.data["x"].values, self.responses[k], frame, first=k == 0)
+                x, responses = shown.data["x"].values, self.responses[k]
+                draw_response(below, x, responses[frame], responses[0], half_width=self.half, limits=self.limits)
+                below.set_xlabel(style.POSITION)
+                below.tick_params(labelleft=k == 0)
+            self.panels[1, 0].set_ylabel(style.RESPONSE)
+            draw_key(self.panels[1, -1], "first load")
             self.panels[0, 0].text(0.0, 1.0, style.equals(style.F_EXT, round(force, 3), style.WEIGHT),
                                    transform=self.panels[0, 0].transAxes, va="bottom")  # fmt: skip
         return []
 
-    def _draw_response(self, axes: Axes, x: FloatArray, responses: FloatArray, frame: int, *, first: bool) -> None:
-        axes.fill_between(x, responses[0], color=style.FAINT, linewidth=0.0)
-        axes.plot(x, responses[frame], color=CHAINS, linewidth=1.8, linestyle="-")
-        axes.set(xlim=(-self.half, self.half), ylim=self.limits, xlabel=style.POSITION)
-        axes.xaxis.set_major_locator(MaxNLocator(5, prune="both"))
-        axes.tick_params(top=False, right=False, labelleft=first)
-        axes.spines[["top", "right"]].set_visible(False)
-        if first:
-            axes.set_ylabel(style.RESPONSE)
 
-
-def _panels(columns: Sequence[Shown], half: float, width: float) -> tuple[Figure, np.ndarray]:
+def _panels(columns: Sequence[Shown], half: float, width: float, figure: Figure | None) -> tuple[Figure, np.ndarray]:
     """A figure with places that stay: a chain picture as wide as the floor response below it, for each result."""
     count = len(columns)
     wide = (width - _LEFT - _RIGHT - (count - 1) * _GAP) / count
-    high = wide * (1.2 * max(shown.top for shown in columns) + 1.0) / (2.0 * half)
+    high = wide * (max(map(chains.height, columns)) + 0.5) / (2.0 * half)
     bottom = _BELOW + _RESPONSE + 0.5 * _GAP
     height = bottom + high + _ABOVE
-    figure = Figure(figsize=(width, height))
+    figure = _new_figure(height) if figure is None else figure
+    figure.set_layout_engine("none")
+    figure.set_size_inches(width, height)
     panels = np.empty((2, count), dtype=object)
     for k in range(count):
         left = (_LEFT + k * (wide + _GAP)) / width
@@ -179,16 +184,21 @@ class _Writer(PillowWriter):
     """Pillow's writer, with one table of colours for all frames of a GIF: then parts that stay take no room."""
 
     def __init__(self, fps: float, ending: str) -> None:
-        super().__init__(fps=fps)  # type: ignore[arg-type]
-        self.ending = ending
+        super().__init__()
+        self.step, self.ending = round(1000.0 / fps), ending
+        self.frames: list[Image.Image] = []
+
+    def grab_frame(self, **savefig: Any) -> None:
+        buffer = io.BytesIO()
+        self.fig.savefig(buffer, format="rgba", dpi=self.dpi, **savefig)
+        self.frames.append(Image.frombytes("RGBA", self.frame_size, buffer.getvalue()).convert("RGB"))
 
     def finish(self) -> None:
-        frames: list[Image.Image] = [frame.convert("RGB") for frame in self._frames]
+        frames = self.frames
         if self.ending == ".gif":
             palette = _palette(frames[-1])
             frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
-        step = round(1000.0 / self.fps)
-        durations = [*[step] * (len(frames) - 1), max(step, 1500)]
+        durations = [*[self.step] * (len(frames) - 1), max(self.step, 1500)]
         options = {"append_images": frames[1:], "duration": durations, "loop": 0, **FORMATS[self.ending]}
         frames[0].save(self.outfile, save_all=True, **options)
 

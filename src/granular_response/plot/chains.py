@@ -1,12 +1,15 @@
-"""Force chains from centre to centre, for pictures in which they are small: an overview, an animation."""
+"""Force chains from centre to centre and the floor response below them, for pictures in which they are small."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.ticker import MaxNLocator
 
-from ..state import OPEN
+from ..state import OPEN, FloatArray
 from . import network, style
 from .pictures import Shown
 
@@ -34,7 +37,7 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0
     foot = shown.box.on_wall(shown.position[at_wall], index)
     towards = shown.position[at_wall] - foot
     for sign, colour, order in ((-1.0, LOST, 2), (1.0, CHAINS, 3)):
-        look = {"color": colour, "capstyle": "round", "zorder": order}
+        look: dict[str, Any] = {"color": colour, "capstyle": "round", "zorder": order}
         presses = kept & (sign * np.sum(pair * separation, axis=1) > 0.0)
         width = _widths(pair, largest, widest)
         drawn = presses & (width > THINNEST)
@@ -43,7 +46,7 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0
         width = _widths(wall, largest, widest)
         drawn = near[at_wall] & (sign * np.sum(wall * towards, axis=1) > 0.0) & (width > THINNEST)
         ends = np.stack([shown.position[at_wall][drawn], foot[drawn]], axis=1)
-        axes.add_collection(LineCollection(ends, linewidths=width[drawn], **look), autolim=False)
+        axes.add_collection(LineCollection(list(ends), linewidths=width[drawn], **look), autolim=False)
     opened = kept & (shown.values("contact_status", 0) != OPEN) & (shown.values("contact_status") == OPEN)
     look = {"color": style.VERMILION, "linewidth": 0.5 * widest, "capstyle": "butt", "zorder": 4}
     network.draw_contacts(axes, shown.position, first[opened], second[opened], box=shown.box, **look)
@@ -54,7 +57,37 @@ def draw_chains(axes: Axes, shown: Shown, *, largest: float, widest: float = 3.0
             tip = shown.position[disk] - shown.radius[disk] * force / size
             network.draw_load(axes, tip, force, length=0.15 * shown.top)
     style.no_axes(axes)
-    axes.set(xlim=(left, right), ylim=(-0.5, 1.2 * shown.top + 0.5))
+    axes.set(xlim=(left, right), ylim=(-0.5, height(shown)))
+
+
+def height(shown: Shown) -> float:
+    """Up to where chains are drawn, with room for the arrow of a load: the same in all states of a result."""
+    return 1.2 * Shown(shown.data, 0).top + 0.5
+
+
+def draw_response(
+    axes: Axes,
+    x: FloatArray,
+    response: FloatArray,
+    reference: FloatArray,
+    *,
+    half_width: float,
+    limits: tuple[float, float],
+) -> None:
+    """The floor response at ``x`` over a grey ``reference``, below chains of this ``half_width``."""
+    axes.fill_between(x, reference, color=style.FAINT, linewidth=0.0)
+    axes.plot(x, response, color=CHAINS, linewidth=1.8, linestyle="-")
+    axes.set(xlim=(-half_width, half_width), ylim=limits)
+    axes.xaxis.set_major_locator(MaxNLocator(5, prune="both"))
+    axes.tick_params(top=False, right=False)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def draw_key(axes: Axes, reference: str) -> None:
+    """In the upper right corner of a response: what is thick in the chains above it, and the name of what is grey."""
+    for k, (text, colour) in enumerate((("opened contacts", style.VERMILION), (reference, style.MUTED))):
+        axes.annotate(text, (1.0, 1.0), (-1.0, -2.0 - 10.0 * k), xycoords="axes fraction", textcoords="offset points",
+                      ha="right", va="top", fontsize=8, color=colour)  # fmt: skip
 
 
 def _widths(force: np.ndarray, largest: float, widest: float) -> np.ndarray:

@@ -100,7 +100,6 @@ def _light(shown: Shown, added: bool, fringe: float, left: float, size: float, s
             grid = np.stack(np.meshgrid(x, z), axis=-1)
             inside = np.sum(grid**2, axis=-1) < radius**2
             if inside.any():
-                # rounded: a picture and its mirror image differ by no fringe where these are narrow
                 difference = principal_difference(disk_stress(grid[inside], outward[own], force[own], float(radius)))
                 part = light[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
                 seen = np.sin(np.pi * np.nan_to_num(difference, posinf=0.0) / fringe) ** 2
@@ -115,9 +114,15 @@ def _on_rims(shown: Shown, added: bool) -> tuple[np.ndarray, FloatArray, FloatAr
     normal = separation / np.linalg.norm(separation, axis=1, keepdims=True)
     pair, wall = shown.forces(added)
     loads = [(disk, -force / size, force) for disk, force, _ in shown.loads if (size := float(np.hypot(*force)))]
-    disks, outward, forces = ([one[k] for one in loads] for k in range(3))
     return (
-        np.concatenate([first, second, shown.values("wall_disk"), np.array(disks, dtype=int)]),
-        np.concatenate([-normal, normal, -wall_normals(shown.values("wall_index")), np.reshape(outward, (-1, 2))]),
-        np.concatenate([pair, -pair, wall, np.reshape(forces, (-1, 2))]),
+        np.concatenate([first, second, shown.values("wall_disk"), np.array([disk for disk, *_ in loads], dtype=int)]),
+        np.concatenate(
+            [
+                -normal,
+                normal,
+                -wall_normals(shown.values("wall_index")),
+                np.reshape([at for _, at, _ in loads], (-1, 2)),
+            ]
+        ),
+        np.concatenate([pair, -pair, wall, np.reshape([force for *_, force in loads], (-1, 2))]),
     )
