@@ -81,13 +81,14 @@ def animate(
         raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
     frames = Frames(results, half_width=half_width, width=width, figure=figure)
     frames.figure.set_dpi(dpi)
-    animation = FuncAnimation(frames.figure, frames.draw, frames=frames.count, interval=1000.0 / fps, blit=False)
-    if output is not None:
-        try:
-            atomic.check_writable(output)
+    try:
+        if output is not None:
+            atomic.check_writable(output)  # before the work
+        animation = FuncAnimation(frames.figure, frames.draw, frames=frames.count, interval=1000.0 / fps, blit=False)
+        if output is not None:
             atomic.write_bytes(output, rendered(animation, ending, fps=fps, dpi=dpi))
-        except OSError as error:
-            raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
+    except OSError as error:
+        raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
     return animation
 
 
