@@ -96,7 +96,7 @@ def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0
     """The file of an animation in memory; of .gif and .webp the same bytes every time."""
     with style.context():
         if ending == ".html":
-            return animation.to_jshtml(fps=round(fps)).encode()
+            return animation.to_jshtml(fps=max(1, round(fps))).encode()
         with tempfile.TemporaryDirectory() as folder:
             target = Path(folder) / f"animation{ending}"
             animation.save(target, writer=_Writer(fps, ending), dpi=dpi)
