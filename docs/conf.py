@@ -52,6 +52,7 @@ sphinx_gallery_conf = {
     "show_signature": False,
     "abort_on_example_error": True,
     "capture_repr": (),
+    "matplotlib_animations": True,
     "write_computation_times": False,
 }
 

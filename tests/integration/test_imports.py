@@ -90,11 +90,15 @@ SIGNATURES = {
     "Scene.to_dict": "(self)",
     "Scene.to_yaml": "(self)",
     "Scene.updated": "(self, changes)",
+    "plot.animate": ("(results, *, output=None, half_width=None, fps=6.0, dpi=120.0, width=7.0, figure=None)"),
     "plot.contacts": "(result, *, ax=None, state=-1)",
     "plot.floor": "(result, *, ax=None, state=-1, added=None, **line)",
     "plot.forces": "(result, *, ax=None, state=-1, added=None, scale='sqrt', largest=None)",
     "plot.packing": "(result, *, ax=None, state=-1, values=None, label='', colour_map='viridis')",
     "plot.page": "(result, what=None, *, state=-1, scale='sqrt', figure=None)",
+    "plot.photoelastic": (
+        "(result, *, ax=None, state=-1, added=None, fringe=None, half_width=None, pixels=1200, **image)"
+    ),
     "plot.response": "(result, *, ax=None, **line)",
     "plot.stress": "(result, *, ax=None, state=-1, added=None, component='zz', width=2.0, largest=None)",
 }

@@ -381,6 +381,24 @@ def test_captions_that_are_none_are_one_line(root, tmp_path):
     assert "\n" not in str(caught.value)
 
 
+def test_the_overview_comes_first_and_moves_where_there_is_an_animation(root, tmp_path):
+    folder = tmp_path / "copy" / "figures" / "overview"
+    shutil.copytree(root, tmp_path / "copy")
+    folder.mkdir()
+    said = {}
+    for stem in ("overview", "growing_force"):
+        Image.new("RGB", (60, 40)).save(folder / f"{stem}.png")
+        said[stem] = {"caption": f"What {stem} shows.", "alternative": f"How {stem} looks."}
+    (folder / "captions.json").write_text(json.dumps(said))
+    (folder / "growing_force.gif").write_bytes(b"GIF89a")
+    page = report.page(tmp_path / "copy")
+    sources = {image["alt"]: image["src"] for image in Elements(page).named("img")}
+    assert next(iter(sources)) == "How overview looks." and page.count("What growing_force shows.") == 1
+    assert sources["How growing_force looks."].startswith("data:image/gif;base64,R0lGODlh")
+    assert page.index("What overview shows.") < page.index('class="tiles"') < page.index('id="try"')
+    assert 'href="overview/growing_force.gif">GIF</a>' in page
+
+
 def test_narrow_figures_stand_beside_each_other(page):
     assert [f["id"] for f in Elements(page).named("figure") if f.get("class") == "narrow"] == ["figure-6"]
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from granular_response.scene import SceneError, text
 from granular_response.store import atomic
@@ -12,9 +13,15 @@ from granular_response.store import files as store
 from granular_response_paper import captions
 from granular_response_paper.pipeline import TOO_LITTLE, GroupError, figures_folder, group_member, stored
 
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.animation import FuncAnimation
+
 
 def draw(group: str, data: Path | None = None, folder: Path | None = None) -> list[Path]:
     """Draw the figures of a group from its datasets and write their captions; returns the paths of the files.
+
+    Animations of a group (``animations`` of its ``draw.py``) are GIFs, each beside the picture of its name.
 
     Raises
     ------
@@ -28,6 +35,7 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     path, datasets = stored.datasets(group, data)
     described = _parameters(group, path)
     from granular_response.plot import style
+    from granular_response.plot.animation import rendered
 
     target = folder or figures_folder(group)
     paths: list[Path] = []
@@ -37,6 +45,10 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
         said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
         for stem, figure in figures.items():
             paths += style.save(figure, stem, target, inputs=[path])
+        for stem, moving in _animations(group, datasets).items():
+            paths.append(target / f"{stem}.gif")
+            atomic.check_writable(paths[-1], [path])
+            atomic.write_bytes(paths[-1], rendered(moving))
     except TOO_LITTLE as error:
         problem = " ".join(f"{type(error).__name__}: {error}".split())
         raise GroupError(f"{path}: {group} cannot be drawn with these parameters ({problem})") from error
@@ -44,6 +56,15 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     atomic.check_writable(beside, [path])
     atomic.write_bytes(beside, (json.dumps(said, ensure_ascii=False, indent=1) + "\n").encode())
     return [*paths, beside]
+
+
+def _animations(group: str, datasets: Mapping[str, xr.Dataset]) -> Mapping[str, FuncAnimation]:
+    """Those of the groups that have some, by the stem of the picture that stands for each where nothing moves."""
+    try:
+        animations = group_member(group, "draw", "animations")
+    except AttributeError:
+        return {}
+    return animations(datasets)
 
 
 def _parameters(group: str, path: Path) -> Any:

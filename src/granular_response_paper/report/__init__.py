@@ -32,6 +32,8 @@ OUTPUT = Path("figures") / "report.html"
 #: Figure groups that the explorer shows, and the one whose table the readings come from.
 EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
 SENSITIVITY = "sensitivity"
+#: The group whose pictures stand in the summary.
+OVERVIEW = "overview"
 
 
 class ReportError(GranularError):
@@ -138,7 +140,8 @@ def page(root: Path, folder: Path | None = None) -> str:
         "of_figure": lambda number: [row for row in claims["table"] if number in row.get("figures", ())],
         "of_group": lambda group: [row for row in claims["table"] if row["group"] == group and not row.get("figures")],
         "linked": lambda picture: _linked(picture, root, root / OUTPUT.parent if folder is None else folder),
-        "further": shown.further,
+        "overview": [picture for picture in shown.further if picture.group == OVERVIEW],
+        "further": [picture for picture in shown.further if picture.group != OVERVIEW],
         "states": _json_in_html(states) if states else None,
         "explored": states and _choices(states["slabs"]),
         "readings": tried,

@@ -44,6 +44,7 @@ class Picture:
         folder = f"src/granular_response_paper/groups/{self.group}"
         return (
             ("PDF", f"figures/{self.group}/{self.stem}.pdf"),
+            ("GIF", f"figures/{self.group}/{self.stem}.gif"),
             ("data", f"data/{self.group}.nc"),
             ("drawing", f"{folder}/draw.py"),
             ("folder of the group", folder),
@@ -131,7 +132,11 @@ def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
 
 
 def embed(path: Path) -> Picture:
-    """A drawn picture as a data URI: every pixel as drawn, in lossless WebP, less than half as large as the PNG."""
+    """A drawn picture as a data URI: every pixel as drawn, in lossless WebP, less than half as large as the PNG.
+
+    Where an animation of its name is beside it, that stands in its place.
+    """
+    moving = path.with_suffix(".gif")
     with Image.open(path) as image:
         plain = image.convert("RGB")
     small = plain.copy()
@@ -139,7 +144,7 @@ def embed(path: Path) -> Picture:
     return Picture(
         path.stem,
         path.parent.name,
-        _webp(plain, lossless=True, quality=76),
+        _uri("gif", moving.read_bytes()) if moving.exists() else _webp(plain, lossless=True, quality=76),
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
@@ -150,4 +155,8 @@ def embed(path: Path) -> Picture:
 def _webp(image: Image.Image, **options: bool | int) -> str:
     buffer = io.BytesIO()
     image.save(buffer, format="WEBP", method=4, **options)
-    return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
+    return _uri("webp", buffer.getvalue())
+
+
+def _uri(kind: str, data: bytes) -> str:
+    return f"data:image/{kind};base64," + base64.b64encode(data).decode()

@@ -1,0 +1,218 @@
+"""A growing load as an animation: the force chains that it adds, the contacts that it opens, the floor response."""
+
+from __future__ import annotations
+
+import io
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.figure import Figure
+from PIL import Image
+
+from ..state import FloatArray
+from ..store import atomic
+from . import chains, style
+from .chains import draw_chains, draw_key, draw_response
+from .pictures import HasDataset, PictureError, Shown, _has_response, _new_figure, _why_no_response
+
+Results = HasDataset | xr.Dataset | Mapping[str, HasDataset | xr.Dataset]
+
+#: Endings of files, and how Pillow is to write them.
+FORMATS: Mapping[str, Mapping[str, Any]] = {
+    ".gif": {"optimize": False},
+    ".webp": {"quality": 80, "method": 4},
+    ".html": {},
+}
+#: Colours of a GIF, and the least difference of two of them, of 255.
+COLOURS, APART = 32, 12
+#: A contact force of this part of the load has full width.
+FULL = 0.6
+#: Inches: margins left, right, below and above, gap between pictures, height of a floor response.
+_LEFT, _RIGHT, _BELOW, _ABOVE, _GAP, _RESPONSE = 0.55, 0.12, 0.42, 0.3, 0.12, 1.1
+
+
+def animate(
+    results: Results,
+    *,
+    output: str | os.PathLike[str] | None = None,
+    half_width: float | None = None,
+    fps: float = 6.0,
+    dpi: float = 120.0,
+    width: float = style.DOUBLE,
+    figure: Figure | None = None,
+) -> FuncAnimation:
+    """Animation of a growing load: force chains and opened contacts above the floor response, a frame for each load.
+
+    Everything is per applied force and on one scale in all frames, so what moves is what is not linear in the load;
+    grey stays the response to the first load. Ask ``solve`` for the ``load_factors`` of the frames.
+
+    Parameters
+    ----------
+    results : one, or several by their titles, which are shown side by side: with the same forces, in the same order.
+    output : file to write, whole or not at all: .gif, .webp or .html.
+    half_width : draw what is within this distance of the loaded disk, in mean radii; by default all.
+    fps : frames per second; in a .gif or .webp the last one stays for at least a second and a half.
+    dpi, width : pixels per inch, and inches from side to side.
+    figure : drawn into, or a new one of pyplot's.
+
+    Raises
+    ------
+    PictureError
+        For results without a response or whose forces differ, another ending, a number that is not positive, and a
+        file that cannot be written.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> result = gr.solve(scene, load_factors=np.linspace(0.1, 2.0, 20))
+    >>> animation = gr.plot.animate(result, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
+    """
+    for name, value in {"fps": fps, "dpi": dpi}.items():
+        if not (np.isfinite(value) and value > 0.0):
+            raise PictureError(f"{name} = {value}: must be a number greater than 0")
+    ending = Path(output).suffix if output is not None else ""
+    if output is not None and ending not in FORMATS:
+        raise PictureError(f"{output}: format {ending!r} is unknown, must be {', '.join(FORMATS)}")
+    frames = Frames(results, half_width=half_width, width=width, figure=figure)
+    frames.figure.set_dpi(dpi)
+    try:
+        if output is not None:
+            atomic.check_writable(output)  # before the work
+        animation = FuncAnimation(frames.figure, frames.draw, frames=frames.count, interval=1000.0 / fps, blit=False)
+        if output is not None:
+            atomic.write_bytes(output, rendered(animation, ending, fps=fps, dpi=dpi))
+    except OSError as error:
+        raise PictureError(f"{output}: cannot be written: {error.strerror or error}") from error
+    return animation
+
+
+def rendered(animation: FuncAnimation, ending: str = ".gif", *, fps: float = 6.0, dpi: float = 120.0) -> bytes:
+    """The file of an animation in memory; of .gif and .webp the same bytes every time."""
+    with style.context():
+        if ending == ".html":
+            return animation.to_jshtml(fps=max(1, round(fps))).encode()
+        with tempfile.TemporaryDirectory() as folder:
+            target = Path(folder) / f"animation{ending}"
+            animation.save(target, writer=_Writer(fps, ending), dpi=dpi)
+            return target.read_bytes()
+
+
+class Frames:
+    """The figure of an animation, and what draws each of its frames into it."""
+
+    def __init__(
+        self,
+        results: Results,
+        *,
+        half_width: float | None = None,
+        width: float = style.DOUBLE,
+        figure: Figure | None = None,
+    ) -> None:
+        """Parameters and errors are those of :func:`animate`."""
+        for name, value in {"half_width": half_width, "width": width}.items():
+            if value is not None and not (np.isfinite(value) and value > 0.0):
+                raise PictureError(f"{name} = {value}: must be a number greater than 0")
+        given = results if isinstance(results, Mapping) and not isinstance(results, xr.Dataset) else {"": results}
+        self.columns = {title: Shown.of(one) for title, one in given.items()}
+        shown = [*self.columns.values()]
+        for one in shown:
+            if not _has_response(one):
+                raise PictureError(f"results: {_why_no_response(one)}, so there is no response")
+        forces = [np.atleast_1d(one.data["total_force"].values) for one in shown]
+        if any(one.shape != forces[0].shape or not np.allclose(one, forces[0], rtol=1e-6) for one in forces):
+            raise PictureError("results: must have the same forces, one for each frame")
+        self.forces: FloatArray = forces[0]
+        self.half = half_width or max(max(one.origin, one.box.width - one.origin) for one in shown)
+        self.responses = [np.atleast_2d(one.data["floor_response"].values) for one in shown]
+        near = [np.abs(one.data["x"].values) <= self.half for one in shown]
+        seen = np.concatenate([one[:, here].ravel() for one, here in zip(self.responses, near, strict=True)])
+        self.limits = min(0.0, 1.05 * float(np.nanmin(seen))), 1.08 * float(np.nanmax(seen))
+        with style.context():
+            self.figure, self.panels = _panels(shown, self.half, width, figure)
+
+    @property
+    def count(self) -> int:
+        """One for each load."""
+        return len(self.forces)
+
+    def draw(self, frame: int) -> list[Any]:
+        """Draw the frame of a load, counted from 0 or from the end; nothing of the one before stays."""
+        frame %= self.count
+        force = float(self.forces[frame])
+        with style.context():
+            for k, (title, shown) in enumerate(self.columns.items()):
+                above, below = self.panels[:, k]
+                above.clear()
+                draw_chains(above, Shown(shown.data, frame + 1), largest=FULL * force, half_width=self.half)
+                above.set_title(title, pad=0.0)
+                below.clear()
+                x, responses = shown.data["x"].values, self.responses[k]
+                draw_response(below, x, responses[frame], responses[0], half_width=self.half, limits=self.limits)
+                below.set_xlabel(style.POSITION)
+                below.tick_params(labelleft=k == 0)
+            self.panels[1, 0].set_ylabel(style.RESPONSE)
+            draw_key(self.panels[1, -1], "first load")
+            self.panels[0, 0].text(0.0, 1.0, style.equals(style.F_EXT, round(force, 3), style.WEIGHT),
+                                   transform=self.panels[0, 0].transAxes, va="bottom")  # fmt: skip
+        return []
+
+
+def _panels(columns: Sequence[Shown], half: float, width: float, figure: Figure | None) -> tuple[Figure, np.ndarray]:
+    """A figure with places that stay: a chain picture as wide as the floor response below it, for each result."""
+    count = len(columns)
+    wide = (width - _LEFT - _RIGHT - (count - 1) * _GAP) / count
+    high = wide * (max(map(chains.height, columns)) + 0.5) / (2.0 * half)
+    bottom = _BELOW + _RESPONSE + 0.5 * _GAP
+    height = bottom + high + _ABOVE
+    figure = _new_figure(height) if figure is None else figure
+    figure.set_layout_engine("none")
+    figure.set_size_inches(width, height)
+    panels = np.empty((2, count), dtype=object)
+    for k in range(count):
+        left = (_LEFT + k * (wide + _GAP)) / width
+        panels[0, k] = figure.add_axes((left, bottom / height, wide / width, high / height))
+        panels[1, k] = figure.add_axes((left, _BELOW / height, wide / width, _RESPONSE / height))
+    return figure, panels
+
+
+class _Writer(PillowWriter):
+    """Pillow's writer, with one table of colours for all frames of a GIF: then parts that stay take no room."""
+
+    def __init__(self, fps: float, ending: str) -> None:
+        super().__init__()
+        self.step, self.ending = round(1000.0 / fps), ending
+        self.frames: list[Image.Image] = []
+
+    def grab_frame(self, **savefig: Any) -> None:
+        buffer = io.BytesIO()
+        self.fig.savefig(buffer, format="rgba", dpi=self.dpi, **savefig)
+        self.frames.append(Image.frombytes("RGBA", self.frame_size, buffer.getvalue()).convert("RGB"))
+
+    def finish(self) -> None:
+        frames = self.frames
+        if self.ending == ".gif":
+            palette = _palette(frames[-1])
+            frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+        durations = [*[self.step] * (len(frames) - 1), max(self.step, 1500)]
+        options = {"append_images": frames[1:], "duration": durations, "loop": 0, **FORMATS[self.ending]}
+        frames[0].save(self.outfile, save_all=True, **options)
+
+
+def _palette(frame: Image.Image) -> Image.Image:
+    """An image with the most frequent colours of a frame, for ``Image.quantize``."""
+    found: Any = frame.getcolors(frame.width * frame.height)
+    chosen: list[tuple[int, ...]] = []
+    for _, colour in sorted(found, reverse=True):
+        if all(max(abs(a - b) for a, b in zip(colour, other, strict=True)) >= APART for other in chosen):
+            chosen.append(colour)
+        if len(chosen) == COLOURS:
+            break
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([part for colour in chosen for part in colour])
+    return palette

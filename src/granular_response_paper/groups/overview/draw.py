@@ -1,0 +1,103 @@
+"""The overview, the growing force and the photoelastic packings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.animation import FuncAnimation
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response.plot.animation import FULL, Frames, animate
+from granular_response.plot.chains import draw_chains, draw_key, draw_response
+from granular_response.plot.photoelastic import photoelastic
+from granular_response.plot.pictures import Shown
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import packing
+
+from .parameters import Parameters
+
+#: Mean radii to each side of the load: of slabs, and of photoelastic packings.
+HALF_WIDTH, NEAR = 30.0, 18.0
+#: Pixels from side to side of a photoelastic packing.
+PIXELS = 680
+#: Principal stress difference of one fringe, per applied force, in 1/mean radius.
+FRINGE = 0.32
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``overview``, the last frame of ``growing_force``, and ``photoelastic``."""
+    frames = Frames(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())
+    frames.draw(-1)
+    return {
+        "overview": _overview(_slabs(datasets)),
+        "growing_force": frames.figure,
+        "photoelastic": _photoelastic([slab for name, slab in datasets.items() if name.startswith("photoelastic")]),
+    }
+
+
+def animations(datasets: Mapping[str, xr.Dataset]) -> dict[str, FuncAnimation]:
+    """``growing_force``."""
+    return {"growing_force": animate(_slabs(datasets), half_width=HALF_WIDTH, figure=Figure())}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    forces, experiment = parameters.forces, parameters.experiment
+    given = of_scene(parameters.scene, friction=parameters.frictions)
+    return of_group(
+        "overview",
+        {
+            "overview": {**given, "force": [forces[0], forces[-1]]},
+            "growing_force": {**given, "force": forces},
+            "photoelastic": of_scene(
+                parameters.scene,
+                frictions=experiment.friction,
+                force=experiment.force,
+                polydispersity=experiment.polydispersities,
+            ),
+        },
+    )
+
+
+def _slabs(datasets: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Those under a growing force, by their titles."""
+    slabs = [slab for name, slab in datasets.items() if name.startswith("slab")]
+    return {style.equals(style.FRICTION, float(slab["friction"])): slab for slab in slabs}
+
+
+def _overview(slabs: Mapping[str, xr.Dataset]) -> Figure:
+    """A column for each friction; for the smallest and the largest force the chains above the response."""
+    figure, panels = style.figure(4, len(slabs), width=6.2, height=4.9, height_ratios=[1.1, 0.85, 1.1, 0.85])
+    curves = np.stack([np.atleast_2d(slab["floor_response"].values)[[0, -1]] for slab in slabs.values()])
+    limits = 0.0, 1.08 * float(curves.max())
+    for k, (title, slab) in enumerate(slabs.items()):
+        half = min(HALF_WIDTH, 0.5 * float(slab.attrs["width"]))
+        x, elastic = slab["x"].values, slab["elastic_response"].values
+        for row, force in enumerate(np.atleast_1d(slab["total_force"].values)[[0, -1]].tolist()):
+            above, below = panels[2 * row : 2 * row + 2, k]
+            draw_chains(above, Shown.of(slab, 1 if row == 0 else -1), largest=FULL * force, half_width=half)
+            draw_response(below, x, curves[k, row], elastic, half_width=half, limits=limits)
+            below.tick_params(labelleft=k == 0, labelbottom=row == 1)
+            if k == 0:
+                name = style.equals(style.F_EXT, force, style.WEIGHT)
+                above.text(0.0, 0.98, name, transform=above.transAxes, va="top")
+                below.set_ylabel(f"response$/{style.F_EXT}$")
+        panels[0, k].set_title(title, pad=2.0)
+        panels[3, k].set_xlabel(style.POSITION)
+    draw_key(panels[3, -1], "small loads")
+    return figure
+
+
+def _photoelastic(packings: list[xr.Dataset]) -> Figure:
+    """Side by side, of one material."""
+    figure, panels = style.figure(1, len(packings), width=6.2, height=2.95)
+    largest = max(float(slab["total_force"]) for slab in packings)
+    for axes, slab in zip(panels[0], packings, strict=True):
+        half = min(NEAR, 0.5 * float(slab.attrs["width"]))
+        photoelastic(slab, ax=axes, half_width=half, pixels=PIXELS, fringe=FRINGE * largest)
+        axes.set_title(packing(float(slab["polydispersity"])), pad=2.0)
+    return figure

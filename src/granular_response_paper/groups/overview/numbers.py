@@ -1,0 +1,22 @@
+"""What the overview shows, in a few numbers: the paper claims nothing of the picture as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from granular_response.state import OPEN
+
+
+def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
+    """Under the largest force: response at x = 0, opened contacts, and the largest unbalanced force of all states."""
+    found = {}
+    for name, slab in datasets.items():
+        status = slab["contact_status"].values
+        response = np.atleast_2d(slab["floor_response"].values)[-1]
+        found[f"{name}_response_at_centre"] = float(np.interp(0.0, slab["x"].values, response))
+        found[f"{name}_opened_contacts"] = float(np.sum((status[0] != OPEN) & (status[-1] == OPEN)))
+        found[f"{name}_force_residual"] = float(slab["certificate_force_residual"].max())
+    return found

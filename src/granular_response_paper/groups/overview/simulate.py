@@ -1,0 +1,73 @@
+"""Slabs under a growing force (Secs. IV and V), and packings as in the experiments with photoelastic disks (Sec. II.B).
+
+Each dataset holds the states of one slab as ``granular_response.plot`` draws them: at rest first, then under each
+force.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import xarray as xr
+
+from granular_response.scene import Scene
+from granular_response.solvers.small_loads import influence
+from granular_response.solvers.solution import solve_scene
+from granular_response.store.result import to_dataset, variable
+from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.overview.parameters import Parameters
+from granular_response_paper.tasks import computed
+
+#: What pictures of a result take of its dataset, and the part of its certificates that says whether it is balanced.
+KEPT = (
+    "state_load_factor", "position", "angle", "radius", "contact_disk", "contact_partner", "contact_status",
+    "contact_force", "wall_disk", "wall_index", "wall_force", "loaded_disk", "applied_load", "total_force",
+    "floor_response", "certificate_force_residual",
+)  # fmt: skip
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """``slab_K`` for each friction, ``photoelastic_K`` for each polydispersity."""
+    base, experiment = parameters.base, parameters.experiment
+    rough = {"contact.friction": experiment.friction, "wall.friction": experiment.friction}
+    disordered = {
+        "packing.lattice_constant": "touching-largest",
+        "protocol.integrator": "leapfrog",
+        "protocol.time_step": "auto",
+        "protocol.stop_kinetic_energy": experiment.stop_kinetic_energy,
+    }
+    tasks = {
+        f"slab_{k}": partial(respond, base.updated({"contact.friction": friction}), parameters.forces)
+        for k, friction in enumerate(parameters.frictions)
+    }
+    for k, delta in enumerate(experiment.polydispersities):
+        scene = base.updated({**rough, "packing.polydispersity": delta, **(disordered if delta else {})})
+        tasks[f"photoelastic_{k}"] = partial(states, scene, (experiment.force,))
+    return labelled(computed(tasks, "packings"))
+
+
+def states(scene: Scene, forces: tuple[float, ...], *, elastic: bool = False) -> xr.Dataset:
+    """The states of a slab at rest and under ``forces``; with the ``elastic_response`` if asked.
+
+    ``scene`` has one load, of unit force. Raises what ``solve_scene`` and ``influence`` raise.
+    """
+    solution = solve_scene(scene, load_factors=forces)
+    data = to_dataset(solution)
+    kept = data[[name for name in KEPT if name in data]].assign(
+        friction=variable((), scene.contact.friction, "coefficient of friction between disks"),
+        polydispersity=variable((), scene.packing.model_dump()["polydispersity"], "delta: spread of the radii"),
+    )
+    if not elastic:
+        return kept
+    disk = int(solution.problem.load_disk[0])
+    found = influence(solution.problem, solution.rest, data["floor_disk"].values, sliding="stick")[:, disk, 1]
+    return kept.assign(
+        elastic_response=variable(
+            "floor_disk", -found, "floor response to a small load, all contacts sticking, per applied force"
+        )
+    )
+
+
+def respond(scene: Scene, forces: tuple[float, ...]) -> xr.Dataset:
+    """:func:`states` with the elastic response."""
+    return states(scene, forces, elastic=True)

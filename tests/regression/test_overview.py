@@ -1,0 +1,40 @@
+"""The overview at reduced size: the elastic limit, the packings, and the animation beside the pictures."""
+
+import numpy as np
+import reduced
+from PIL import Image
+
+from granular_response_paper.groups.overview.numbers import numbers
+from granular_response_paper.pipeline import drawing
+
+
+def test_the_response_to_the_smallest_force_is_the_elastic_one(datasets):
+    for k in range(2):
+        slab = datasets[f"slab_{k}"]
+        assert float(slab["friction"]) == [0.0, 0.5][k]
+        elastic, response = slab["elastic_response"].values, slab["floor_response"].values
+        np.testing.assert_allclose(elastic.sum(), 1.0, atol=1e-9)  # the walls do not rub
+        assert np.abs(response[0] - elastic).max() < np.abs(response[-1] - elastic).max()
+
+
+def test_packings_are_those_of_the_experiment(datasets):
+    lattice, disordered = (datasets[f"photoelastic_{k}"] for k in range(2))
+    assert [float(one["polydispersity"]) for one in (lattice, disordered)] == [0.0, 0.01]
+    assert all(float(one["friction"]) == 0.94 and float(one["total_force"]) == 5.0 for one in (lattice, disordered))
+    assert np.ptp(lattice["radius"].values) == 0.0 < np.ptp(disordered["radius"].values)
+
+
+def test_numbers_are_those_of_the_last_states(datasets):
+    found = numbers(datasets)
+    assert max(value for name, value in found.items() if name.endswith("residual")) < 1e-8
+    assert found["slab_0_opened_contacts"] > 0
+
+
+def test_the_animation_stands_beside_its_picture(tmp_path, tmp_path_factory):
+    paths = drawing.draw("overview", reduced.stored("overview", tmp_path_factory), tmp_path)
+    assert tmp_path / "growing_force.gif" in paths and (tmp_path / "growing_force.png").exists()
+    with Image.open(tmp_path / "growing_force.gif") as image:
+        assert image.n_frames == 3
+    before = (tmp_path / "growing_force.gif").read_bytes()
+    drawing.draw("overview", reduced.stored("overview", tmp_path_factory), tmp_path)
+    assert (tmp_path / "growing_force.gif").read_bytes() == before
