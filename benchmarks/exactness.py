@@ -153,14 +153,14 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def main() -> None:
-    groups = {"slab": slab, "small": small, "slabs": slabs}
-    rows = {}
+    groups = {"small": small, "slabs": slabs, "slab": slab}
+    rows: dict[str, list[dict[str, Any]]] = {}
     for name, scenes in groups.items():
         rows[name] = []
         for label, description in scenes():
             rows[name].append(row(label, description))
             print(rows[name][-1], flush=True)
-    write(sys.argv[1], {**{f"{name}_summary": summary(found) for name, found in rows.items()}, "rows": rows})
+        write(sys.argv[1], {**{f"{name}_summary": summary(found) for name, found in rows.items()}, "rows": rows})
 
 
 if __name__ == "__main__":

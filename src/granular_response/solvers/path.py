@@ -56,8 +56,8 @@ class PathOptions:
     #: Newton steps with one factorisation, and part of the residual that a step may leave; two or three are usual.
     same_tangent: int = 6
     slow: float = 0.3
-    #: Force of a spring from the bend of its contact's way within an increment; what is left of it is smaller, and falls
-    #: as the third power of the length. Increments in which it is larger are shortened.
+    #: Force of a spring from the bend of its contact's way within an increment, above which that is shortened; what is
+    #: left of it is smaller, and falls as the third power of the length.
     bent: float = 1e-8
     #: Unbalanced force that is left at an event: the next increment takes it up.
     passing: float = 1e-10
@@ -371,10 +371,8 @@ class _Path:
                 continue
             bent = self._bent(point, rates, factor, trial)
             if bent > self.options.bent:
-                left, length = (
-                    abs(factor - point.factor) * min(0.5, 0.8 * (self.options.bent / bent) ** (1 / 3)),
-                    np.inf,
-                )
+                part = min(0.5, 0.8 * (self.options.bent / bent) ** (1 / 3))
+                left, length = part * abs(factor - point.factor), np.inf
                 continue
             self.record.work.increments += 1
             self.jump = self.options.jump / self.unit

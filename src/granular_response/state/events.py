@@ -8,8 +8,8 @@ from .box import WALL_MEANINGS
 
 #: What a contact does at an event.
 CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
-#: What happens to an equilibrium that ends: the motion of the disks leads to the next one, or one of several branches is
-#: taken. The first kind stands in files of earlier versions alone: an increment with fixed friction bounds led to it.
+#: What happens to an equilibrium that ends: the motion of the disks leads to the next one, or one of several branches
+#: is taken. The first kind stands in files of earlier versions alone: an increment with fixed friction bounds led on.
 LOST_EVENTS = ("stepped over", "jump", "bifurcation")
 
 
