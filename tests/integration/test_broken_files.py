@@ -45,7 +45,7 @@ def quoted(name: str) -> list[int]:
     """The numbers of the page in the paragraph or the point of a list that names the file."""
     page = (ROOT / "docs" / "trust.md").read_text(encoding="utf-8")
     (paragraph,) = (part for part in re.split(r"\n\n|\n\* ", page) if f"`tests/data/{name}`" in part)
-    return [int(number.replace(",", "")) for number in re.findall(r"(?<![\w.])\d[\d,]*(?= )", paragraph)]
+    return [int(number.replace(",", "")) for number in re.findall(r"(?<![\w.])\d[\d,]*(?=\s)", paragraph)]
 
 
 def test_of_ten_thousand_files_none_was_read_as_something_else():
