@@ -80,11 +80,12 @@ test: setup ## Run all tests, the linters and the type checker (JOBS=2 for two p
 fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each; `make test` tries the same 100)
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) "$(BIN)/python" -m pytest -m hypothesis -n $(JOBS)
 
-broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (half an hour)
-	"$(BIN)/python" tests/integration/broken_files.py $(BROKEN)
+broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
+	"$(BIN)/python" tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
 
 scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (hours)
-	"$(BIN)/python" -W ignore -m granular_response_paper.trials.random_scenes $(SCENES)
+	"$(BIN)/python" -W ignore -m granular_response_paper.trials.random_scenes $(SCENES) \
+	  --output tests/data/random_scenes.json
 
 coverage: setup ## Unit tests with compilation off, so that kernels count too
 	NUMBA_DISABLE_JIT=1 "$(BIN)/coverage" run -m pytest tests/unit

@@ -7,7 +7,9 @@ more time or memory than a file of this size may cost.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import json
 import os
 import pkgutil
 import resource
@@ -16,9 +18,10 @@ import struct
 import sys
 import tempfile
 import time
+import traceback
 import warnings
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,9 +36,12 @@ from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.export import export
 from granular_response.store.result import to_dataset
+from granular_response_paper.trials import counts
 
 #: Seconds of processor time and bytes of memory, beyond what the libraries take, of one command on one file.
 MOST_SECONDS, MOST_MEMORY = 30, 2 * 2**30
+#: Commands that one process runs in turn, and the file of what it says on standard error.
+BATCH, STDERR = 50, "stderr"
 #: Outcomes that must not be.
 WRONG = ("traceback", "killed", "several lines", "quiet change", "too much memory")
 #: What stands in the place of a number or a word.
@@ -178,35 +184,54 @@ def same(one: Packing | None, other: Packing) -> bool:
 
 
 def run(arguments: list[str], folder: Path) -> tuple[int, str, float]:
-    """Exit code (negative: the signal), standard error and seconds of a command in a forked process."""
-    out, started = folder / "stderr", time.monotonic()
+    """Exit code, standard error and seconds of a command in this process, one of :func:`worker`.
+
+    What takes too much time ends the process; what asks for too much memory gets none.
+    """
+    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    unlimited, hard = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, hard))
+    longest = int(time.process_time()) + MOST_SECONDS
+    resource.setrlimit(resource.RLIMIT_CPU, (longest, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+    signal.alarm(4 * MOST_SECONDS)  # for what waits
+    os.ftruncate(2, 0)
+    sys.argv = ["granular-response", *arguments]
+    started, code = time.monotonic(), 0
+    try:
+        with contextlib.chdir(folder), warnings.catch_warnings():
+            cli.main()
+    except SystemExit as end:
+        code = end.code if isinstance(end.code, int) else int(end.code is not None)
+    except BaseException:
+        traceback.print_exc()
+        code = 1
+    sys.stderr.flush()
+    resource.setrlimit(resource.RLIMIT_AS, (unlimited, hard))
+    return code, (folder / STDERR).read_text(errors="replace"), time.monotonic() - started
+
+
+def worker(indices: range, seed: int, files: list[File], folder: Path) -> tuple[list[Trial], int]:
+    """Trials in a forked process, until one ends it; and how it ended, negative: by which signal."""
+    kept = folder / "trials"
     child = os.fork()
     if child == 0:
-        code = 1
+        for stream, name in ((1, Path(os.devnull)), (2, folder / STDERR)):
+            os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o644), stream)
+        sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)  # noqa: SIM115
         try:
-            os.chdir(folder)
-            for stream, name in ((1, os.devnull), (2, str(out))):
-                os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644), stream)
-            sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)  # noqa: SIM115
-            used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-            resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, used + MOST_MEMORY))
-            resource.setrlimit(resource.RLIMIT_CPU, (MOST_SECONDS, MOST_SECONDS))
-            signal.alarm(4 * MOST_SECONDS)  # for what waits
-            sys.argv = ["granular-response", *arguments]
-            cli.main()
-            code = 0
-        except SystemExit as end:
-            code = end.code if isinstance(end.code, int) else int(end.code is not None)
+            with kept.open("w") as stream:
+                for index in indices:
+                    json.dump(astuple(attempt(np.random.default_rng([seed, index]), files, folder)), stream)
+                    print(file=stream, flush=True)
+            os._exit(0)
         except BaseException:
-            import traceback
-
             traceback.print_exc()
-        finally:
-            sys.stderr.flush()
-            os._exit(code)
-    _, status, _ = os.wait4(child, 0)
-    code = os.waitstatus_to_exitcode(status)
-    return code, out.read_text(errors="replace"), time.monotonic() - started
+            os._exit(1)
+    _, status = os.waitpid(child, 0)
+    ended = os.waitstatus_to_exitcode(status)
+    if ended > 0:  # of the trials themselves
+        raise RuntimeError((folder / STDERR).read_text())
+    return [Trial(*json.loads(line)) for line in kept.read_text().splitlines()], ended
 
 
 def outcome(code: int, said: str) -> str:
@@ -268,21 +293,36 @@ def attempts(count: int, seed: int, folder: Path, *, show: bool = False) -> list
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)  # once, and not in every process
     files = originals(folder)
-    trials = []
-    for index in range(count):
-        g = np.random.default_rng([seed, index])
-        trial = attempt(g, files, folder)
-        trials.append(trial)
-        if show and trial.outcome in WRONG:
-            print(f"{index}: {trial.what}: {trial.outcome}: {trial.said.strip().splitlines()[-1:]}", flush=True)
+    trials: list[Trial] = []
+    while len(trials) < count:
+        begin = len(trials)
+        made, ended = worker(range(begin, min(begin + BATCH, count)), seed, files, folder)
+        trials += made
+        if ended < 0:
+            trials.append(Trial("by signal: any", "killed", str(ended), 0.0))
+        for index, trial in enumerate(trials[begin:], start=begin):
+            if show and trial.outcome in WRONG:
+                print(f"{index}: {trial.what}: {trial.outcome}: {trial.said.strip().splitlines()[-1:]}", flush=True)
     return trials
 
 
+def by_kind(trials: list[Trial]) -> dict[str, Counter[str]]:
+    """Counts of outcomes by format and command, such as ``.csv: run``."""
+    found: dict[str, Counter[str]] = {}
+    for trial in trials:
+        done, _, command = trial.what.partition(": ")
+        found.setdefault(f"{done.partition(' ')[0]}: {command}", Counter())[trial.outcome] += 1
+    return found
+
+
 if __name__ == "__main__":
+    given = counts.arguments("Cut and change files of all formats, and see what reads them.", 0)
     with tempfile.TemporaryDirectory() as place:
-        made = attempts(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0, Path(place), show=True)
+        made = attempts(given.number, given.seed, Path(place), show=True)
     for name, number in sorted(Counter(trial.outcome for trial in made).items()):
         print(f"{number:6} {name}")
     longest = max(made, key=lambda trial: trial.seconds)
     print(f"longest {longest.seconds:.1f} s: {longest.what}")
+    if given.output is not None:
+        counts.write(given.output, given.number, given.seed, by_kind(made))
     sys.exit(any(trial.outcome in WRONG for trial in made))

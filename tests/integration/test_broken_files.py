@@ -1,9 +1,16 @@
 """Files cut and changed at random, the same ones in every run; ``make broken`` tries many more."""
 
+import re
 from collections import Counter
+from pathlib import Path
 
 import broken_files
 import pytest
+
+from granular_response.inputs import read_json
+from granular_response_paper.trials import counts, random_scenes
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -13,3 +20,43 @@ def test_every_broken_file_is_refused_or_taken_for_what_it_says(tmp_path, seed):
     counts = Counter(trial.outcome for trial in trials)
     assert set(counts) == {"refused", "taken"} and counts["refused"] > counts["taken"]
     assert all(trial.said.startswith("granular-response: ") for trial in trials if trial.said)
+
+
+def test_a_command_that_ends_its_process_is_counted_and_the_others_go_on(tmp_path, monkeypatch):
+    whole = broken_files.attempt
+
+    def ends(generator, files, folder):
+        trial = whole(generator, files, folder)
+        if generator.random() < 0.3:
+            broken_files.os.kill(broken_files.os.getpid(), broken_files.signal.SIGKILL)
+        return trial
+
+    alone = broken_files.attempts(8, 3, tmp_path)
+    monkeypatch.setattr(broken_files, "attempt", ends)
+    trials = broken_files.attempts(8, 3, tmp_path)
+    killed = [trial.outcome == "killed" for trial in trials]
+    assert 0 < sum(killed) < 8
+    assert [t.what for t, k in zip(trials, killed, strict=True) if not k] == [
+        t.what for t, k in zip(alone, killed, strict=True) if not k
+    ]
+
+
+def quoted(name: str) -> list[int]:
+    """The numbers of the page in the paragraph or the point of a list that names the file."""
+    page = (ROOT / "docs" / "trust.md").read_text(encoding="utf-8")
+    (paragraph,) = (part for part in re.split(r"\n\n|\n\* ", page) if f"`tests/data/{name}`" in part)
+    return [int(number.replace(",", "")) for number in re.findall(r"(?<![\w.])\d[\d,]*(?=\s)", paragraph)]
+
+
+def test_of_ten_thousand_files_none_was_read_as_something_else():
+    found = counts.totals(ROOT / "tests" / "data" / "broken_files.json")
+    assert set(found) == {"refused", "taken"} and sum(found.values()) >= 10_000
+    assert quoted("broken_files.json")[:3] == [sum(found.values()), found["refused"], found["taken"]]
+
+
+def test_no_random_scene_was_solved_wrongly():
+    path = ROOT / "tests" / "data" / "random_scenes.json"
+    found = counts.totals(path)
+    assert set(found) <= set(random_scenes.OUTCOMES) - {"wrong"}
+    assert set(read_json(path)["outcomes"]) == set(random_scenes.KINDS)
+    assert quoted("random_scenes.json")[:2] == [sum(found.values()), found["certified"]]

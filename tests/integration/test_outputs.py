@@ -176,6 +176,19 @@ def test_a_locale_of_plain_letters_and_a_home_that_is_not_there(inputs, tmp_path
     assert (finished.returncode, finished.stderr.count("\n")) == (2, 1), finished.stderr
 
 
+@pytest.mark.parametrize(
+    "poor",
+    ["umask 077; ulimit -n 24; export TERM=dumb COLUMNS=1; unset HOME; COMMAND <&-", "COMMAND >&- 2>&-",
+     "COMMAND | head -c 1"],
+    ids=["little of everything", "no streams", "nobody listens"],
+)  # fmt: skip
+def test_poor_surroundings(inputs, poor):
+    command = f"{sys.executable} -m granular_response show result.nc"
+    done = subprocess.run(["bash", "-c", poor.replace("COMMAND", command)], cwd=inputs, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert bool(done.stdout) == (">&-" not in poor)
+
+
 def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
     (tmp_path / "huge.yaml").write_text("packing: {kind: slab, layers: 10000, disks_per_row: 200}\n")
     little = 9 * 10**9

@@ -91,6 +91,22 @@ def test_killed_runs_leave_whole_results_or_none(tmp_path, processes):
     killed_at_random(processes, tmp_path, ["run", "scene.yaml", "-o", "result.nc"], tmp_path / "result.nc", KILLS)
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_run_that_is_told_to_end_leaves_the_old_result(tmp_path, processes, number):
+    endless = {**SCENE, "protocol": {"method": "dynamics", "stop_kinetic_energy": 1e-30, "maximum_steps": 10**9}}
+    (tmp_path / "scene.yaml").write_text(yaml.safe_dump(endless))
+    (tmp_path / "result.nc").write_bytes(b"old")
+    run = processes.Process(target=command, args=(str(tmp_path), ["run", "scene.yaml", "-o", "result.nc"]))
+    run.start()
+    time.sleep(2.0)
+    assert run.is_alive()
+    os.kill(run.pid, number)
+    run.join(60.0)
+    assert run.exitcode not in (0, None)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["result.nc", "scene.yaml"]
+    assert (tmp_path / "result.nc").read_bytes() == b"old"
+
+
 def test_killed_studies_leave_whole_datasets_or_none(tmp_path, processes):
     parameters = yaml.safe_load((ROOT / "params.yaml").read_text())
     parameters["theory"].update(points=11, half_width=1.0, depths=[10.0])

@@ -138,6 +138,8 @@ def spoil(data: xr.Dataset, name: str, value: float) -> xr.Dataset:
 DAMAGE = {
     "a missing variable": (lambda d: d.drop_vars("wall_index"), "variable wall_index is missing"),
     "no radius": (lambda d: d.drop_vars("radius"), "variable radius is missing"),
+    "no force vectors": (lambda d: d.drop_vars("wall_force"), "variable wall_force is missing"),
+    "an endless force": (lambda d: spoil(d, "contact_force", np.inf), "variable contact_force: must be finite"),
     "a partner that is not there": (lambda d: spoil(d, "contact_partner", 99), "contact_partner: holds 99, must"),
     "a negative disk": (lambda d: spoil(d, "loaded_disk", -1), "loaded_disk: holds -1"),
     "no such wall": (lambda d: spoil(d, "wall_index", 3), "wall_index: holds 3, must be from 0 to 2"),

@@ -9,13 +9,15 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import granular_response as gr
-from granular_response.scene import Scene
+from granular_response.scene import FilePacking, Scene, SceneError
 from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
-from granular_response.store.export import ExportError, contact_force_sums, export
-from granular_response.store.result import ResultError, to_dataset
+from granular_response.store.checked import read_result
+from granular_response.store.export import SUFFIXES, ExportError, contact_force_sums, export
+from granular_response.store.result import ResultError, solution_from, to_dataset
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*no springs of friction")
 
@@ -263,3 +265,113 @@ def test_a_series_by_vtk(result, data, tmp_path, pyvista):
         np.testing.assert_array_equal(mesh.points[:n, :2], data["position"][index])
         stress = mesh.point_data["added_stress_zz"][:n]
         assert np.all(stress == 0.0) if index == 0 else stress.max() > 0.05
+
+
+#: What a table of the user guide says of a format.
+QUANTITIES = ("place, radius", "mass", "width, sides", "angle", "contact forces", "springs of friction")
+
+
+def carried() -> dict[str, dict[str, str]]:
+    """The table of the user guide: for each ending of a name its columns."""
+    guide = (Path(__file__).parents[2] / "docs" / "own-scenes.md").read_text(encoding="utf-8")
+    head, _, *rows = re.search(r"^\| file \| states \|(?:.*\n\|)*.*", guide, re.MULTILINE)[0].splitlines()
+    cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in (head, *rows)]
+    return {
+        suffix: dict(zip(cells[0][1:], row[1:], strict=True))
+        for row in cells[1:]
+        for suffix in re.findall(r"`([^`]+)`", row[0])
+    }
+
+
+@pytest.fixture(scope="module")
+def periodic(tmp_path_factory) -> Path:
+    """Disks of several sizes and masses that have turned and bear friction: no two quantities have the same values."""
+    folder = tmp_path_factory.mktemp("carried")
+    (folder / "disks.csv").write_text("x,z,radius,mass\n1,1,1,1\n3,1,1,2\n5.2,1,0.9,1.5\n2,2.7,1,1.2\n4,2.7,0.95,3\n")
+    packing = {"kind": "file", "path": "disks.csv", "width": 6.4, "sides": "periodic"}
+    load = {"disk": 3, "force": [0.05, -1.0]}
+    scene = Scene.from_dict(
+        {"packing": packing, "contact": {"friction": 0.5}, "wall": {"friction": 0.5}, "loads": [load]}, folder=folder
+    )
+    store.write(folder / "result.nc", to_dataset(solve_scene(scene)))
+    return folder / "result.nc"
+
+
+def quantities(state: xr.Dataset) -> dict[str, np.ndarray]:
+    """The numbers of one state, by column of the table."""
+    forces = np.concatenate([state["contact_normal_force"].values, state["contact_tangential_force"].values])
+    springs = np.concatenate([state["contact_spring"].values, state["wall_spring"].values])
+    found = (
+        np.concatenate([state["position"].values.ravel(), state["radius"].values]),
+        state["mass"].values, np.array([state.attrs["width"]]), state["angle"].values, forces, springs,
+    )  # fmt: skip
+    return {name: values[values != 0.0] for name, values in zip(QUANTITIES, found, strict=True)}
+
+
+def numbers_in(path: Path) -> np.ndarray:
+    """All numbers in a file, and in those of a series."""
+    if path.suffix == ".pvd":
+        return np.concatenate([numbers_in(one) for one in path.parent.glob(f"{path.stem}-*.vtu")])
+    if path.suffix == ".vtu":
+        arrays = read_vtu(path)
+        for name in ("connectivity", "offsets", "types", "contact_force"):  # at rest, forces on disks are their weights
+            del arrays[name]
+        return np.concatenate([values.ravel().astype(float) for values in arrays.values()])
+    if path.suffix == ".gsd":
+        chunks = [{name: c for name, c in frame.items() if c.dtype.kind == "f"} for frame in read_gsd(path).values()]
+        turned = [
+            2.0 * np.arctan2(c[:, 3], c[:, 0])
+            for frame in chunks
+            if (c := frame.get("particles/orientation")) is not None
+        ]
+        sizes = [0.5 * frame["particles/diameter"].ravel() for frame in chunks if "particles/diameter" in frame]
+        return np.concatenate([*(c.ravel().astype(float) for frame in chunks for c in frame.values()), *turned, *sizes])
+    words = re.findall(r"(?<![\w.])-?\d+\.\d+(?:e-?\d+)?", path.read_text())
+    numbers = np.array(words, float)
+    return np.concatenate([numbers, 0.5 * numbers]) if path.suffix in (".data", ".lmp") else numbers  # diameters
+
+
+def holds(numbers: np.ndarray, values: np.ndarray) -> bool:
+    """Whether every value is among the numbers, in single precision."""
+    near = np.abs(numbers[:, None] - values) <= 2e-7 * np.abs(values).max()
+    return bool(values.size and near.any(axis=0).all())
+
+
+def comes_back(result: Path, path: Path, name: str) -> bool:
+    """Whether reading the file gives this quantity of the last state."""
+    last = store.read(result)[""].isel(state=-1)
+    if path.suffix == ".nc":
+        again = to_dataset(solution_from(read_result(path), folder=path.parent)).isel(state=-1)
+        return np.array_equal(quantities(again)[name], quantities(last)[name])
+    try:
+        packing = FilePacking(path=str(path), sides="periodic").build()
+    except SceneError:
+        return False
+    scale = float(last["radius"].mean())
+    again = {
+        "place, radius": (np.column_stack([packing.position, packing.radius]) * scale,
+                          np.column_stack([np.mod(last["position"].values[:, 0], last.attrs["width"]),
+                                           last["position"].values[:, 1], last["radius"].values])),
+        "mass": (packing.mass * float(last["mass"].mean()), last["mass"].values),
+        "width, sides": (packing.width * scale, last.attrs["width"]),
+    }  # fmt: skip
+    return name in again and packing.periodic and np.allclose(*again[name], rtol=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore:.*read again")
+@pytest.mark.parametrize("ending", [".nc", *SUFFIXES])
+def test_every_format_carries_what_the_user_guide_says(periodic, tmp_path, ending):
+    assert set(carried()) == {".nc", *SUFFIXES}
+    said = carried()[ending]
+    path = periodic if ending == ".nc" else export(periodic, tmp_path / f"disks{ending}")
+    states = store.read(periodic)[""]
+    first, last = (quantities(states.isel(state=k)) for k in (0, -1))
+    numbers = np.zeros(0) if ending == ".nc" else numbers_in(path)
+    found = {}
+    for name in QUANTITIES:
+        back = comes_back(periodic, path, name)
+        found[name] = "back" if back else "out" if holds(numbers, last[name]) else "–"
+    frames = [holds(numbers, values["place, radius"]) for values in (first, last)]
+    known = {"[True, True]": "all", "[False, True]": "one", "[False, False]": "–"}
+    assert found == {name: said[name] for name in QUANTITIES}
+    assert said["states"] == ("all" if ending == ".nc" else known[str(frames)])

@@ -1,6 +1,7 @@
 """Scenes at the edge of what can be solved: an answer, or the line that says what is wrong with the scene."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,10 +10,10 @@ from small_scenes import free_disks, scene
 import granular_response
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers import solution as solving
-from granular_response.solvers.dynamics import Dynamics, DynamicsError
+from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop
 from granular_response.solvers.equilibrium import EquilibriumError, finish
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.settle import NotSettled
+from granular_response.solvers.settle import CROSSING, PROTOCOL, NotSettled, settle
 from granular_response.solvers.solution import rest_state, solve_scene
 from granular_response.solvers.stability import OPTIONS, negative_modes, unstable_direction
 from granular_response.solvers.system import StaticSystem
@@ -121,3 +122,68 @@ def test_a_response_that_is_rounding_says_so(force, stiffness, said):
         warnings.simplefilter("always")
         granular_response.solve(scene)
     assert any(line in str(warning.message) for warning in caught) is said
+
+
+def counted_steps(monkeypatch) -> list[int]:
+    """The time steps that dynamics takes from here on, a number for each call."""
+    taken: list[int] = []
+    advance = Dynamics._advance
+
+    def counting(self, steps):
+        before = self.steps
+        advance(self, steps)
+        taken.append(self.steps - before)
+
+    monkeypatch.setattr(Dynamics, "_advance", counting)
+    return taken
+
+
+def test_maximum_steps_is_the_most_that_a_stage_takes(tmp_path, monkeypatch):
+    """Between two tries of statics, and from an equilibrium that was left, steps were not counted."""
+    (tmp_path / "tower.csv").write_text("x,z,radius\n1.5,0.999999,1\n1.5,2.9999979999999997,1\n")
+    tower = {
+        "packing": {"kind": "file", "path": "tower.csv", "width": 3.0},
+        "contact": {"friction": 1.0, "normal_stiffness": 1e6},
+        "wall": {"friction": 1.0},
+        "loads": [],
+        "protocol": {"time_step": "auto", "maximum_steps": 20000},
+    }
+    taken = counted_steps(monkeypatch)
+    with pytest.raises(
+        NotSettled, match=r"within protocol\.maximum_steps = 20000 .*: the equilibrium found is unstable$"
+    ):
+        solve_scene(Scene.from_dict(tower, folder=tmp_path))
+    assert 0 < sum(taken) <= 20000
+
+
+@pytest.mark.parametrize("how", [PROTOCOL, CROSSING])
+def test_every_further_try_of_statics_has_what_is_left_of_the_steps(monkeypatch, how):
+    problem = Problem.from_scene(scene(contact__friction=0.3, loads=[]))
+    start, taken = rest_state(problem), counted_steps(monkeypatch)
+    often = replace(how, tries=100, wait=0.1 if how.wait else 0.0)
+    with pytest.raises(NotSettled):
+        settle(problem, start, often, Stop(1e-9, maximum_steps=3000), what="gravity", accept=lambda state: False)
+    assert len(taken) > 5 and 0 < sum(taken) <= 3000
+
+
+@pytest.mark.parametrize(
+    ("light", "contact", "steps"),
+    [
+        # on the tip of the first one: its own force tips it over, a hundred-thousandth of any other stiffness
+        ("2.0,2.974999995,1.0,1e-7", {"normal_stiffness": 30.0, "damping_ratio": 0.002}, 400_000),
+        # in mid-air: out of balance by its whole weight, which is less than any rounding of the others
+        ("4.0,5.0,1.0,1e-12", {"normal_stiffness": 30.0, "damping_ratio": 0.0}, 200_000),
+    ],
+    ids=["on a tip", "in mid-air"],
+)
+def test_no_certificate_for_a_light_disk_that_does_not_stay(tmp_path, light, contact, steps):
+    (tmp_path / "light.csv").write_text(f"x,z,radius,mass\n2.0,0.975,1.0,1.0\n6.0,0.975,1.0,1.0\n{light}\n")
+    described = {
+        "packing": {"kind": "file", "path": "light.csv", "width": 8.0},
+        "contact": {"friction": 0.0, **contact},
+        "wall": {"friction": 0.0},
+        "loads": [{"disk": 1, "force": [0.0, -0.5]}],
+        "protocol": {"maximum_steps": steps},
+    }
+    with pytest.raises(NotSettled, match="did not come to rest under gravity"):
+        solve_scene(Scene.from_dict(described, folder=tmp_path))

@@ -133,6 +133,28 @@ def test_random_scenes_are_certified_or_say_clearly_what_is_wrong():
             assert "\n" not in trial.message
 
 
+@pytest.mark.parametrize(
+    ("changes", "of"),
+    [
+        ({"protocol": {"stop_kinetic_energy": 1e-5}}, range(1, 5)),
+        ({"protocol": {"stop_kinetic_energy": 1.0}}, range(5, 9)),
+        ({"contact": {"normal_stiffness": 4e11}}, range(9, 12)),
+    ],
+    ids=["warm start", "hot start", "nearly rigid"],
+)
+def test_statics_from_far_away_and_between_hardly_any_digits_is_not_wrong(tmp_path, changes, of):
+    """Handed over while disks still move, Newton goes far; at such a stiffness a last digit of a place is a force."""
+    for seed in of:
+        described, table = random_scenes.draw(np.random.default_rng(seed), 5000)
+        for section, values in changes.items():
+            described[section] |= values
+        described["protocol"] |= {"static_finish": True, "time_step": "auto"}
+        if table is not None:
+            random_scenes.write_table(tmp_path / "packing.csv", table)
+        trial = random_scenes.attempt(described, str(tmp_path))
+        assert (trial.outcome != "wrong", trial.message) == (True, trial.message)
+
+
 DESCRIPTION = {
     "packing": {"kind": "slab", "layers": 3, "disks_per_row": 4},
     "contact": {"friction": 0.3},

@@ -115,7 +115,8 @@ class Protocol(Description):
     )
     maximum_steps: Count = Field(
         default=5_000_000,
-        description="Most time steps that one stage, gravity or load, may take to reach rest.",
+        description="Most time steps that one stage, gravity or load, may take to reach rest; on a path, each motion "
+        "from a lost equilibrium to the next one.",
     )
 
 

@@ -30,6 +30,8 @@ from .result import (
 )
 
 _REAL, _WHOLE, _TEXT = "fiu", "iu", "UO"
+#: What names of variables of contacts begin with, and their dimension.
+_CONTACTS = {"contact": "contact", "wall": "wall_contact"}
 #: Variables that every result has: dimensions and kinds of numbers.
 _NEEDED: dict[str, tuple[tuple[str, ...], str]] = {
     "position": (("state", "disk", "axis"), _REAL),
@@ -50,7 +52,7 @@ _NEEDED: dict[str, tuple[tuple[str, ...], str]] = {
     "wall_index": (("wall_contact",), _WHOLE),
     **{
         f"{prefix}_{name}": (("state", dimension), _WHOLE if name == "status" else _REAL)
-        for prefix, dimension in (("contact", "contact"), ("wall", "wall_contact"))
+        for prefix, dimension in _CONTACTS.items()
         for name in ("overlap", "normal_force", "tangential_force", "spring", "status")
     },
 }
@@ -111,6 +113,9 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
         dataset = dataset.rename(load_factor="state_load_factor")
     for name, (dimensions, kinds) in _NEEDED.items():
         _check_variable(dataset, name, dimensions, kinds)
+    if not older:  # else made from the states
+        for prefix, dimension in _CONTACTS.items():
+            _check_variable(dataset, f"{prefix}_force", ("state", dimension, "axis"), _REAL)
     states, disks = dataset.sizes["state"], dataset.sizes["disk"]
     if not states or not disks or dataset.sizes["axis"] != 2 or dataset.sizes["component"] != 3:
         _fail("must have a state, a disk, 2 axes and 3 components of loads")

@@ -28,6 +28,7 @@ from granular_response.state import FLOOR, State
 from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost
+from granular_response_paper.trials import counts
 from granular_response_paper.trials.audit import Audit, ContactRule, audit
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
@@ -412,25 +413,29 @@ def contradiction(state: State, found: Audit, rounding: float) -> str:
     return ""
 
 
-#: Steps of a scene of the command below.
+#: Steps of a scene of the command below, and what its scenes are in turn.
 _STEPS = 400_000
+KINDS = ("any scene", "unlike disks")
 
 
 def _either(index: int, entropy: int) -> Trial:
     return run(_STEPS, entropy, index, unlike=index % 2 == 1)
 
 
-def main(number: int, entropy: int) -> int:
+def main(number: int, seed: int, output: Path | None = None) -> int:
     """Try ``number`` scenes; prints what is wrong with which and the counts of the outcomes. 1 if any is wrong."""
-    trials = map_tasks(partial(_either, entropy=entropy), range(number), what="scenes")
+    trials = map_tasks(partial(_either, entropy=seed), range(number), what="scenes")
     for index, trial in enumerate(trials):
         if trial.outcome == "wrong":
             print(f"scene {index}: {trial.message}")
-    for unlike, kind in enumerate(("any scene", "unlike disks")):
-        counts = Counter(trial.outcome for trial in trials[unlike::2])
-        print(f"{kind}: " + ", ".join(f"{count} {outcome}" for outcome, count in counts.most_common()))
+    found = {kind: Counter(trial.outcome for trial in trials[k::2]) for k, kind in enumerate(KINDS)}
+    for kind, outcomes in found.items():
+        print(f"{kind}: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.most_common()))
+    if output is not None:
+        counts.write(output, number, seed, found)
     return int(any(trial.outcome == "wrong" for trial in trials))
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 20260101))
+    given = counts.arguments("Solve and check random scenes.", 20260101)
+    sys.exit(main(given.number, given.seed, given.output))
