@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from claims_data import STARTS, dataset, everything, pile_study
+from claims_data import FORCES, STARTS, dataset, everything, pile_study
 
 from granular_response.state import SLIDING, STICKING
 from granular_response.store import files as store
@@ -221,11 +221,15 @@ ANYWHERE = np.concatenate(
     ]
 )
 
-#: The literal start renamed to one wider than the largest disks need, with a dip in both slabs.
+#: The literal start renamed to one wider than the largest disks need, with two peaks in all means of both slabs.
 WIDER = (
-    *(put(PHASES, name, "lattice_constant", [STARTS[0]] * 12 + ["2.5"] * 2) for name in ("shapes",)),
-    start(PHASES, "shapes", "shape_interval", "2.5", 0.5),
+    put(PHASES, "starts", "lattice_constant", [STARTS[0]] * 12 + ["2.5"] * 2),
+    start(PHASES, "starts", "two_peaked_means_interval", "2.5", 1.0),
 )
+
+#: Two peaks, and visible dips at x = 0, that come the earlier the larger the friction.
+TURNED = put(FRICTION, "response", "double_peaked", np.arange(143) > [[20], [10], [5]])
+EARLY_DIPS = put(FRICTION, "response", "central_dip", 0.01 * (FORCES - [[11.0], [8.0], [5.0]]))
 
 SIZES = ("opened_contacts", "teardrop_depth", "teardrop_width")
 
@@ -249,8 +253,10 @@ PLANTED = [
     ("F1", moved(FRICTION, "first_opening", 0.0, 50.0, NAN), "contradicted"),
     ("F2", moved(FRICTION, "first_opening", 0.2, 3.9, 4.3), "undecided"),
     ("F3", moved(FRICTION, "first_opening", 1.0, 3.0, 3.1), "contradicted"),
-    ("F4a", moved(SLAB, "crossover", 0.0, 50.0, NAN), "contradicted"),
-    ("F4b", moved(SLAB, "crossover", 0.0, 3.7, 3.8), "contradicted"),
+    ("F4a", moved(SLAB, "crossover", 0.0, 50.0, NAN), DEPENDS),
+    ("F4a", both(moved(SLAB, "crossover", 0.0, 50.0, NAN), put(SLAB, "response", "central_dip", 0.0)), "undecided"),
+    ("F4b", moved(SLAB, "crossover", 0.0, 3.7, 3.8), DEPENDS),
+    ("F4b", both(moved(SLAB, "crossover", 0.0, 3.7, 3.8), put(SLAB, "response", "central_dip", 0.0)), "undecided"),
     ("F5a", tilted, "contradicted"),
     ("F5b", put(SLAB, "response", "teardrop_depth", [5.0, 1.0, 12.0]), "contradicted"),
     ("F6", scaled(SLAB, "regions", "teardrop_depth", [[1.0], [0.4], [1.0], [1.0]]), "contradicted"),
@@ -272,7 +278,9 @@ PLANTED = [
     ("R2a", put(FRICTION, "response", "double_peaked", 1), DEPENDS),
     ("R2a", two_peaks_at_15("ramp_80"), DEPENDS),
     ("R2b", put(FRICTION, "response", "half_maximum_width", 28.0), "contradicted"),
-    ("R3a", moved(FRICTION, "crossover", 0.2, 12.0, 12.1), "contradicted"),
+    ("R3a", moved(FRICTION, "crossover", 0.2, 12.0, 12.1), DEPENDS),
+    ("R3a", put(FRICTION, "response", "central_dip", FORCES / 1e3), DEPENDS),
+    ("R3a", both(moved(FRICTION, "crossover", 0.2, 12.0, 12.1), EARLY_DIPS), "contradicted"),
     ("R3b", moved(FRICTION, "reaches_floor", 0.2, 12.0, 12.1), "contradicted"),
     ("R4a", moved(FRICTION, "third_peak", 0.2, 80.0, NAN), "contradicted"),
     ("R4b", scaled(FRICTION, "response", "third_peak_prominence", 5.0), "contradicted"),
@@ -284,7 +292,8 @@ PLANTED = [
     ("R7", put(FRICTION, "large_forces", "asymmetry_sign", 1), "contradicted"),
     ("R8a", moved(FRICTION, "reaches_floor", 1.0, 30.0, 31.0), "contradicted"),
     ("R8b", put(FRICTION, "response", "double_peaked", [[0]] * 2 + [[1]]), "contradicted"),
-    ("R9", put(FRICTION, "response", "double_peaked", np.arange(143) > [[20], [10], [5]]), "contradicted"),
+    ("R9", TURNED, DEPENDS),
+    ("R9", both(TURNED, EARLY_DIPS), "contradicted"),
     ("R10", scaled(FRICTION, "response", "opened_contacts", [[1.0], [5.0], [1.0]]), "contradicted"),
     ("R11", moved(FRICTION, "reaches_floor", 0.2, 3.0, 3.1), "contradicted"),
     ("K1a", moved("stiffness_ratio_crossover", "two_peaks_end", 10.0, 0.4, 0.41), DEPENDS),
@@ -311,8 +320,10 @@ PLANTED = [
     ("P3", put("pile_dip", "piles", "central_width", [16.0, 16.0, 30.0]), DEPENDS),
     ("T1a", scaled("torque", "reach", "force_change", 0.1), "contradicted"),
     ("T1b", put("torque", "reach", "stress_change", 0.3), DEPENDS),
-    ("D1", put(PHASES, "shapes", "shape_interval", [-0.1, 0.0, 0.1]), "undecided"),
-    ("D1", start(PHASES, "shapes", "shape_interval", STARTS[1], -0.2), DEPENDS),
+    ("D1", put(PHASES, "starts", "two_peaked_means_interval", [0.01, 0.1, 0.3]), "undecided"),
+    ("D1", start(PHASES, "starts", "two_peaked_means_interval", STARTS[1], 0.01), DEPENDS),
+    ("D1", put(PHASES, "starts", "two_peaked_means_interval", 0.99), "contradicted"),
+    ("D1", put(PHASES, "starts", "dip", -0.1), "reproduced"),  # of all packings: quoted, not judged
     ("D2", put(PHASES, "linear_range", "response_at_centre", SOME), "undecided"),
     ("D2", put(PHASES, "linear_range", "response_at_centre", LONGER), "contradicted"),
     ("D3a", put(PHASES, "crossovers", "draws", alternating(0.1, 90.0)), "undecided"),

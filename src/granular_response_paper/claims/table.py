@@ -151,10 +151,15 @@ def _row(entry: Entry) -> dict[str, Any]:
         "value": None,
         "interval": None,
         "interval_kind": "",
+        "tests": [],
+        "samples": None,
         "readings": [],
     }
     if finding:
         row.update(_interval(finding.quantity))
+        asked = [c.found for reading in finding.interpretations for c in reading.conditions]
+        row["tests"] = list(dict.fromkeys(one.tested for one in asked))
+        row["samples"] = [min(one.samples for one in asked), max(one.samples for one in asked)]
         row["readings"] = [
             {
                 "name": reading.name,
@@ -166,6 +171,8 @@ def _row(entry: Entry) -> dict[str, Any]:
                         "asked": c.asked,
                         "outcome": c.outcome,
                         "words": list(c.words),
+                        "test": c.found.tested,
+                        "samples": c.found.samples,
                         **_interval(c.found),
                     }
                     for c in reading.conditions

@@ -32,6 +32,7 @@ from granular_response_paper.survey.crossover import (
     Singles,
     cross,
     folded,
+    part_of_samples,
     quantiles,
     singles,
     weights,
@@ -86,7 +87,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found["medians"] = _medians(found["crossovers"], single, collapsed)
     packings = stored["packings"]
     found["packings"] = packings[[name for name in packings.data_vars if str(name) != "processor_time"]]
-    found["starts"] = _starts(source, parameters, found["shapes"], packings)
+    found["starts"] = _starts(source, parameters, found["shapes"], packings, x)
     small = survey.read(Path(parameters.survey), [parameters.linear_range])["ensembles"]
     both_sides = np.concatenate([-x[:0:-1], x])
     found["linear_range"] = _linear_range(small, parameters.linear_width, both_sides)
@@ -116,8 +117,13 @@ def _medians(usual: xr.Dataset, table: Sequence[Sequence[Singles]], collapsed: N
     return data.assign(collapsed=variable("case", collapsed, "packings that collapse along their load paths"))
 
 
-def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset) -> xr.Dataset:
-    """Every start of a polydispersity under one force: its dip, and what touches at rest."""
+def _starts(
+    source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset, x: FloatArray
+) -> xr.Dataset:
+    """Every start of a polydispersity under one force: its dip, means of a few that have two, and what touches at rest.
+
+    The few are the largest of ``numbers``.
+    """
     chosen, steps = [], []
     for one in parameters.compared:
         alike = np.isclose(source["polydispersity"].values, one.polydispersity)
@@ -131,6 +137,15 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
     order = [case for case, _, _ in chosen]
     along = {"case": xr.DataArray(order, dims="case"), "step": xr.DataArray(steps, dims="case")}
     at_force = shapes[["shape", "shape_interval"]].isel(along)
+    parts = np.array(
+        [
+            [
+                _two_peaked_parts(source, parameters, case, step, x, width)
+                for case, step in zip(order, steps, strict=True)
+            ]
+            for width in parameters.widths
+        ]
+    )
     drawn = parameters.draws, parameters.seed
     lattice = [float(packings[name].values[0, 0]) for name in ("horizontal_contacts", "oblique_contacts")]
     numbers: dict[str, list[FloatArray]] = {"contacts": [], "missing_horizontal": []}
@@ -158,6 +173,16 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
         {
             "dip": at_force["shape"].variable,
             "dip_interval": at_force["shape_interval"].variable,
+            "two_peaked_means": variable(
+                ("width", "case"),
+                parts.mean(axis=-1),
+                f"part of the means of {max(parameters.numbers)} realizations, drawn at random, that have two peaks",
+            ),
+            "two_peaked_means_interval": variable(
+                ("width", "case", "level"),
+                np.moveaxis(quantiles(np.moveaxis(parts, -1, 0)), 0, -1),
+                "quantiles of that part over draws of the realizations",
+            ),
             "applied_force": variable("case", [force for _, _, force in chosen], f"applied force {FORCE}"),
             "distance": variable(
                 "case", [d for _, d, _ in chosen], f"distance of neighbours before gravity acts {LENGTH}"
@@ -168,6 +193,17 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
             **{name: source[name].isel(case=order).variable for name in CASE},
             **{name: shapes[name].variable for name in ("width", "level")},
         },
+    )
+
+
+def _two_peaked_parts(
+    source: xr.Dataset, parameters: Parameters, case: int, step: int, x: FloatArray, width: float
+) -> FloatArray:
+    """(draws,) parts of means with two peaks at one force; one realization is a mean of its own."""
+    responses = folded(read_ensemble(source, case, x, width, parameters.least_part).response[:, step])
+    responses = responses[np.isfinite(responses[:, 0])]
+    return part_of_samples(
+        responses, x, width, max(parameters.numbers), seed=parameters.seed, tolerance=parameters.tolerance
     )
 
 
