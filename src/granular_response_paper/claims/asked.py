@@ -104,7 +104,7 @@ VISIBLE = "two peaks from a visible dip on"
 
 
 def dips_from(along: xr.Dataset, name: str, words: Bounds) -> Quantity:
-    """Between which stored values of the coordinate ``name`` the dip at x = 0 becomes visible, as it grows.
+    """Between which stored values of the coordinate ``name`` the dip at x = 0 becomes visible, in their order.
 
     Raises NotMeasured if it is visible at the first one.
     """
@@ -113,7 +113,9 @@ def dips_from(along: xr.Dataset, name: str, words: Bounds) -> Quantity:
     deep = np.flatnonzero(dip > words["visible"])
     if not values.size or (deep.size and deep[0] == 0):
         raise NotMeasured(f"no {name} is stored at which the dip at x = 0 is not yet visible")
-    return Quantity.bracket(values[deep[0] - 1], values[deep[0]]) if deep.size else Quantity.bracket(values[-1], np.nan)
+    if not deep.size:
+        return Quantity.bracket(values[-1], np.nan)
+    return Quantity.bracket(*sorted(values[deep[0] - 1 : deep[0] + 1]))
 
 
 def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:

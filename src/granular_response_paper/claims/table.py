@@ -20,7 +20,7 @@ from granular_response.store import atomic
 from granular_response.store import files as store
 
 from ..groups import NAMES
-from . import preparations
+from . import preparations, sentences
 from .changes import CHANGES
 from .claim import Claim, Data, Quantity, rounded
 from .stored import OUTPUT, ClaimsError
@@ -46,7 +46,9 @@ def _claims_of(group: str) -> Sequence[Claim]:
 CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in NAMES for claim in _claims_of(group)), key=_place))
 
 #: Figure groups whose datasets the claims read.
-GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING}))
+GROUPS: tuple[str, ...] = tuple(
+    sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING, sentences.MEANS})
+)
 
 #: How the bounds of words are changed to see how the counts move.
 FACTORS = (0.5, 2.0)
@@ -129,6 +131,7 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
         "changes": [{"change": change, "sentence": sentence} for change, sentence in CHANGES.items()],
         "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
         "sensitivity": sensitivity(data, entries),
+        "sentences": sentences.looked_at(data),
         "table": [_row(entry) for entry in entries],
     }
 

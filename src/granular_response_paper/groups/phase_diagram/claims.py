@@ -134,10 +134,9 @@ def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
     readings, texts, dips = [], [], []
     for start in _starts(study, 0.01):
         cases = [_case(study, 0.01, mu, start) for mu in (0.0, 0.2)]
-        two, all_but_one = (_with_interval(case, "two_peaked_means") for case in cases)
-        one = replace(
-            all_but_one, value=1.0 - all_but_one.value, low=1.0 - all_but_one.high, high=1.0 - all_but_one.low
-        )
+        test = f"means of {SHOWN}, bootstrap"
+        two, split = (replace(_with_interval(case, "two_peaked_means"), test=test) for case in cases)
+        one = replace(split, value=1.0 - split.value, low=1.0 - split.high, high=1.0 - split.low)
         texts.append(f"{two.text('%')} and {one.text('%')} ({title(start)})")
         found = [_with_interval(case, "dip").text("%") for case in cases]
         dips.append(f"{found[0]} at friction 0, {found[1]} at 0.2 ({title(start)})")
