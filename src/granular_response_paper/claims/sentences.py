@@ -99,7 +99,7 @@ def contact_angles(data: Data) -> str:
     near = np.zeros(angle.size, bool)
     for direction in np.radians([0.0, 60.0, 120.0, 180.0]):
         near |= np.abs(angle - direction) < np.radians(12.0)
-    parts = {}
+    parts: dict[str, float] = {}
     for case in np.flatnonzero((study["friction"].values == 0.0) & (study["polydispersity"].values > 0.0)):
         density = np.nanmean(study["contact_angle_density"].transpose("case", ..., "angle").values[case], axis=0)
         name = f"polydispersity {float(study['polydispersity'][case]):g}"
