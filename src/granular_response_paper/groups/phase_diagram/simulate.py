@@ -87,10 +87,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     found["medians"] = _medians(found["crossovers"], single, collapsed)
     packings = stored["packings"]
     found["packings"] = packings[[name for name in packings.data_vars if str(name) != "processor_time"]]
-    found["starts"] = _starts(source, parameters, found["shapes"], packings, x)
+    found["starts"] = _starts(source, parameters, found["shapes"], packings)
     small = survey.read(Path(parameters.survey), [parameters.linear_range])["ensembles"]
     both_sides = np.concatenate([-x[:0:-1], x])
     found["linear_range"] = _linear_range(small, parameters.linear_width, both_sides)
+    found["starts"] = found["starts"].assign(_means_of_few(found["starts"], source, parameters, x))
     return labelled(found)
 
 
@@ -117,13 +118,8 @@ def _medians(usual: xr.Dataset, table: Sequence[Sequence[Singles]], collapsed: N
     return data.assign(collapsed=variable("case", collapsed, "packings that collapse along their load paths"))
 
 
-def _starts(
-    source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset, x: FloatArray
-) -> xr.Dataset:
-    """Every start of a polydispersity under one force: its dip, means of a few that have two, and what touches at rest.
-
-    The few are the largest of ``numbers``.
-    """
+def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, packings: xr.Dataset) -> xr.Dataset:
+    """Every start of a polydispersity under one force: its dip, and what touches at rest."""
     chosen, steps = [], []
     for one in parameters.compared:
         alike = np.isclose(source["polydispersity"].values, one.polydispersity)
@@ -137,15 +133,6 @@ def _starts(
     order = [case for case, _, _ in chosen]
     along = {"case": xr.DataArray(order, dims="case"), "step": xr.DataArray(steps, dims="case")}
     at_force = shapes[["shape", "shape_interval"]].isel(along)
-    parts = np.array(
-        [
-            [
-                _two_peaked_parts(source, parameters, case, step, x, width)
-                for case, step in zip(order, steps, strict=True)
-            ]
-            for width in parameters.widths
-        ]
-    )
     drawn = parameters.draws, parameters.seed
     lattice = [float(packings[name].values[0, 0]) for name in ("horizontal_contacts", "oblique_contacts")]
     numbers: dict[str, list[FloatArray]] = {"contacts": [], "missing_horizontal": []}
@@ -173,16 +160,6 @@ def _starts(
         {
             "dip": at_force["shape"].variable,
             "dip_interval": at_force["shape_interval"].variable,
-            "two_peaked_means": variable(
-                ("width", "case"),
-                parts.mean(axis=-1),
-                f"part of the means of {max(parameters.numbers)} realizations, drawn at random, that have two peaks",
-            ),
-            "two_peaked_means_interval": variable(
-                ("width", "case", "level"),
-                np.moveaxis(quantiles(np.moveaxis(parts, -1, 0)), 0, -1),
-                "quantiles of that part over draws of the realizations",
-            ),
             "applied_force": variable("case", [force for _, _, force in chosen], f"applied force {FORCE}"),
             "distance": variable(
                 "case", [d for _, d, _ in chosen], f"distance of neighbours before gravity acts {LENGTH}"
@@ -196,15 +173,29 @@ def _starts(
     )
 
 
-def _two_peaked_parts(
-    source: xr.Dataset, parameters: Parameters, case: int, step: int, x: FloatArray, width: float
-) -> FloatArray:
-    """(draws,) parts of means with two peaks at one force; one realization is a mean of its own."""
-    responses = folded(read_ensemble(source, case, x, width, parameters.least_part).response[:, step])
-    responses = responses[np.isfinite(responses[:, 0])]
-    return part_of_samples(
-        responses, x, width, max(parameters.numbers), seed=parameters.seed, tolerance=parameters.tolerance
-    )
+def _means_of_few(
+    starts: xr.Dataset, source: xr.Dataset, parameters: Parameters, x: FloatArray
+) -> dict[str, xr.Variable]:
+    """Which part of the means of the largest of ``numbers`` realizations have two peaks, for every start."""
+    number, parts = max(parameters.numbers), []
+    for width in parameters.widths:
+        for start in range(starts.sizes["case"]):
+            same = [source[name].values == starts[name].values[start] for name in CASE]
+            case = int(np.flatnonzero(np.logical_and.reduce(same))[0])
+            ensemble = read_ensemble(source, case, x, width, parameters.least_part)
+            step = int(np.argmin(np.abs(ensemble.force - float(starts["applied_force"][start]))))
+            rows = folded(ensemble.response[:, step])
+            rows = rows[np.isfinite(rows[:, 0])]
+            parts.append(part_of_samples(rows, x, width, number, seed=parameters.seed, tolerance=parameters.tolerance))
+    every = np.reshape(parts, (len(parameters.widths), starts.sizes["case"], -1))
+    text = f"part of the means of {number} realizations, drawn at random, that have two peaks"
+    quantile = "quantiles of that part over draws of the realizations"
+    return {
+        "two_peaked_means": variable(("width", "case"), every.mean(axis=-1), text),
+        "two_peaked_means_interval": variable(
+            ("width", "case", "level"), np.moveaxis(np.quantile(every, LEVELS, axis=-1), 0, -1), quantile
+        ),
+    }
 
 
 def _linear_range(source: xr.Dataset, width: float, x: FloatArray) -> xr.Dataset:
