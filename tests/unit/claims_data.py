@@ -48,6 +48,7 @@ def friction_study():
         # one per cent off at these forces, five at five times as much
         response_at_centre=by_friction(*(0.07 * (1.0 - 0.01 * FORCES / end) for end in (0.9, 5.5, 7.5))),
         double_peaked=by_friction(FORCES > 3.0, FORCES > 20.1, 0.0),
+        central_dip=by_friction(0.01 * (FORCES - 2.0), 0.01 * (FORCES - 19.2), -0.05),
         half_maximum_width=by_friction(28.0, 28.0, 28.0 - 0.1 * FORCES),
         peak_height=by_friction(0.07, 0.07, 0.07),
         third_peak_prominence=by_friction(0.0, 0.1 * (FORCES > 38.0), 0.0),
@@ -296,7 +297,7 @@ def numerics_study():
 
 
 def frictionless_study():
-    forces = np.array([1.0, 2.0, 4.0])
+    forces = np.array([1.0, 2.9, 3.3])
     # a lattice of one open column: two disks in each row, one row above the other
     rows = [8, 7, 7, 6, 6, 6, 5]
     first = 2 * np.arange(len(rows))
@@ -312,7 +313,10 @@ def frictionless_study():
     return {
         "events": events(("crossover", 0.0, 3.0, 3.1), ("teardrop_reaches_floor", 0.0, 3.5, 3.6)),
         "response": dataset(
-            {"force": forces}, teardrop_depth=("force", [1.0, 5.0, 12.0]), reaches_floor=("force", [0, 0, 0])
+            {"force": forces},
+            central_dip=("force", [-0.1, -0.05, 0.1]),
+            teardrop_depth=("force", [1.0, 5.0, 12.0]),
+            reaches_floor=("force", [0, 0, 0]),
         ),
         "states": dataset(
             {"force": forces},
@@ -431,6 +435,16 @@ def phases_study():
             shape=(("width", "case", "realization", "step"), np.stack([each] * 2)),
             asymmetry=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.1)),
             difference=(("width", "case", "realization", "step"), np.full((2, n, few, 3), 0.2)),
+        ),
+        "starts": dataset(
+            {**cases, **levels, "realizations": ("case", [few] * n)},
+            dip=(("width", "case"), np.stack([dip] * 2)),
+            dip_interval=(("width", "case", "level"), np.stack([spread[:, 0]] * 2)),
+            two_peaked_means=(("width", "case"), np.stack([np.where(dip > 0.01, 0.99, 0.1)] * 2)),
+            two_peaked_means_interval=(
+                ("width", "case", "level"),
+                np.stack([np.where(dip[:, None] > 0.01, [0.9, 0.99, 1.0], [0.0, 0.1, 0.3])] * 2),
+            ),
         ),
         "packings": dataset(
             cases,

@@ -27,6 +27,7 @@ from granular_response_paper.survey.crossover import (
     folded,
     grown,
     lean,
+    part_of_samples,
     passed,
     ranked,
     shape,
@@ -152,6 +153,18 @@ def test_means_of_a_few_are_alike_far_from_the_crossover() -> None:
     assert part[0] == 0.0
     assert part[-1] == 1.0
     assert 0.0 < part[1:-1].max() < 1.0 or 0.0 < part[1:-1].min() < 1.0
+
+
+def test_a_large_ensemble_knows_better_which_part_of_its_means_has_two_peaks() -> None:
+    """The part of means of fifteen of wrong ensembles is none or all; of a mixed one it is known to a few per cent."""
+    assert part_of_samples(np.tile(bumps(0.0), (40, 1)), X, 6.0, 15, seed=0).max() == 0.0
+    assert part_of_samples(np.tile(bumps(12.0), (40, 1)), X, 6.0, 15, seed=0).min() == 1.0
+    # two thirds of the packings have one peak and the others two, so that means of fifteen have either
+    whole = np.stack([bumps(4.0), bumps(4.0), bumps(11.0)])
+    parts = [part_of_samples(np.tile(whole, (n, 1)), X, 6.0, 15, seed=0) for n in (5, 60)]
+    assert 0.1 < parts[1].mean() < 0.9
+    few, many = (np.ptp(np.quantile(part, [0.025, 0.975])) for part in parts)
+    assert many < 0.7 * few
 
 
 def test_one_peak_beside_the_middle_is_one() -> None:
@@ -404,6 +417,8 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     np.testing.assert_allclose(side["contacts"], 4.2, atol=0.02)
     np.testing.assert_allclose(side["missing_horizontal"], 0.75, atol=0.02)
     np.testing.assert_array_equal(side["dip"].values[:, 0], found["shapes"]["shape"].values[:, 1, 2])
+    low, high = (side["two_peaked_means_interval"].values[..., end] for end in (0, -1))
+    assert np.all((low <= side["two_peaked_means"]) & (side["two_peaked_means"] <= high))
     assert np.all(np.diff(side["contacts_interval"], axis=1) >= 0.0)
     store.write(tmp_path / "phase_diagram.nc", found)
     drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))

@@ -99,6 +99,25 @@ def material(case: xr.Dataset) -> str:
     return f"polydispersity {float(case['polydispersity']):g}, friction {float(case['friction']):g}"
 
 
+#: Names the reading of two peaks that disorder uses, where smoothing and scatter hide a smaller dip.
+VISIBLE = "two peaks from a visible dip on"
+
+
+def dips_from(along: xr.Dataset, name: str, words: Bounds) -> Quantity:
+    """Between which stored values of the coordinate ``name`` the dip at x = 0 becomes visible, in their order.
+
+    Raises NotMeasured if it is visible at the first one.
+    """
+    known = along.isel({name: np.isfinite(along["central_dip"].values)})
+    values, dip = known[name].values, known["central_dip"].values
+    deep = np.flatnonzero(dip > words["visible"])
+    if not values.size or (deep.size and deep[0] == 0):
+        raise NotMeasured(f"no {name} is stored at which the dip at x = 0 is not yet visible")
+    if not deep.size:
+        return Quantity.bracket(values[-1], np.nan)
+    return Quantity.bracket(*sorted(values[deep[0] - 1 : deep[0] + 1]))
+
+
 def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:
     """Where the response at x = 0 is more than ``tolerance`` off that to the smallest force, between stored forces.
 

@@ -29,7 +29,8 @@ def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Qu
         raise NotMeasured(f"{found.size} realizations: an interval needs three or more")
     picked = np.random.default_rng(0).integers(0, found.size, (DRAWS, found.size))
     low, high = np.quantile(statistic(found[picked], axis=1), [0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE])
-    return Quantity(float(statistic(found, axis=0)), float(low), float(high), "confidence")
+    test = f"bootstrap of the {statistic.__name__}"
+    return Quantity(float(statistic(found, axis=0)), float(low), float(high), "confidence", test, found.size)
 
 
 def part_of(hits: ArrayLike) -> Quantity:
@@ -41,7 +42,7 @@ def part_of(hits: ArrayLike) -> Quantity:
         raise NotMeasured("no realizations")
     low = float(betaincinv(hit, number - hit + 1, 0.5 * OUTSIDE)) if hit else 0.0
     high = float(betaincinv(hit + 1, number - hit, 1.0 - 0.5 * OUTSIDE)) if hit < number else 1.0
-    return Quantity(hit / number, low, high, "confidence")
+    return Quantity(hit / number, low, high, "confidence", "exact binomial interval", number)
 
 
 def over_brackets(each: Sequence[Quantity]) -> Quantity:
@@ -56,8 +57,9 @@ def over_brackets(each: Sequence[Quantity]) -> Quantity:
         raise NotMeasured(f"{len(each)} realizations: an interval needs three or more")
     low, high = (np.array([getattr(one, end) for one in each]) for end in ("low", "high"))
     middle = float(np.median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each]))
+    middle = middle if np.isfinite(middle) else float("nan")
     picked = np.random.default_rng(0).integers(0, len(each), (DRAWS, len(each)))
     least, most = (np.median(ends[picked], axis=1) for ends in (low, high))
     lowest = np.quantile(least, 0.5 * OUTSIDE, method="inverted_cdf")
     highest = np.quantile(most, 1.0 - 0.5 * OUTSIDE, method="inverted_cdf")
-    return Quantity(middle if np.isfinite(middle) else float("nan"), float(lowest), float(highest), "confidence")
+    return Quantity(middle, float(lowest), float(highest), "confidence", "bootstrap of the median", len(each))

@@ -26,6 +26,14 @@ from .words import Bounds
 #: the smallest to the largest value.
 Kind = Literal["none", "bracket", "confidence", "range"]
 
+#: How a number is set against its bounds if nothing else is said, by the kind of its interval.
+TESTS: dict[Kind, str] = {
+    "none": "the number itself",
+    "bracket": "both ends of the bracket",
+    "confidence": "both ends of the 95 % interval",
+    "range": "both ends of the range",
+}
+
 Outcome = Literal["holds", "fails", "open"]
 
 #: Labels are the same if they differ by less than this part of them.
@@ -38,12 +46,17 @@ class NotMeasured(GranularError):
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number, the interval it lies in, and what kind of interval that is; ``high`` is inf for a lower bound."""
+    """A number, the interval it lies in, and what kind of interval that is; ``high`` is inf for a lower bound.
+
+    ``test`` names the statistic behind the interval, ``samples`` how many packings it has.
+    """
 
     value: float
     low: float
     high: float
     kind: Kind = "none"
+    test: str = field(default="", compare=False)
+    samples: int = field(default=1, compare=False)
 
     @classmethod
     def exact(cls, value: float) -> Quantity:
@@ -67,7 +80,13 @@ class Quantity:
             raise NotMeasured("nothing to compare with")
         kind: Kind = other.kind if self.kind == "none" else self.kind
         low, high = self.low / other.high, self.high / other.low if other.low > 0.0 else float("inf")
-        return Quantity(self.value / other.value if other.value else float("nan"), low, high, kind)
+        value = self.value / other.value if other.value else float("nan")
+        return Quantity(value, low, high, kind, self.test or other.test, max(self.samples, other.samples))
+
+    @property
+    def tested(self) -> str:
+        """How it is set against its bounds."""
+        return self.test or TESTS[self.kind]
 
     @property
     def happens(self) -> bool:
@@ -77,7 +96,7 @@ class Quantity:
         """For readers; ``unit`` "%" shows parts as per cent."""
         low, high = _number(self.low, unit), _number(self.high, unit)
         if self.kind == "none" or (self.happens and low == high):  # in as many digits as are shown
-            return _number(self.value, unit)
+            return _number(self.value if math.isfinite(self.value) else self.low, unit)
         ends = f"{low} to {high}" if self.happens else f"above {low}"
         if self.kind == "bracket":
             return ends

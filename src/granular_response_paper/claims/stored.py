@@ -19,7 +19,8 @@ OUTPUT = Path("figures") / "claims.json"
 BLOCK = "claims"
 
 #: What a stored table holds, and what it lists of each claim.
-KEYS = {"counts", "robustness", "verdict_kinds", "robustness_kinds", "changes", "words", "sensitivity", "table"}
+KEYS = {"counts", "robustness", "verdict_kinds", "robustness_kinds", "changes", "words", "sensitivity"}
+KEYS |= {"sentences", "table"}
 LISTED = {"id", "group", "verdict", "robustness", "robustness_reason", "ours", "reason", "interval_kind"}
 
 

@@ -20,7 +20,7 @@ from granular_response.store import atomic
 from granular_response.store import files as store
 
 from ..groups import NAMES
-from . import preparations
+from . import preparations, sentences
 from .changes import CHANGES
 from .claim import Claim, Data, Quantity, rounded
 from .stored import OUTPUT, ClaimsError
@@ -46,7 +46,9 @@ def _claims_of(group: str) -> Sequence[Claim]:
 CLAIMS: tuple[Claim, ...] = tuple(sorted((claim for group in NAMES for claim in _claims_of(group)), key=_place))
 
 #: Figure groups whose datasets the claims read.
-GROUPS: tuple[str, ...] = tuple(sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING}))
+GROUPS: tuple[str, ...] = tuple(
+    sorted({claim.group for claim in CLAIMS} | {preparations.GROUP, preparations.LOADING, sentences.MEANS})
+)
 
 #: How the bounds of words are changed to see how the counts move.
 FACTORS = (0.5, 2.0)
@@ -129,6 +131,7 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
         "changes": [{"change": change, "sentence": sentence} for change, sentence in CHANGES.items()],
         "words": [{"word": w.name, "bound": w.bound, "sentence": w.sentence} for w in TABLE],
         "sensitivity": sensitivity(data, entries),
+        "sentences": sentences.looked_at(data),
         "table": [_row(entry) for entry in entries],
     }
 
@@ -151,10 +154,15 @@ def _row(entry: Entry) -> dict[str, Any]:
         "value": None,
         "interval": None,
         "interval_kind": "",
+        "tests": [],
+        "samples": None,
         "readings": [],
     }
     if finding:
         row.update(_interval(finding.quantity))
+        asked = [c.found for reading in finding.interpretations for c in reading.conditions]
+        row["tests"] = list(dict.fromkeys(one.tested for one in asked))
+        row["samples"] = [min(one.samples for one in asked), max(one.samples for one in asked)]
         row["readings"] = [
             {
                 "name": reading.name,
@@ -166,6 +174,8 @@ def _row(entry: Entry) -> dict[str, Any]:
                         "asked": c.asked,
                         "outcome": c.outcome,
                         "words": list(c.words),
+                        "test": c.found.tested,
+                        "samples": c.found.samples,
                         **_interval(c.found),
                     }
                     for c in reading.conditions

@@ -52,7 +52,11 @@ def at_force(
 
         own = "the first sampled force at or above it" if first_sampled else OWN
         found = data.event(GROUP, event, friction)
-        return Finding(f"{text} {found.text('mg')}", _ways(data, event, (friction,), wanted, own))
+        readings = _ways(data, event, (friction,), wanted, own)
+        if event == "crossover":
+            visible = asked.dips_from(_curve(data, friction, "central_dip"), "force", words)
+            readings.insert(1, Reading(asked.VISIBLE, *wanted(visible)))
+        return Finding(f"{text} {found.text('mg')}", readings)
 
     return measure
 
@@ -367,6 +371,13 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
         "two peaks from, by friction: " + asked.listed(found, unit="mg"),
         [
             Reading(OWN, rises("crossover force", ends)),
+            Reading(
+                asked.VISIBLE,
+                rises(
+                    "crossover force",
+                    [asked.dips_from(_curve(data, mu, "central_dip"), "force", words) for mu in frictions],
+                ),
+            ),
             *preparations.readings(
                 data, "crossover", tuple(frictions[1:]), lambda *after: [rises("crossover force", [ends[0], *after])]
             ),
@@ -571,7 +582,11 @@ def friction_crossover(data: Data, words: Bounds) -> Finding:
         return asked.at_most("dip with much friction", dip, words, "visible", "%")
 
     largest = float(axis["friction"][-1])
-    readings = [Reading(OWN, Condition("friction", event, 0.0, largest), without, one_peak(last))]
+    visible = asked.dips_from(axis.isel(friction=slice(None, None, -1)), "friction", words)
+    readings = [
+        Reading(name, Condition("friction", found, 0.0, largest), without, one_peak(last))
+        for name, found in ((OWN, event), (asked.VISIBLE, visible))
+    ]
     if preparations.LOADING in data.groups:
         readings += [
             Reading(name, without, one_peak(dip), change=preparations.change(name))

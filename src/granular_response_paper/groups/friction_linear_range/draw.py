@@ -21,10 +21,10 @@ from .parameters import Parameters
 #: Forces of the profiles (Fig. 7), of the pictures of contacts (Figs. 8 and 9) and of the large forces (Fig. 16).
 PROFILE_FRICTIONS, PROFILE_FORCES = (0.2, 1.0), (4.0, 10.0, 20.0, 30.0, 50.0)
 LARGE_FRICTION = 0.2
-CONTACT_FORCES = (6.0, 12.0, 20.0)
+CONTACT_FORCES = (5.0, 12.0, 20.0)
 CONTACTS = ((0.2, "fig08_contacts_mu02"), (1.0, "fig09_contacts_mu1"))
 LARGE_FORCES = (20.0, 30.0, 40.0, 60.0, 80.0)
-DYNAMIC_FORCES = (91.0, 93.0, 95.0, 100.0)
+DYNAMIC_FORCES = (91.0, 93.0, 95.0, 150.0, 500.0)
 #: Frictions of Fig. 12.
 AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 

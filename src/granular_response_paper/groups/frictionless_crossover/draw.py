@@ -26,7 +26,7 @@ from .parameters import Parameters
 
 #: Forces of the profiles and of the contact networks; the nearest stored ones are drawn.
 PROFILE_FORCES = (0.25, 2.0, 3.0, 3.5, 5.0, 15.0, 50.0)
-NETWORK_FORCES = (1.0, 2.0, 3.0, 3.5, 5.0, 15.0)
+NETWORK_FORCES = (1.0, 2.0, 3.0, 3.75, 5.0, 15.0)
 #: Forces in the panels about stiffness and about the depth of the slab.
 STIFFNESS_FORCES = (0.25, 1.0, 2.0, 3.0, 15.0)
 TEARDROP_FORCES = (2.0, 3.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...claims.claim import Claims, Data, Finding, Quantity, Reading, about
+from ...claims.claim import Claims, Data, Finding, Kind, Quantity, Reading, about
 from ...claims.words import Bounds
 
 GROUP = "peak_width"
@@ -72,7 +72,8 @@ def power(found: xr.Dataset) -> Quantity:
     value, (low, high) = float(found["power"].values[0]), found["interval"].values
     CLAIMS.needs(np.isfinite([value, low, high]).all(), "holds a width without a power")
     realizations = int(found["realizations"]) if "realizations" in found.coords else 1
-    return Quantity(value, float(low), float(high), "confidence" if realizations > 1 else "range")
+    kind: Kind = "confidence" if realizations > 1 else "range"
+    return Quantity(value, float(low), float(high), kind, samples=realizations)
 
 
 def material(one: xr.Dataset) -> str:

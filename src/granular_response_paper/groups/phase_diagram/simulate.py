@@ -32,6 +32,7 @@ from granular_response_paper.survey.crossover import (
     Singles,
     cross,
     folded,
+    part_of_samples,
     quantiles,
     singles,
     weights,
@@ -90,6 +91,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     small = survey.read(Path(parameters.survey), [parameters.linear_range])["ensembles"]
     both_sides = np.concatenate([-x[:0:-1], x])
     found["linear_range"] = _linear_range(small, parameters.linear_width, both_sides)
+    found["starts"] = found["starts"].assign(_means_of_few(found["starts"], source, parameters, x))
     return labelled(found)
 
 
@@ -169,6 +171,31 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
             **{name: shapes[name].variable for name in ("width", "level")},
         },
     )
+
+
+def _means_of_few(
+    starts: xr.Dataset, source: xr.Dataset, parameters: Parameters, x: FloatArray
+) -> dict[str, xr.Variable]:
+    """Which part of the means of the largest of ``numbers`` realizations have two peaks, for every start."""
+    number, parts = max(parameters.numbers), []
+    for width in parameters.widths:
+        for start in range(starts.sizes["case"]):
+            same = [source[name].values == starts[name].values[start] for name in CASE]
+            case = int(np.flatnonzero(np.logical_and.reduce(same))[0])
+            ensemble = read_ensemble(source, case, x, width, parameters.least_part)
+            step = int(np.argmin(np.abs(ensemble.force - float(starts["applied_force"][start]))))
+            rows = folded(ensemble.response[:, step])
+            rows = rows[np.isfinite(rows[:, 0])]
+            parts.append(part_of_samples(rows, x, width, number, seed=parameters.seed, tolerance=parameters.tolerance))
+    every = np.reshape(parts, (len(parameters.widths), starts.sizes["case"], -1))
+    text = f"part of the means of {number} realizations, drawn at random, that have two peaks"
+    quantile = "quantiles of that part over draws of the realizations"
+    return {
+        "two_peaked_means": variable(("width", "case"), every.mean(axis=-1), text),
+        "two_peaked_means_interval": variable(
+            ("width", "case", "level"), np.moveaxis(np.quantile(every, LEVELS, axis=-1), 0, -1), quantile
+        ),
+    }
 
 
 def _linear_range(source: xr.Dataset, width: float, x: FloatArray) -> xr.Dataset:

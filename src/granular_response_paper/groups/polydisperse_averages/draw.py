@@ -23,7 +23,11 @@ FIG21_WIDTH, MOST_FORCES = 6.0, 4
 #: Forces of the keys of Fig. 2 in mean disk weights, at rest and added: both are drawn as the same line.
 KEYS = 20.0, 2.0
 
-START_NAMES = {"touching-largest": "largest disks touch", "2.0": "lattice constant $2\\bar R$"}
+START_NAMES = {
+    "2.0075": "lattice constant $2.0075\\bar R$",
+    "touching-largest": "largest disks touch",
+    "2.0": "lattice constant $2\\bar R$",
+}
 
 #: Contacts of a disk without friction at ``delta`` = 0.01 in the paper (Sec. VII).
 PAPER_CONTACTS = 4.25

@@ -9,11 +9,14 @@ from ...claims.words import Bounds
 GROUP = "symmetry_breaking"
 CLAIMS = Claims(GROUP)
 
+#: A force that grows without end slowly, gravity at once.
+PATH = "quasi-static path"
+
 
 @CLAIMS.add(
     "R5a",
     "V.E, Fig. 16b",
-    "friction 1: force at which the response to a ramp from rest loses its symmetry, for two ramps",
+    "friction 1: force at which the response loses its symmetry, for two ramps from rest and along the load path",
     "when it exceeds 91 mg",
 )
 def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
@@ -23,6 +26,8 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
         f"ramp of {ramp:g} sqrt(R/g), step {step:g}": Quantity.bracket(low, high)
         for low, high, ramp, step in zip(*columns, strict=True)
     }
+    if preparations.GROUP in data.groups:
+        found[PATH] = data.event(preparations.GROUP, "loss_of_symmetry_path", 1.0)
     for walls, friction in (("smooth", 0.0), ("rough", 1.0)):
         for way, event in preparations.events(data, "loss_of_symmetry_path", 1.0, friction).items():
             found[f"{way}, {walls} walls, along a load path"] = event
@@ -33,5 +38,7 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
         lambda event: Condition("loss of symmetry", event, 91.0, 95.0, unit="mg"),
         "mg",
         "The paper does not say how long the force grows",
-        lambda name: "walls" if "rough walls" in name else "" if name.startswith("ramp") else preparations.CHANGE,
+        lambda name: (
+            "walls" if "rough walls" in name else "" if name.startswith(("ramp", PATH)) else preparations.CHANGE
+        ),
     )
