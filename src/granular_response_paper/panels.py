@@ -21,10 +21,13 @@ def among(stored: ArrayLike, wanted: Iterable[float]) -> list[float]:
 
 
 def family(
-    values: Sequence[Any] | np.ndarray, *, marked: bool = True, dashed: bool = False
+    values: Sequence[Any] | np.ndarray, *, of: str, marked: bool = True, dashed: bool = False
 ) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Each of some ordered values with the look of its curve: dark to light, with markers, dashes, or both."""
-    for k, (value, colour) in enumerate(zip(values, style.ordered_colours(max(1, len(values))), strict=False)):
+    """Each of some ordered values with the look of its curve: dark to light, with markers, dashes, or both.
+
+    ``of`` is the quantity of ``style.RAMPS``: it has one ramp of colours in all figures.
+    """
+    for k, (value, colour) in enumerate(zip(values, style.ordered_colours(max(1, len(values)), of=of), strict=False)):
         look = style.marked_line(k) if marked else {}
         yield value, look | (style.line(k) if dashed else {}) | {"color": colour}
 
@@ -59,3 +62,21 @@ def zero(*panels: Axes) -> None:
     """A faint line where there is no response, below everything."""
     for axes in panels:
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+
+
+def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap: float = 9.0, **text: Any) -> None:
+    """Write names beside the ends of curves, so far apart that all can be read; call it when the limits are set.
+
+    ``ends`` are pairs of a name, the end of its curve (data), and its colour; ``gap`` is in points.
+    """
+    axes.figure.draw_without_rendering()
+    points = 72.0 / axes.figure.dpi
+    at = [(axes.transData.transform((x, y))[1] * points, name, x, y, colour) for name, x, y, colour in ends]
+    places: list[float] = []
+    for height, *_ in sorted(at):
+        places.append(max(height, places[-1] + gap) if places else height)
+    shift = float(np.mean([place - one[0] for place, one in zip(places, sorted(at), strict=True)])) if at else 0.0
+    for place, (height, name, x, y, colour) in zip(places, sorted(at), strict=True):
+        offset = (6.0, place - shift - height)
+        look = {"ha": "left", "va": "center", "fontsize": 8, "color": colour, "annotation_clip": False, "linespacing": 1.0} | text
+        axes.annotate(name, (x, y), offset, textcoords="offset points", **look)

@@ -157,7 +157,7 @@ def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure
     for axes, series in zip(panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
         weight = float(powers["friction"][series]) > 0.0
-        for k, look in family(rows):
+        for k, look in family(rows, of="length"):
             layers, confinement = float(slabs["layers"][k]), float(slabs["confinement"][k])
             force = paths["force"].values[k] / (layers**2 if weight else layers * confinement)
             depth = paths["depth"].values[k] / (ROW * (layers - 1.0))

@@ -145,7 +145,7 @@ def _force_profiles(data: xr.Dataset) -> Figure:
     frictions, depths = data["friction"].values, data["depth"].values
     figure, panels = style.figure(1, len(frictions), width="double", height=3.1, sharex=True, sharey=True)
     for index, axes in enumerate(panels[0]):
-        for row, (depth, look) in enumerate(family(depths, dashed=True)):
+        for row, (depth, look) in enumerate(family(depths, of="length", dashed=True)):
             look |= {"linewidth": 0.8, "markersize": 2.8}
             x, magnitude = (data[name].values[index, row] for name in ("contact_x", "magnitude"))
             axes.plot(x, magnitude, **look, label=f"${depth:.1f}\\,{style.RADIUS}$")

@@ -98,7 +98,7 @@ def _linear_range(response: xr.Dataset) -> Figure:
     figure, axes = style.figure(height=3.0)
     panel = axes[0, 0]
     frictions = response["friction"].values
-    for friction, look in family(frictions):
+    for friction, look in family(frictions, of="friction"):
         curve = response["response_at_centre"].sel(friction=friction).dropna("force")
         panel.plot(curve["force"], curve, label=f"{friction:g}", **look | {"markersize": 3.0})
     panel.set_xscale("log")

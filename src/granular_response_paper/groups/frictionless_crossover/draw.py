@@ -92,7 +92,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
-    for at, (k, look) in enumerate(family(chosen, marked=False, dashed=True)):
+    for at, (k, look) in enumerate(family(chosen, of="force", marked=False, dashed=True)):
         one = data.isel(force=k)
         look |= {"marker": style.marked_line(at)["marker"], "markersize": 2.2}
         profiles.plot(x, one["floor_response"], **look, linewidth=0.9, label=f"{float(one['force']):g}")
@@ -176,7 +176,7 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
 
 def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Dataset], str]) -> None:
     """A measure of the teardrop against the force, up to where it reaches the floor (open marker)."""
-    for at, look in family(range(slabs.sizes["slab"])):
+    for at, look in family(range(slabs.sizes["slab"]), of="length"):
         one = slabs.isel(slab=at)
         reached = np.flatnonzero(one["reaches_floor"].values > 0)
         end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
@@ -250,7 +250,7 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
 
     softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
     at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
-    for at, look in family(range(softest.sizes["slab"]), marked=False, dashed=True):
+    for at, look in family(range(softest.sizes["slab"]), of="length", marked=False, dashed=True):
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height

@@ -186,7 +186,7 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 20: one packing, the means of all, the lattice, smoothed alike, and the ends of the linear ranges."""
     deltas = sorted(set(data["polydispersity"].values.tolist()), reverse=True)
     frictions = sorted(set(data["friction"].values.tolist()))
-    looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions)}
+    looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions, of="friction")}
     figure, panels = style.figure(1, len(deltas) + 2, width="double", height=3.0)
     one, means, *others = panels[0]
     responses = [one, *others[:-1]]
@@ -293,7 +293,7 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     if not usable.size:
         return
     total = int(_realizations(one)[usable[0]])
-    for step, look in family(steps, marked=False, dashed=True):
+    for step, look in family(steps, of="force", marked=False, dashed=True):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")

@@ -123,7 +123,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
         axes.axvspan(quarter, min(three_quarters, force[-1]), color=style.FAINT, alpha=0.35, linewidth=0.0, zorder=0)
         if np.isfinite(middle):
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
-        for k, look in family(range(len(distances))):
+        for k, look in family(range(len(distances)), of="length"):
             _mean_with_error(axes, force, errors[name].values[:, k], look, f"{distances[k]:g}")
         style.paper_value(axes, LINEAR_UNTIL, f"paper: {LINEAR_UNTIL:g}", at=0.2)
         axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
@@ -132,7 +132,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     floor.set_ylabel("relative deviation from superposition")
     last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
-    for k, look in family(range(len(distances))):
+    for k, look in family(range(len(distances)), of="length"):
         _mean_with_error(deep, errors["gap"].values, profiles[:, k], look, "")
     deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel=rf"depth below the loads$\,/\,{style.RADIUS}$", xlim=(0.0, None))
     handles, names = floor.get_legend_handles_labels()

@@ -26,7 +26,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     elliptic.plot(x, data["half_plane"], **style.line(2), label="half plane")
 
     depths = data["depth"].values
-    for depth, look in family(depths, marked=False, dashed=True):
+    for depth, look in family(depths, of="length", marked=False, dashed=True):
         hyperbolic.plot(x, data["rays"].sel(depth=depth), **look, label=style.equals("h", depth, style.RADIUS))
     titles((elliptic, hyperbolic), ("elliptic", "hyperbolic"), place="inside")
     for axes in (elliptic, hyperbolic):

@@ -79,7 +79,7 @@ def _reach(data: xr.Dataset) -> Figure:
     changes = changes[changes > 0.0]  # none without a torque, or where the rings lie beyond the slab
     titles(panels[0], panel_of.values(), stem="fig18_torque_reach")
     for axes, name in zip(panels[0], panel_of, strict=True):
-        for k, look in family(turned):
+        for k, look in family(turned, of="other"):
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
         axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None))
         if changes.size:
