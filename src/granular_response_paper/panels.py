@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from granular_response.plot import style
+from granular_response.plot import network, style
+from granular_response.state import FloatArray
 
 from .captions import letters
 
@@ -64,6 +65,36 @@ def zero(*panels: Axes) -> None:
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
 
 
+#: Width of the largest force of :func:`chains`, in points, and the part of it below which nothing is drawn.
+WIDEST, LEAST = 5.0, 0.01
+
+
+def chains(
+    axes: Axes, position: FloatArray, ends: tuple[ArrayLike, ArrayLike], size: FloatArray, largest: float
+) -> None:
+    """Contact forces as lines from centre to centre, so that chains are unbroken; width and colour by their size.
+
+    ``position`` (n, 2) are centres and points on walls, ``ends`` the two indices (m,) of each contact, ``size`` (m,)
+    is in units of choice; ``largest`` has the full width.
+    """
+    part = np.minimum(size / largest, 1.0)
+    order = np.argsort(part)[np.count_nonzero(part <= LEAST) :]
+    first, second = (np.asarray(one, dtype=int)[order] for one in ends)
+    drawn = network.draw_contacts(
+        axes, position, first, second, linewidth=np.maximum(WIDEST * part[order], 0.3), capstyle="round", zorder=2
+    )
+    ramp = np.array(style.ordered_colours(256)[::-1])
+    drawn.set_color(list(ramp[(255 * np.sqrt(part[order])).astype(int)]))
+
+
+def chain_key(axes: Axes, at: tuple[float, float], size: float, largest: float, unit: str) -> None:
+    """A line that stands for a force of ``size`` in :func:`chains`, from ``at`` (data), and its value."""
+    ends = np.array([at, (at[0] + 2.0, at[1])])
+    chains(axes, ends, ([0], [1]), np.array([size]), largest)
+    note = f"${size:g}\\,{unit}$" if unit else f"${size:g}$"
+    axes.annotate(note, ends[1], (5.0, 0.0), textcoords="offset points", va="center", fontsize=8)
+
+
 def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap: float = 9.0, **text: Any) -> None:
     """Write names beside the ends of curves, so far apart that all can be read; call it when the limits are set.
 
@@ -78,5 +109,17 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
     shift = float(np.mean([place - one[0] for place, one in zip(places, sorted(at), strict=True)])) if at else 0.0
     for place, (height, name, x, y, colour) in zip(places, sorted(at), strict=True):
         offset = (6.0, place - shift - height)
-        look = {"ha": "left", "va": "center", "fontsize": 8, "color": colour, "annotation_clip": False, "linespacing": 1.0} | text
+        look = {
+            "ha": "left",
+            "va": "center",
+            "fontsize": 8,
+            "color": colour,
+            "annotation_clip": False,
+            "linespacing": 1.0,
+        } | text
         axes.annotate(name, (x, y), offset, textcoords="offset points", **look)
+
+
+def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:
+    """The elastic response, or that to the smallest force, as a broad grey line behind all others."""
+    axes.plot(x, response, color=style.FAINT, linestyle="-", linewidth=3.5, zorder=1, label="elastic")
