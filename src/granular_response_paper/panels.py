@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
@@ -117,6 +118,11 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
             "annotation_clip": False,
             "linespacing": 1.0,
         } | text
+        offset = (
+            6.0 if look["ha"] == "left" else 0.0,
+            place - shift - height + (3.0 if look["va"] == "bottom" else 0.0),
+        )
+        look |= {"path_effects": [withStroke(linewidth=1.5, foreground="white")]}
         axes.annotate(name, (x, y), offset, textcoords="offset points", **look)
 
 

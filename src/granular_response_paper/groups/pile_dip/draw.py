@@ -133,8 +133,8 @@ def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
         floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
     line.set(xlabel=style.POSITION, ylabel=style.STRESS_OF_GRAVITY)
-    line.set_ylim(0.0, 1.32 * float(stress["profile_zz"].max()))
-    line.legend(loc="upper right", borderaxespad=0.3)
+    line.set_ylim(bottom=0.0)
+    figure.legend(*line.get_legend_handles_labels(), loc="outside upper center", ncols=len(names))
     height = style.equals("z", float(stress["dip_height"]), style.RADIUS)
     titles((line, floor), (height, ""), stem="fig17_pile_profiles", place="inside")
     floor.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$")
