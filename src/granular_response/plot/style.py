@@ -59,7 +59,7 @@ RAMPS: dict[str, tuple[str, ...]] = {
     "friction": ("#000000", "#004A7F", "#2E9BD6"),
     "polydispersity": ("#3D1300", "#A84300", "#E0792B"),
     "length": ("#2D004B", "#8B3A8F", "#CC79A7"),
-    "other": ("#000000", "#4D4D4D", "#8C8C8C"),
+    "other": ("#1F1F00", "#6E6A00", "#A09A20"),
 }
 
 #: Symbols of the paper, for :func:`equals` and for labels: set them between dollar signs.
