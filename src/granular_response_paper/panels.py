@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
@@ -70,6 +71,17 @@ def zero(*panels: Axes) -> None:
 WIDEST, LEAST = 5.0, 0.01
 
 
+def contact_ends(data: xr.Dataset, position: FloatArray) -> tuple[FloatArray, tuple[np.ndarray, np.ndarray]]:
+    """Points and the two ends of each contact, as :func:`chains` takes them: centres first, then points on walls.
+
+    ``data`` has the contacts and walls of a state's dataset; contacts between disks come before those with walls.
+    """
+    radius, walls = data["radius"].values, data["wall_disk"].values
+    points = np.concatenate([position, network.wall_points(position, radius, walls, data["wall_index"].values)])
+    second = np.concatenate([data["contact_partner"].values, len(radius) + np.arange(len(walls))])
+    return points, (np.concatenate([data["contact_disk"].values, walls]), second)
+
+
 def chains(
     axes: Axes, position: FloatArray, ends: tuple[ArrayLike, ArrayLike], size: FloatArray, largest: float
 ) -> None:
@@ -101,29 +113,21 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
 
     ``ends`` are pairs of a name, the end of its curve (data), and its colour; ``gap`` is in points.
     """
-    axes.figure.draw_without_rendering()
-    points = 72.0 / axes.figure.dpi
-    at = [(axes.transData.transform((x, y))[1] * points, name, x, y, colour) for name, x, y, colour in ends]
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()
+    at = sorted((axes.transData.transform((x, y))[1] * 72.0 / figure.dpi, *end) for end in ends for _, x, y, _ in [end])
     places: list[float] = []
-    for height, *_ in sorted(at):
+    for height, *_ in at:
         places.append(max(height, places[-1] + gap) if places else height)
-    shift = float(np.mean([place - one[0] for place, one in zip(places, sorted(at), strict=True)])) if at else 0.0
-    for place, (height, name, x, y, colour) in zip(places, sorted(at), strict=True):
-        offset = (6.0, place - shift - height)
-        look = {
-            "ha": "left",
-            "va": "center",
-            "fontsize": 8,
-            "color": colour,
-            "annotation_clip": False,
-            "linespacing": 1.0,
-        } | text
-        offset = (
-            6.0 if look["ha"] == "left" else 0.0,
-            place - shift - height + (3.0 if look["va"] == "bottom" else 0.0),
+    shift = float(np.mean([place - height for place, (height, *_) in zip(places, at, strict=True)])) if at else 0.0
+    look: dict[str, Any] = {"ha": "left", "va": "center", "fontsize": 8, "annotation_clip": False, "linespacing": 1.0}
+    look |= {"path_effects": [withStroke(linewidth=1.5, foreground="white")], **text}
+    beside, over = 6.0 if look["ha"] == "left" else 0.0, 3.0 if look["va"] == "bottom" else 0.0
+    for place, (height, name, x, y, colour) in zip(places, at, strict=True):
+        axes.annotate(
+            name, (x, y), (beside, place - shift - height + over), textcoords="offset points", color=colour, **look
         )
-        look |= {"path_effects": [withStroke(linewidth=1.5, foreground="white")]}
-        axes.annotate(name, (x, y), offset, textcoords="offset points", **look)
 
 
 def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:

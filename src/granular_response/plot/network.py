@@ -258,31 +258,6 @@ def force_scale(*forces: ArrayLike, longest: float = 2.0, widest: float = 3.0) -
     return {"length_per_force": longest / largest, "width_per_force": widest / largest}
 
 
-def draw_force_key(
-    axes: Axes, at: tuple[float, float], magnitude: float, *, length_per_force: float, width_per_force: float
-) -> None:
-    """A horizontal line that stands for a force of ``magnitude`` (mg), from ``at`` (data), and its value."""
-    length = length_per_force * magnitude
-    draw_force_chains(
-        axes,
-        [(at[0] + 0.5 * length, at[1])],
-        [(magnitude, 0.0)],
-        length_per_force=length_per_force,
-        width_per_force=width_per_force,
-        clip_on=False,
-    )
-    with style.context():
-        axes.annotate(
-            f"${magnitude:g}\\,{style.WEIGHT}$",
-            (at[0] + length, at[1]),
-            (4.0, 0.0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-            annotation_clip=False,
-        )
-
-
 def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, length: float = 4.0) -> None:
     """An arrow of ``length`` radii that ends at ``at`` and shows where, and which way, a force is applied."""
     tip, along = np.asarray(at, dtype=float), np.asarray(direction, dtype=float)

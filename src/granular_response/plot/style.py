@@ -264,14 +264,6 @@ def equals(symbol: str, value: float, unit: str = "") -> str:
     return f"${symbol} = {number}" + (rf"\,{unit}$" if unit else "$")
 
 
-def paper_note(axes: Axes, text: str) -> None:
-    """What the paper says of entries of the legend of ``axes``, below it."""
-    with context():
-        legend = axes.get_legend()
-        assert legend is not None
-        axes.annotate(text, (1.0, 0.0), xycoords=legend, ha="right", va="top", fontsize=7, linespacing=1.0, color=PAPER)
-
-
 def paper_value(
     axes: Axes,
     value: float,

@@ -12,7 +12,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import chain_key, chains, outer, titles
+from granular_response_paper.panels import chain_key, chains, contact_ends, outer, titles
 
 from .parameters import Parameters
 
@@ -66,27 +66,20 @@ def _force_chains(data: xr.Dataset) -> Figure:
     figure, panels = style.figure(2, len(frictions), width="double", height=4.2)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"])
     radius = data["radius"].values
-    ends = (
-        np.concatenate([data["contact_disk"].values, data["wall_disk"].values]),
-        np.concatenate([data["contact_partner"].values, len(radius) + np.arange(data.sizes["wall_contact"])]),
-    )
     forces = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
     size = np.linalg.norm(forces, axis=-1)
-    for index, friction in enumerate(frictions):
-        position = data["position"].values[index]
-        walls = network.wall_points(position, radius, data["wall_disk"].values, data["wall_index"].values)
-        points = np.concatenate([position, walls])
+    for index, position in enumerate(data["position"].values):
+        points, (first, second) = contact_ends(data, position)
         x, z = position[disk]
         inside = np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
-        near = np.abs(points[ends[0], 0] - 0.5 * width) <= width / 6.0 + 2.0
-        depth = z - 0.5 * (points[ends[0], 1] + points[ends[1], 1])
-        shown = tuple(end[near] for end in ends)
+        near = np.abs(points[first, 0] - 0.5 * width) <= width / 6.0 + 2.0
+        depth = z - 0.5 * (points[first, 1] + points[second, 1])
         for axes, values, largest, key, unit in (
             (panels[0, index], size[index], float(size.max()), _round(load / 5.0), style.WEIGHT),
             (panels[1, index], size[index] * depth / load, DEEP, 0.5, style.RADIUS),
         ):
             network.draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT, linewidth=0.3)
-            chains(axes, points, shown, values[near], largest)
+            chains(axes, points, (first[near], second[near]), values[near], largest)
             chain_key(axes, (2.0 * width / 3.0 - 10.0, z + 3.0), key, largest, unit)
             network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
             network.draw_load(axes, (x, z + 1.0))

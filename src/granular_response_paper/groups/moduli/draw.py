@@ -159,17 +159,17 @@ def _lattice(data: xr.Dataset) -> Figure:
     figure, ((closed, opened, turn),) = style.figure(1, 3, width="double", height=3.4)
     ratio = data["stiffness_ratio"].values
     for axes, contacts in ((closed, "closed"), (opened, "open")):
-        one, ends = data.sel(contacts=contacts), []
+        one, names = data.sel(contacts=contacts), []
         for index, name in enumerate("abcd"):
             # b stands around a, which it is equal to where all contacts are closed
             around = {"markersize": 6.5, "markerfacecolor": "none", "markeredgewidth": 0.9} if name == "b" else {}
             look = style.marked_line(index) | {"linestyle": "none", "markersize": 3.5} | around
             axes.plot(ratio, one["moduli"].sel(following="free", modulus=name), **look)
-            expected = one["closed_form"].sel(rotations="free", modulus=name)
-            axes.plot(ratio, expected, **style.line(index))
-            ends.append((f"${name}$", float(ratio[-1]), float(expected[-1]), style.line(index)["color"]))
+            closed_form = one["closed_form"].sel(rotations="free", modulus=name)
+            axes.plot(ratio, closed_form, **style.line(index))
+            names.append((f"${name}$", float(ratio[-1]), float(closed_form[-1]), style.line(index)["color"]))
         axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylim=(0.0, None), xlim=(0.0, 1.12 * ratio[-1]))
-        label_ends(axes, ends)
+        label_ends(axes, names)
     closed.set_ylabel("moduli $/\\,k_N$")
     for index, body in enumerate(data["body"].values):
         for rotations, filled in (("free", True), ("suppressed", False)):

@@ -125,7 +125,7 @@ def _bounds(axes: Axes, data: xr.Dataset, colour: str, shift: float, limits: tup
 
 
 def _intervals(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
-    """A row for each smoothing width, a column for each polydispersity: 68 and 95 % of the draws, what was simulated."""
+    """A row for each smoothing width, a column for each polydispersity: 68 and 95 % of the draws."""
     deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
     widths = crossovers["width"].values.tolist()
     applied = shapes["applied_force"].values

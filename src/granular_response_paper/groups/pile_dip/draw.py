@@ -17,7 +17,7 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
 from granular_response.state import FLOOR, Box
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import chain_key, chains, titles
+from granular_response_paper.panels import chain_key, chains, contact_ends, titles
 
 from .parameters import Parameters
 
@@ -73,7 +73,7 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
 
 
 def _wall_part(piles: xr.Dataset, stress: xr.Dataset) -> xr.DataArray:
-    """(case, z, x) what the floor adds: its forces go on below it, as in Weinhart et al., Granular Matter 14, 289 (2012).
+    """(case, z, x) stress that the forces of the floor add (Weinhart et al., Granular Matter 14, 289 (2012)).
 
     The line of a contact with the floor ends at the floor, so the coarse-grained stress falls to about half there; with
     the line continued downwards it is that of the material up to the floor.
@@ -91,14 +91,9 @@ def _wall_part(piles: xr.Dataset, stress: xr.Dataset) -> xr.DataArray:
 def _forces(axes: Axes, one: xr.Dataset, strongest: float) -> None:
     position, radius = one["position"].values, one["radius"].values
     network.draw_disks(axes, position, radius)
-    walls = network.wall_points(position, radius, one["wall_disk"].values, one["wall_index"].values)
-    ends = (
-        np.concatenate([one["contact_disk"].values, one["wall_disk"].values]),
-        np.concatenate([one["contact_partner"].values, len(radius) + np.arange(len(walls))]),
-    )
     touching = np.where(one["contact_status"].values[:, None] != 0, one["contact_force"].values, 0.0)
     size = np.linalg.norm(np.concatenate([touching, one["wall_force"].values]), axis=1)
-    chains(axes, np.concatenate([position, walls]), ends, size, strongest)
+    chains(axes, *contact_ends(one, position), size, strongest)
 
 
 def _outline(axes: Axes, one: xr.Dataset) -> None:

@@ -17,6 +17,7 @@ from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.panels import (
     chain_key,
     chains,
+    contact_ends,
     family,
     grey_limit,
     label_ends,
@@ -121,12 +122,9 @@ def _forces(data: xr.Dataset) -> Figure:
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"][1])
     radius, position = data["radius"].values, data["position"].values
     top = float((position[..., 1] + radius).max())
-    ends = (
-        np.concatenate([data["contact_disk"].values, data["wall_disk"].values]),
-        np.concatenate([data["contact_partner"].values, len(radius) + np.arange(data.sizes["wall_contact"])]),
-    )
     x, z = position[1, disk]
-    depth = np.maximum(z - position[1, ends[0], 1], 0.0)
+    points, (first, second) = contact_ends(data, position[1])
+    depth = z - 0.5 * (points[first, 1] + points[second, 1])
     force = style.equals(style.F_EXT, load, style.WEIGHT)
     wide = figure.add_subplot(grid[0, :])
     drawn = (
@@ -138,8 +136,7 @@ def _forces(data: xr.Dataset) -> Figure:
         network.draw_disks(axes, position[state], radius)
         network.draw_rotations(axes, position[state], radius, data["angle"].values[state], color="#A8C8DC")
         network.draw_box(axes, Box(width), top)
-        walls = network.wall_points(position[state], radius, data["wall_disk"].values, data["wall_index"].values)
-        chains(axes, np.concatenate([position[state], walls]), ends, size, largest)
+        chains(axes, *contact_ends(data, position[state]), size, largest)
         chain_key(axes, (limits[1] - 0.09 * width, top + 2.8), key, largest, unit)
         style.no_axes(axes)
         axes.set(xlim=limits, ylim=(-1.5, top + 4.0))
@@ -198,7 +195,7 @@ def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
 
 
 def _elastic(axes: Axes, averages: xr.Dataset, width: float) -> None:
-    """The response of the lattice with the largest friction to its smallest force, smoothed alike, behind all others."""
+    """The response of the lattice with the largest friction to its smallest force, smoothed alike, behind others."""
     lattice = np.flatnonzero(averages["polydispersity"].values == 0.0)
     if lattice.size and width in averages["width"].values:
         case = int(lattice[np.argmax(averages["friction"].values[lattice])])
@@ -402,7 +399,6 @@ def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str, look: Mapping[
         axes.plot(angle, np.concatenate([density, density, density[:1]]), **{"linewidth": 1.2, **look})
     axes.set_xticks(np.radians(range(0, 360, 60)))
     axes.tick_params(labelsize=7, pad=-2.0)
-    axes.set_rlabel_position(30.0)
     axes.yaxis.set_major_locator(MaxNLocator(3))
     axes.grid(color=style.FAINT, linewidth=0.4)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -79,7 +80,11 @@ def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> 
             name, colour, markers = WAYS[str(gravity)]
             marker = DASHPOTS.get(str(way)) or markers[ramps.index(ramp) if len(markers) > 1 else 0]
             unit = rf" ${ramp:g}\,{style.TIME_UNIT}$" if len(markers) > 1 else ""
-            look = {"color": style.BLACK if way in DASHPOTS else colour, "markersize": 4.0, "linestyle": "none"}
+            look: dict[str, Any] = {
+                "color": style.BLACK if way in DASHPOTS else colour,
+                "markersize": 4.0,
+                "linestyle": "none",
+            }
             if there:
                 axes.plot(force, row, marker=marker, label=str(way) if way in DASHPOTS else name + unit, **look)
             else:
