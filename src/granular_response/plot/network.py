@@ -89,9 +89,9 @@ def draw_contacts(
 #: How each kind of contact of :func:`draw_contact_changes` is drawn, and its name in a legend.
 CONTACT_LINES: dict[str, dict[str, Any]] = {
     "unchanged": {"color": style.BLACK, "linewidth": 0.45, "zorder": 2},
-    "sliding": {"color": style.BLUE, "linewidth": 1.4, "zorder": 3},
+    "sliding": {"color": style.BLUE, "linewidth": 1.2, "zorder": 3},
     "closed": {"color": style.GREEN, "linewidth": 1.8, "zorder": 4},
-    "opened": {"color": style.VERMILION, "linewidth": 2.0, "zorder": 5},
+    "opened": {"color": style.VERMILION, "linewidth": 2.8, "zorder": 5},
 }
 
 

@@ -307,7 +307,7 @@ def _averages(data: xr.Dataset) -> Figure:
             _family(axes, data.isel(case=case, width=w), x)
             letter = chr(ord("a") + row * len(deltas) + column)
             style.letter(axes, letter, text=material(delta, friction).replace(", ", "\n      "))
-        panels[row, 0].set_ylabel(style.FLOOR_STRESS)
+        panels[row, 0].set(ylabel=style.FLOOR_STRESS, ylim=(None, 1.15 * panels[row, 0].get_ylim()[1]))
     for axes in panels[-1]:
         axes.set(xlabel=style.POSITION, xlim=(-45.0, 45.0))
     note = f"over each panel: {style.FORCE}, in brackets the packings at rest where some collapsed; grey: elastic"

@@ -31,8 +31,8 @@ WAYS = {
     "slow": ("gravity ramped over", style.VERMILION, "sDv"),
     "frictionless": ("prepared frictionless", style.GREEN, "^"),
 }
-#: Of those whose dashpots are others than usual.
-DASHPOTS = {"dashpots halved": "P", "dashpots doubled": "X"}
+#: Of those whose dashpots are weaker or stronger than those of the first way.
+WEAKER, STRONGER = "P", "X"
 
 
 @style.context()
@@ -66,6 +66,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> None:
     """A row for each slab: the onset force by every way to prepare it, and how far they lie apart."""
+    usual = float(events["damping_ratio"][0])
     ramps = sorted(set(events["ramp_time"].values[events["gravity"].values == "slow"].tolist()))
     for row, (wall, friction) in enumerate(slabs):
         mine = events.isel(event=(events["wall_friction"].values == wall) & (events["friction"].values == friction))
@@ -74,18 +75,17 @@ def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> 
         # an event at the first force of all has no lower end
         middle = np.where(come, np.sqrt(np.where(low > 0.0, low, high) * np.where(come, high, 1.0)), low)
         axes.plot([middle.min(), middle.max()], [row, row], color=style.FAINT, linewidth=2.0, linestyle="-", zorder=1)
-        for way, gravity, ramp, force, there in zip(
-            mine["way"].values, mine["gravity"].values, mine["ramp_time"].values, middle, come, strict=True
-        ):
-            name, colour, markers = WAYS[str(gravity)]
-            marker = DASHPOTS.get(str(way)) or markers[ramps.index(ramp) if len(markers) > 1 else 0]
-            unit = rf" ${ramp:g}\,{style.TIME_UNIT}$" if len(markers) > 1 else ""
-            look: dict[str, Any] = {
-                "color": style.BLACK if way in DASHPOTS else colour,
-                "markersize": 4.0,
-                "linestyle": "none",
-            }
+        for k, (force, there) in enumerate(zip(middle, come, strict=True)):
+            way, gravity = str(mine["way"].values[k]), str(mine["gravity"].values[k])
+            ramp, damping = float(mine["ramp_time"][k]), float(mine["damping_ratio"][k])
+            name, colour, markers = WAYS[gravity]
+            marker = markers[0]
+            if gravity == "slow":
+                marker, name = markers[ramps.index(ramp) % len(markers)], rf"{name} ${ramp:g}\,{style.TIME_UNIT}$"
+            if damping != usual:
+                marker, name, colour = STRONGER if damping > usual else WEAKER, way, style.BLACK
+            look: dict[str, Any] = {"color": colour, "markersize": 4.0, "linestyle": "none"}
             if there:
-                axes.plot(force, row, marker=marker, label=str(way) if way in DASHPOTS else name + unit, **look)
+                axes.plot(force, row, marker=marker, label=name, **look)
             else:
                 axes.plot(force, row, marker=">", markerfacecolor="none", **look)
