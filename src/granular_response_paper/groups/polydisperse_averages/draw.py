@@ -385,7 +385,8 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     label_ends(coordination, ends)
     _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), colours)
     bearing.set(xlabel=style.FORCE, ylabel="fraction of stable packings", xscale="log", ylim=(0.0, 1.05))
-    bearing.legend(loc="lower left", fontsize=7.5)
+    if bearing.containers:  # some packings collapse
+        bearing.legend(loc="lower left", fontsize=7.5)
     titles((*roses, coordination, bearing), [*map(packing, disordered), "", ""])
     return figure
 
