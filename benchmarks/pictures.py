@@ -84,7 +84,8 @@ def precision(metrics: Metrics) -> Figure:
             mine = pick(runs, method=method)
             if "static_finish" in mine[0]:
                 _points(panel, pick(mine, static_finish=True), "seconds", "error", method, name(method))
-                _points(panel, pick(mine, static_finish=False), "seconds", "error", method, "_", open_=True)
+                text = f"{name(method)}, no static finish"
+                _points(panel, pick(mine, static_finish=False), "seconds", "error", method, text, open_=True)
             else:
                 _points(panel, mine, "seconds", "error", method, name(method))
         own = [row for row in runs if row.get("error_from_own_limit")]
@@ -95,7 +96,8 @@ def precision(metrics: Metrics) -> Figure:
             textcoords="offset points", ha="right", fontsize=7, color=style.MUTED,
         )  # fmt: skip
         _logarithmic(panel, xlabel="run time [s]")
-        panel.set_title(f"$\\mu$ = {reference['friction']:g}, $F$ = {reference['force']:g} $mg$", fontsize=9)
+        title = style.equals(style.FRICTION, reference["friction"]), style.equals("F", reference["force"], style.WEIGHT)
+        panel.set_title(", ".join(title), fontsize=9)
     axes[0, 0].set_ylabel("largest error of the response")
     handles = {}
     for panel in axes[0]:
@@ -135,10 +137,10 @@ def trajectory(metrics: Metrics) -> Figure:
             (fit,) = pick(metrics["orders"], problem=problem, integrator=method) or [None]
             label = name(method) + (f", order {fit['measured_order']:.1f}" if fit else "")
             _points(panel, runs, "time_step", "error", method, label, linestyle="-")
-        _logarithmic(panel, xlabel=r"time step [$\sqrt{R/g}$]")
+        _logarithmic(panel, xlabel=f"time step [${style.TIME_UNIT}$]")
         panel.set_title(title, fontsize=9)
         panel.legend()
-    axes[0, 0].set_ylabel("largest error of positions [$R$]")
+    axes[0, 0].set_ylabel(f"largest error of positions [${style.RADIUS}$]")
     return figure
 
 
@@ -151,7 +153,7 @@ def convergence(metrics: Metrics) -> Figure:
     for k, (friction, force) in enumerate(cases):
         runs = pick(metrics["runs"], friction=friction, force=force)
         ramps = np.array([row["ramp_time"] for row in runs])
-        label = f"$\\mu$ = {friction:g}, $F$ = {force:g} $mg$"
+        label = f"{style.equals(style.FRICTION, friction)}, {style.equals('F', force, style.WEIGHT)}"
         panel.plot(ramps, [row["symmetric_difference"] for row in runs], label=label, **style.marked_line(k))
         whole = np.array([row["difference"] for row in runs])
         if (whole > 1.2 * np.array([row["symmetric_difference"] for row in runs])).any():
@@ -159,7 +161,7 @@ def convergence(metrics: Metrics) -> Figure:
     ends = np.array([20.0, 400.0])
     panel.plot(ends, 2e-5 * ends[0] / ends, color=style.MUTED, linestyle="--", linewidth=0.8)
     panel.annotate("1 / ramp time", (60, 4.6e-6), fontsize=7, color=style.MUTED, ha="right")
-    _logarithmic(panel, xlabel=r"ramp time [$\sqrt{R/g}$]", ylabel="difference from the path")
+    _logarithmic(panel, xlabel=f"ramp time [${style.TIME_UNIT}$]", ylabel="difference from the path")
     figure.legend(loc="outside right upper")
     return figure
 
@@ -201,6 +203,8 @@ def arena(metrics: Metrics) -> Figure:
             panel.plot([row["disks"] for row in rows], [row[key] for row in rows], **look)
         text = {"processor_microseconds": "processor time of a step [µs]", "peak_mebibytes": "peak memory [MiB]"}[key]
         _logarithmic(panel, xlabel="disks", ylabel=text)
+    style.letter(axes[0, 0], "a", place="above", text="time")
+    style.letter(axes[0, 1], "b", place="above", text="memory")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
@@ -217,7 +221,12 @@ def responses(metrics: Metrics) -> Figure:
             key = "processor" if all(row["processor"] for row in rows) else "seconds"
             panel.plot([row[key] for row in rows], [max(row["error"], LEAST_DRAWN) for row in rows], **look)
         _logarithmic(panel, xlabel="processor time [s]")
-        panel.set_title({"friction": "friction 0.2, $F$ = 15 $mg$"}.get(scene, "no friction, $F$ = 4 $mg$"), fontsize=9)
+        panel.set_title(
+            {"friction": "friction 0.2, " + style.equals("F", 15, style.WEIGHT)}.get(
+                scene, "no friction, " + style.equals("F", 4, style.WEIGHT)
+            ),
+            fontsize=9,
+        )
     axes[0, 0].set_ylabel("largest error of the response")
     handles = {}
     for panel in axes[0]:
@@ -238,12 +247,12 @@ def bounces(metrics: Metrics) -> Figure:
     figure, axes = style.figure(1, len(dashpots), width="double", height=3.2, sharey=True)
     drawn = _codes(metrics["runs"])
     for panel, damping in zip(axes[0], dashpots, strict=True):
-        for code, look in drawn.items():
+        for place, (code, look) in enumerate(drawn.items()):
             rows = pick(metrics["runs"], damping_ratio=damping, code=code)
             if code == "granular_response":
                 look = {**look, "zorder": 3, "markersize": 3}
-            else:  # open and without lines: most lie on ours
-                look = {**look, "linestyle": "none", "markerfacecolor": "none", "markersize": 6.5}
+            else:  # open, without lines and of growing size: most lie on ours and on each other
+                look = {**look, "linestyle": "none", "markerfacecolor": "none", "markersize": 4.0 + 1.3 * place}
             panel.plot([row["angle"] for row in rows], [row["energy_kept"] for row in rows], **look)
         if damping == min(dashpots):
             rows = pick(metrics["runs"], damping_ratio=damping, code="granular_response")
@@ -283,25 +292,29 @@ def skipping(metrics: Metrics) -> Figure:
 @style.context()
 def scale(metrics: Metrics) -> Figure:
     """Processor time, which other work on the machine disturbs less, and memory of whole runs against their disks."""
-    figure, axes = style.figure(1, 2, width="double", height=2.7)
+    figure, axes = style.figure(1, 3, width="double", height=2.7)
     labels = {
         "minimise": "no friction, minimisation",
         "path": "friction 0.2, load path",
         "dynamics": "friction 0.2, dynamics",
     }
-    colours = {"minimise": style.SKY, "path": style.BLUE, "dynamics": style.GREEN}
+    looks = {"minimise": (style.SKY, "s"), "path": (style.BLUE, "o"), "dynamics": (style.GREEN, "^")}
+    time, memory, local = axes[0]
     for method in dict.fromkeys(row["method"] for row in metrics["runs"]):
-        runs = pick(metrics["runs"], method=method)
-        disks = [row["disks"] for row in runs]
-        (fit,) = pick(metrics["exponents"], method=method) or [None]
-        for panel, key in zip(axes[0], ("cpu_seconds", "peak_gibibytes"), strict=True):
-            power = f" $\\propto N^{{{fit[f'exponent_of_{key}']:.2f}}}$" if fit else ""
-            label = labels[method] + power if key == "cpu_seconds" else power.strip()
-            marker = {"minimise": "s", "path": "o", "dynamics": "^"}[method]
-            panel.plot(disks, [row[key] for row in runs], marker + "-", color=colours[method], label=label)
-    for panel, text in zip(axes[0], ("processor time [s]", "peak memory [GiB]"), strict=True):
+        runs = sorted(pick(metrics["runs"], method=method), key=lambda row: row["disks"])
+        disks, seconds = (np.array([row[key] for row in runs], dtype=float) for key in ("disks", "cpu_seconds"))
+        colour, marker = looks[method]
+        look = {"color": colour, "marker": marker, "linestyle": "-"}
+        time.plot(disks, seconds, label=labels[method], **look)
+        memory.plot(disks, [row["peak_gibibytes"] for row in runs], **look)
+        # one power does not fit all sizes
+        between = np.sqrt(disks[1:] * disks[:-1])
+        local.plot(between, np.diff(np.log(seconds)) / np.diff(np.log(disks)), **look)
+    for panel, text in ((time, "processor time [s]"), (memory, "peak memory [GiB]")):
         _logarithmic(panel, xlabel="disks", ylabel=text)
-        panel.legend(fontsize=7)
+    local.set(xscale="log", xlabel="disks", ylabel="local exponent of the time", ylim=(0.0, None), xlim=time.get_xlim())
+    local.axhline(1.0, color=style.FAINT, linewidth=0.8, linestyle="-", zorder=0)
+    figure.legend(*time.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure
 
 
@@ -310,7 +323,7 @@ def depth(metrics: Metrics) -> Figure:
     """Depth and width of the teardrop against the force, a curve for each slab; open where it reaches the floor."""
     figure, axes = style.figure(1, 2, width="double", height=2.7)
     slabs = list(dict.fromkeys(row["layers"] for row in metrics["runs"]))
-    for place, (layers, colour) in enumerate(zip(slabs, style.ordered_colours(len(slabs)), strict=True)):
+    for place, (layers, colour) in enumerate(zip(slabs, style.ordered_colours(len(slabs), of="length"), strict=True)):
         runs = [row for row in pick(metrics["runs"], layers=layers) if row["depth"] > 0.0]
         drawn = style.marked_line(place, colour=colour)
         for panel, key in zip(axes[0], ("depth", "width"), strict=True):
@@ -325,7 +338,7 @@ def depth(metrics: Metrics) -> Figure:
                 markeredgecolor=colour,
             )
     for panel, key in zip(axes[0], ("depth", "width"), strict=True):
-        _logarithmic(panel, xlabel="$F_{\\mathrm{ext}}/mg$", ylabel=f"{key} of the region $/R$")
+        _logarithmic(panel, xlabel=style.FORCE, ylabel=f"{key} of the region$\\,/\\,{style.RADIUS}$")
     axes[0, 0].legend(title="layers", loc="lower right")
     return figure
 

@@ -6,10 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
-from granular_response.plot import style
+from granular_response.plot import network, style
+from granular_response.state import FloatArray
 
 from .captions import letters
 
@@ -21,10 +24,13 @@ def among(stored: ArrayLike, wanted: Iterable[float]) -> list[float]:
 
 
 def family(
-    values: Sequence[Any] | np.ndarray, *, marked: bool = True, dashed: bool = False
+    values: Sequence[Any] | np.ndarray, *, of: str, marked: bool = True, dashed: bool = False
 ) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Each of some ordered values with the look of its curve: dark to light, with markers, dashes, or both."""
-    for k, (value, colour) in enumerate(zip(values, style.ordered_colours(max(1, len(values))), strict=False)):
+    """Each of some ordered values with the look of its curve: dark to light, with markers, dashes, or both.
+
+    ``of`` is the quantity of ``style.RAMPS``: it has one ramp of colours in all figures.
+    """
+    for k, (value, colour) in enumerate(zip(values, style.ordered_colours(max(1, len(values)), of=of), strict=False)):
         look = style.marked_line(k) if marked else {}
         yield value, look | (style.line(k) if dashed else {}) | {"color": colour}
 
@@ -59,3 +65,71 @@ def zero(*panels: Axes) -> None:
     """A faint line where there is no response, below everything."""
     for axes in panels:
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
+
+
+#: Width of the largest force of :func:`chains`, in points, and the part of it below which nothing is drawn.
+WIDEST, LEAST = 5.0, 0.01
+
+
+def contact_ends(data: xr.Dataset, position: FloatArray) -> tuple[FloatArray, tuple[np.ndarray, np.ndarray]]:
+    """Points and the two ends of each contact, as :func:`chains` takes them: centres first, then points on walls.
+
+    ``data`` has the contacts and walls of a state's dataset; contacts between disks come before those with walls.
+    """
+    radius, walls = data["radius"].values, data["wall_disk"].values
+    points = np.concatenate([position, network.wall_points(position, radius, walls, data["wall_index"].values)])
+    second = np.concatenate([data["contact_partner"].values, len(radius) + np.arange(len(walls))])
+    return points, (np.concatenate([data["contact_disk"].values, walls]), second)
+
+
+def chains(
+    axes: Axes, position: FloatArray, ends: tuple[ArrayLike, ArrayLike], size: FloatArray, largest: float
+) -> None:
+    """Contact forces as lines from centre to centre, so that chains are unbroken; width and colour by their size.
+
+    ``position`` (n, 2) are centres and points on walls, ``ends`` the two indices (m,) of each contact, ``size`` (m,)
+    is in units of choice; ``largest`` has the full width.
+    """
+    part = np.minimum(size / largest, 1.0)
+    order = np.argsort(part)[np.count_nonzero(part <= LEAST) :]
+    first, second = (np.asarray(one, dtype=int)[order] for one in ends)
+    drawn = network.draw_contacts(
+        axes, position, first, second, linewidth=np.maximum(WIDEST * part[order], 0.3), capstyle="round", zorder=2
+    )
+    ramp = np.array(style.ordered_colours(256)[::-1])
+    drawn.set_color(list(ramp[(255 * np.sqrt(part[order])).astype(int)]))
+
+
+def chain_key(axes: Axes, at: tuple[float, float], size: float, largest: float, unit: str) -> None:
+    """A line that stands for a force of ``size`` in :func:`chains`, from ``at`` (data), and its value."""
+    ends = np.array([at, (at[0] + 2.0, at[1])])
+    chains(axes, ends, ([0], [1]), np.array([size]), largest)
+    note = f"${size:g}\\,{unit}$" if unit else f"${size:g}$"
+    axes.annotate(note, ends[1], (5.0, 0.0), textcoords="offset points", va="center", fontsize=8)
+
+
+def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap: float = 9.0, **text: Any) -> None:
+    """Write names beside the ends of curves, so far apart that all can be read; call it when the limits are set.
+
+    ``ends`` are pairs of a name, the end of its curve (data), and its colour; ``gap`` is in points.
+    """
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()
+    at = sorted((axes.transData.transform((x, y))[1] * 72.0 / figure.dpi, *end) for end in ends for _, x, y, _ in [end])
+    places: list[float] = []
+    for height, *_ in at:
+        places.append(max(height, places[-1] + gap) if places else height)
+    shift = float(np.mean([place - height for place, (height, *_) in zip(places, at, strict=True)])) if at else 0.0
+    look: dict[str, Any] = {"ha": "left", "va": "center", "fontsize": 8, "annotation_clip": False, "linespacing": 1.0}
+    look |= {"path_effects": [withStroke(linewidth=1.5, foreground="white")], **text}
+    beside, over = 6.0 if look["ha"] == "left" else 0.0, 3.0 if look["va"] == "bottom" else 0.0
+    for place, (height, name, x, y, colour) in zip(places, at, strict=True):
+        axes.annotate(
+            name, (x, y), (beside, place - shift - height + over), textcoords="offset points", color=colour, **look
+        )
+
+
+def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:
+    """The elastic response, or that to the smallest force, as a broad grey line behind all others."""
+    axes.plot(x, response, color=style.FAINT, linestyle="-", linewidth=3.5, zorder=1, label="elastic")

@@ -20,8 +20,10 @@ def test_both_laws_are_at_rest_and_matched(datasets):
     assert (between > 1e-3).all()  # the laws are not the same one
 
 
-def test_the_figure_has_a_panel_for_each_friction(datasets):
-    (figure,) = draw.draw(datasets).values()
+def test_the_figure_has_a_panel_for_each_friction(datasets, looks_as_stored):
+    drawn = draw.draw(datasets)
+    looks_as_stored(drawn)
+    (figure,) = drawn.values()
     assert len(figure.axes) == 2
     curves = [[line for line in axes.lines if len(line.get_xdata())] for axes in figure.axes]  # others are of legends
     assert {len(lines) for lines in curves} == {4}

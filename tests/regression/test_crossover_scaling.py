@@ -140,8 +140,9 @@ def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
     assert simulate.continuum(series["friction"].model_copy(update={"confined": "constant"})) is None
 
 
-def test_figures_have_their_panels_and_captions(datasets, parameters):
+def test_figures_have_their_panels_and_captions(datasets, parameters, looks_as_stored):
     figures = draw.draw(datasets)
+    looks_as_stored(figures)
     assert set(figures) == set(draw.captions(datasets, parameters))
     assert [len(figure.axes) for figure in figures.values()] == [4, 2, 3]
 

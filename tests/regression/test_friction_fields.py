@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from granular_response.plot import style
 from granular_response_paper.groups.friction_fields import draw as figures
 
 SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")
@@ -53,10 +52,12 @@ def test_profiles(datasets) -> None:
     assert np.all(profiles["axis_magnitude"][1] > 2.0 * profiles["axis_magnitude"][0])
 
 
-def test_figures(datasets) -> None:
+def test_figures(datasets, looks_as_stored) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == ["fig13_force_chains", "fig14_vertical_stress", "fig15_force_profiles"]
     lines = drawn["fig15_force_profiles"].axes[1].lines
-    np.testing.assert_array_equal(lines[0].get_ydata(), datasets["profiles"]["magnitude"].values[1, 0])
-    for figure in drawn.values():
-        assert style.render(figure)
+    sides = np.concatenate([line.get_ydata() for line in lines])
+    stored = datasets["profiles"]["magnitude"].values[1, 0]
+    np.testing.assert_array_equal(np.sort(sides), np.sort(stored[np.isfinite(stored)]))
+    assert abs(len(lines[0].get_ydata()) - len(lines[1].get_ydata())) <= 1  # of the two orientations in turn
+    looks_as_stored(drawn)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.plot import style
 from granular_response.state import SLIDING
 from granular_response.store import files as store
 from granular_response_paper.groups.friction_linear_range import draw as figures
@@ -92,7 +91,7 @@ def test_stored_states_show_the_contact_changes(datasets):
     assert near[0] == 0 < near[1] <= int(opened[7])
 
 
-def test_datasets_are_stored_and_drawn(datasets, tmp_path):
+def test_datasets_are_stored_and_drawn(datasets, tmp_path, looks_as_stored):
     store.write(tmp_path / "group.nc", datasets)
     drawn = figures.draw(store.read(tmp_path / "group.nc"))
     assert set(drawn) == {
@@ -107,5 +106,4 @@ def test_datasets_are_stored_and_drawn(datasets, tmp_path):
     marks = [line.get_xdata()[0] for line in curves if len(line.get_xdata()) == 2]  # what the paper says
     assert [len(line.get_xdata()) for line in curves[: len(curves) - len(marks)]] == [7, 8, 6]
     assert marks == list(figures.PAPER_OPENINGS.values())
-    for figure in drawn.values():
-        assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")
+    looks_as_stored(drawn)

@@ -3,7 +3,6 @@
 import numpy as np
 import reduced
 
-from granular_response.plot import style
 from granular_response_paper.groups.frictionless_crossover import draw as figures
 
 PARAMETERS = reduced.parameters("frictionless_crossover")
@@ -112,10 +111,10 @@ def test_soft_slabs_open_later(datasets) -> None:
     assert np.all(np.diff(stiffness["teardrop_depth"].sel(force=1.0).values) >= -0.01)
 
 
-def test_figures(datasets) -> None:
+def test_figures(datasets, looks_as_stored) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == STEMS
-    assert all(style.render(figure) for figure in drawn.values())
+    looks_as_stored(drawn)
     profiles, _ = drawn["fig03_frictionless_response"].axes
     response = datasets["response"]
     inside = response["interior"].values > 0

@@ -95,12 +95,13 @@ def test_the_reversible_range_is_where_a_loop_begins_to_leave_something(datasets
     assert np.isnan(without["high"]) and without["low"] == PARAMETERS["cases"][SMOOTH]["forces"][-1]
 
 
-def test_figures_have_their_panels_and_captions(datasets):
+def test_figures_have_their_panels_and_captions(datasets, looks_as_stored):
     figures = draw.draw(datasets)
     assert {name: len(figure.axes) for name, figure in figures.items()} == {
         "hysteresis_loops": 2,
-        "hysteresis_ranges": 3,
+        "hysteresis_ranges": 4,
     }
+    looks_as_stored(figures)
     assert set(draw.captions(datasets, Parameters.model_validate(PARAMETERS))) == set(figures)
 
 

@@ -39,8 +39,9 @@ def test_the_power_of_a_power_law_is_found():
     assert np.isnan(simulate.decay(height, height**-1.7, 2.0, (2.0, 2.5))).all()
 
 
-def test_figures_have_their_panels(datasets):
+def test_figures_have_their_panels(datasets, looks_as_stored):
     figures = draw.draw(datasets)
+    looks_as_stored(figures)
     assert set(figures) == {"influence_map", "influence_saint_venant"}
     assert len(figures["influence_saint_venant"].axes) == 2
 

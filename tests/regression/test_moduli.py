@@ -93,8 +93,9 @@ def test_a_root_is_found_between_points():
     assert np.isnan(simulate.root(x, x))
 
 
-def test_figures_have_their_panels_and_claims_are_judged(datasets):
+def test_figures_have_their_panels_and_claims_are_judged(datasets, looks_as_stored):
     figures = draw.draw(datasets)
+    looks_as_stored(figures)
     assert set(figures) == {"moduli_lattice", "moduli_packings", "moduli_response", "moduli_size"}
     assert len(figures["moduli_lattice"].axes) == 3
     for claim in CLAIMS:

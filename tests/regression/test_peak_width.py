@@ -54,8 +54,9 @@ def test_intervals_hold_the_power(datasets):
     assert (low < high).all()
 
 
-def test_figures_have_their_panels(datasets):
+def test_figures_have_their_panels(datasets, looks_as_stored):
     figures = draw.draw(datasets)
+    looks_as_stored(figures)
     assert set(figures) == {"peak_width_depth", "peak_width_powers"}
     assert len(figures["peak_width_depth"].axes) == 6
     assert len(figures["peak_width_powers"].axes) == 2

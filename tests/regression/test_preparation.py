@@ -62,15 +62,17 @@ def test_a_case_is_what_its_scene_says():
     assert task().measured["response_at_centre"][0] == Measures(path).centre(path.at(forces[0]))
 
 
-def test_the_figure_and_the_numbers_show_what_is_stored(datasets):
-    (figure,) = figures.draw(datasets).values()
+def test_the_figure_and_the_numbers_show_what_is_stored(datasets, looks_as_stored):
+    drawn = figures.draw(datasets)
+    looks_as_stored(drawn)
+    (figure,) = drawn.values()
     panel = figure.axes[0]
     found = datasets["events"]
     opening = found.isel(event=found["name"].values == "first_opening")
-    marks = sum(len(line.get_xdata()) for line in panel.lines if line.get_marker() in "os^D" and line.get_xdata().size)
+    marks = sum(line.get_linestyle() == "None" and line.get_marker() != ">" for line in panel.lines)
     assert marks == int(np.isfinite(opening["high"]).sum()) == 6
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [way["name"] for way in WAYS]
+    assert len(legend.get_texts()) == len(WAYS)
     named = numbers(datasets)
     assert named["first_opening_0.2_rough_without friction"] == float(opening["high"][-1])
     assert len(named) == int(np.isfinite(found["high"]).sum())

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from granular_response.plot import style
 from granular_response_paper.groups.slab_comparison import draw as figures
 
 
@@ -42,10 +41,10 @@ def test_profiles_are_padded_to_the_longest_row(datasets) -> None:
         np.testing.assert_allclose(slabs["elastic"].values[k, :count].sum(), 1.0, atol=2e-3)
 
 
-def test_figure(datasets) -> None:
+def test_figure(datasets, looks_as_stored) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == ["fig01b_slab_comparison"]
     profiles, distances = drawn["fig01b_slab_comparison"].axes
     np.testing.assert_array_equal(distances.lines[0].get_ydata(), datasets["slabs"]["distance"].values[:3])
     assert [text.get_text() for text in profiles.get_legend().get_texts()][2] == "elastic slab, smooth"
-    assert style.render(drawn["fig01b_slab_comparison"])
+    looks_as_stored(drawn)

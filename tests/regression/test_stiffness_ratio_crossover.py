@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.plot import style
 from granular_response.theory import crossover
 from granular_response_paper.groups.stiffness_ratio_crossover import draw as figures
 
@@ -45,7 +44,7 @@ def test_elastic_bodies_turn_where_theory_says(datasets) -> None:
     np.testing.assert_allclose(shares, 1.0, atol=1e-4)  # disks at rest are not quite 2 apart
 
 
-def test_figures(datasets) -> None:
+def test_figures(datasets, looks_as_stored) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == ["fig10_stiffness_ratio", "fig11_spring_model"]
     simulated, _, dips = drawn["fig10_stiffness_ratio"].axes[:3]
@@ -53,4 +52,4 @@ def test_figures(datasets) -> None:
     np.testing.assert_array_equal(curves["0.2"], datasets["response"]["floor_response"].sel(stiffness_ratio=0.2))
     marked = next(line for line in dips.lines if line.get_label() == "simulation")
     np.testing.assert_array_equal(marked.get_ydata(), datasets["response"]["central_dip"])
-    assert style.render(drawn["fig10_stiffness_ratio"])
+    looks_as_stored(drawn)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import reduced
 
-from granular_response.plot import style
 from granular_response.scene import Scene
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper.groups.superposition import draw as figures
@@ -99,7 +98,7 @@ def test_no_force_has_no_relative_error() -> None:
     assert np.isnan(study.superposition_error(np.ones(2), np.ones(2), np.zeros(2))).all()
 
 
-def test_figures(datasets) -> None:
+def test_figures(datasets, looks_as_stored) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == ["fig23_superposition", "fig24_superposition", "fig24b_superposition_error"]
     panels = drawn["fig24_superposition"].axes
@@ -107,5 +106,4 @@ def test_figures(datasets) -> None:
     shown = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=1.0)
     np.testing.assert_array_equal(lines["(Left+Right)"], shown.sel(part="both"))
     np.testing.assert_array_equal(lines["(Left)+(Right)"], shown.sel(part="left") + shown.sel(part="right"))
-    for figure in drawn.values():
-        assert style.render(figure)
+    looks_as_stored(drawn)

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from granular_response.plot import style
 from granular_response_paper.groups.torque import draw as figures
 
 CHANGES = ("force_change", "stress_change", "antisymmetric_change")
@@ -38,12 +37,11 @@ def test_loads_are_balanced(datasets) -> None:
     assert np.all(np.diff(data["rotation"]) < 0.0)
 
 
-def test_figures(datasets) -> None:
+def test_figures(datasets, looks_as_stored) -> None:
     drawn = figures.draw(datasets)
     assert list(drawn) == ["fig18_torque", "fig18_torque_reach"]
     lines = drawn["fig18_torque_reach"].axes[0].lines
     np.testing.assert_array_equal(lines[1].get_ydata(), datasets["reach"]["force_change"].values[2])
     arcs = [len(axes.patches) for axes in drawn["fig18_torque"].axes]
     assert arcs == [0, 1, 1]
-    for figure in drawn.values():
-        assert style.render(figure)
+    looks_as_stored(drawn)

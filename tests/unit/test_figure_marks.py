@@ -31,7 +31,7 @@ def test_brackets_of_the_largest_step_that_settles(axes) -> None:
     [(1.0, 3.0, []), (-np.inf, 3.0, [0.1]), (1.0, np.inf, [10.0]), (-np.inf, np.inf, [0.1, 10])],
 )
 def test_an_interval_beyond_all_forces_has_an_arrow_head_at_the_edge(axes, low, high, heads) -> None:
-    phase_diagram._bar(axes, 0.2, low, high, (0.1, 10.0), 1.0)
+    phase_diagram._bar(axes, 0.2, low, high, (0.1, 10.0), 1.0, style.BLUE)
     bar, *arrows = axes.lines
     np.testing.assert_allclose(bar.get_ydata(), np.clip([low, high], 0.1, 10.0))
     assert [float(arrow.get_ydata()[0]) for arrow in arrows] == heads

@@ -98,8 +98,6 @@ def test_annotations_extend_the_view(axes) -> None:
     nd.draw_box(axes, Box(8.0), 5.0)
     nd.draw_load(axes, (4.0, 5.0), length=4.0)
     assert axes.dataLim.ymax >= 9.0 and axes.dataLim.xmax >= 8.0
-    nd.draw_force_key(axes, (0.0, -1.0), 2.0, length_per_force=0.5, width_per_force=0.3)
-    assert "2" in axes.texts[-1].get_text()
 
 
 def test_bad_input_is_named(axes) -> None:

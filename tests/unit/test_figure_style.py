@@ -68,11 +68,13 @@ def test_settings_outside_are_untouched() -> None:
     assert dict(mpl.rcParams) == before
 
 
-def test_ordered_colours_darken_to_one_side_and_stay_off_white() -> None:
-    colours = np.array([to_rgb(colour) for colour in style.ordered_colours(9)])
-    lightness = colours @ np.array([0.2126, 0.7152, 0.0722])
-    assert np.all(np.diff(lightness) > 0.0)
-    assert lightness[-1] < 0.8
+@pytest.mark.parametrize("of", style.RAMPS)
+def test_ordered_colours_darken_to_one_side_and_are_seen_on_white(of: str) -> None:
+    colours = np.array([to_rgb(colour) for colour in style.ordered_colours(9, of=of)])
+    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    luminance = linear @ np.array([0.2126, 0.7152, 0.0722])  # of WCAG 2
+    assert np.all(np.diff(luminance) > 0.0)
+    assert 1.05 / (luminance[-1] + 0.05) > 2.9
 
 
 def test_categorical_cycle_has_a_style_of_its_own_for_each_colour() -> None:

@@ -14,10 +14,20 @@ def test_wanted_values_are_those_that_are_stored_or_all():
 
 @pytest.mark.parametrize("marked", [True, False])
 def test_curves_of_a_family_differ_in_colour_and_form(marked):
-    looks = [look for _, look in panels.family([4.0, 10.0, 20.0], marked=marked, dashed=not marked)]
+    looks = [look for _, look in panels.family([4.0, 10.0, 20.0], of="force", marked=marked, dashed=not marked)]
     assert len({look["color"] for look in looks}) == 3
     assert len({str(look["marker" if marked else "linestyle"]) for look in looks}) == 3
-    assert not list(panels.family([]))
+    assert not list(panels.family([], of="force"))
+
+
+def test_names_beside_curves_do_not_cover_each_other():
+    axes = style.figure()[1][0, 0]
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    panels.label_ends(axes, [("high", 0.5, 0.52, "black"), ("low", 0.5, 0.5, "black"), ("far", 0.5, 0.9, "black")])
+    axes.figure.draw_without_rendering()
+    low, high, far = (one.get_window_extent() for one in axes.texts)
+    assert [text.get_text() for text in axes.texts] == ["low", "high", "far"]
+    assert low.y1 <= high.y0 + 2.0 and high.y1 < far.y0
 
 
 def test_titles_have_the_letters_of_their_picture():

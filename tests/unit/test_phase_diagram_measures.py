@@ -423,9 +423,9 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     store.write(tmp_path / "phase_diagram.nc", found)
     drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))
     assert {"fig22_phase_diagram", "five_realizations"} <= drawn.keys()
-    lattice, disordered = drawn["fig22_phase_diagram"].axes[2:]  # the row of the larger width
+    lattice, disordered = drawn["crossover_intervals"].axes[2:]  # the row of the larger width
     for axes, expected in ((lattice, force[:1]), (disordered, force[1:])):
-        marks = [line for line in axes.get_lines() if line.get_marker() == "o"]
+        marks = [line for line in axes.get_lines() if line.get_marker() in "o^v" and line.get_zorder() < 6]
         assert sorted(y for line in marks for y in line.get_ydata()) == pytest.approx(sorted(expected))
     for figure in drawn.values():
         assert style.render(figure, "png", dpi=40).startswith(b"\x89PNG")

@@ -89,9 +89,9 @@ def draw_contacts(
 #: How each kind of contact of :func:`draw_contact_changes` is drawn, and its name in a legend.
 CONTACT_LINES: dict[str, dict[str, Any]] = {
     "unchanged": {"color": style.BLACK, "linewidth": 0.45, "zorder": 2},
-    "sliding": {"color": style.ORANGE, "linewidth": 1.4, "zorder": 3},
-    "closed": {"color": style.BLUE, "linewidth": 1.8, "zorder": 4},
-    "opened": {"color": style.VERMILION, "linewidth": 2.0, "zorder": 5},
+    "sliding": {"color": style.BLUE, "linewidth": 1.2, "zorder": 3},
+    "closed": {"color": style.GREEN, "linewidth": 1.8, "zorder": 4},
+    "opened": {"color": style.VERMILION, "linewidth": 2.8, "zorder": 5},
 }
 
 
@@ -256,31 +256,6 @@ def force_scale(*forces: ArrayLike, longest: float = 2.0, widest: float = 3.0) -
     if not largest > 0.0:
         raise ValueError("forces: at least one must differ from zero")
     return {"length_per_force": longest / largest, "width_per_force": widest / largest}
-
-
-def draw_force_key(
-    axes: Axes, at: tuple[float, float], magnitude: float, *, length_per_force: float, width_per_force: float
-) -> None:
-    """A horizontal line that stands for a force of ``magnitude`` (mg), from ``at`` (data), and its value."""
-    length = length_per_force * magnitude
-    draw_force_chains(
-        axes,
-        [(at[0] + 0.5 * length, at[1])],
-        [(magnitude, 0.0)],
-        length_per_force=length_per_force,
-        width_per_force=width_per_force,
-        clip_on=False,
-    )
-    with style.context():
-        axes.annotate(
-            f"${magnitude:g}\\,{style.WEIGHT}$",
-            (at[0] + length, at[1]),
-            (4.0, 0.0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-            annotation_clip=False,
-        )
 
 
 def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, length: float = 4.0) -> None:

@@ -19,7 +19,7 @@ import matplotlib as mpl
 import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
+from matplotlib.colors import LinearSegmentedColormap, to_hex
 from matplotlib.figure import Figure
 
 from ..store import atomic
@@ -52,6 +52,15 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 #: Colour map of magnitudes.
 SEQUENTIAL = "viridis"
+#: The ends of the ramps of :func:`ordered_colours`, dark to light, one for each quantity that curves are told apart by.
+#: The light ends keep a contrast of 3 to white.
+RAMPS: dict[str, tuple[str, ...]] = {
+    "force": ("#440154", "#31688E", "#2A9D76"),
+    "friction": ("#000000", "#004A7F", "#2E9BD6"),
+    "polydispersity": ("#3D1300", "#A84300", "#E0792B"),
+    "length": ("#2D004B", "#8B3A8F", "#CC79A7"),
+    "other": ("#1F1F00", "#6E6A00", "#A09A20"),
+}
 
 #: Symbols of the paper, for :func:`equals` and for labels: set them between dollar signs.
 F_EXT = r"F_{\mathrm{ext}}"
@@ -194,14 +203,12 @@ def figure(
         return made, made.subplots(rows, columns, squeeze=False, **subplots)
 
 
-def ordered_colours(count: int, *, colour_map: str = SEQUENTIAL) -> list[str]:
-    """``count`` colours for an ordered family of curves (forces, frictions), dark to light.
-
-    The palest end of the map is left out, as a thin line in it is not seen on white.
-    """
+def ordered_colours(count: int, *, of: str = "force") -> list[str]:
+    """``count`` colours for an ordered family of curves, dark to light, on the ramp of a quantity of :data:`RAMPS`."""
     if count < 1:
         raise ValueError(f"count = {count}: must be at least 1")
-    return [to_hex(colour) for colour in mpl.colormaps[colour_map](np.linspace(0.0, 0.86, count))]
+    ramp = LinearSegmentedColormap.from_list(of, RAMPS[of])
+    return [to_hex(colour) for colour in ramp(np.linspace(0.0, 1.0, count))]
 
 
 def line(index: int) -> dict[str, Any]:
@@ -255,14 +262,6 @@ def equals(symbol: str, value: float, unit: str = "") -> str:
     exponent = round(np.log10(value)) if value >= 1e4 else 0
     number = f"10^{{{exponent}}}" if exponent and np.isclose(value, 10.0**exponent) else f"{value:g}"
     return f"${symbol} = {number}" + (rf"\,{unit}$" if unit else "$")
-
-
-def paper_note(axes: Axes, text: str) -> None:
-    """What the paper says of entries of the legend of ``axes``, below it."""
-    with context():
-        legend = axes.get_legend()
-        assert legend is not None
-        axes.annotate(text, (1.0, 0.0), xycoords=legend, ha="right", va="top", fontsize=7, linespacing=1.0, color=PAPER)
 
 
 def paper_value(

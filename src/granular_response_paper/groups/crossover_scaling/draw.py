@@ -9,10 +9,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, titles
+from granular_response_paper.panels import family, label_ends, titles
 
 from .parameters import Parameters
 
@@ -101,25 +102,26 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     figure, panels = style.figure(2, 2, width="double", height=5.6)
     titles(panels.flat, NAMES.values())
     for event, axes in zip(NAMES, panels.flat, strict=False):
+        exponents = []
         for look, series in enumerate(of_layers(powers)):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             layers = one["layers"].values.astype(float)
             middle, half = _brackets(one, event)
-            power, least, largest = powers["exponent"].isel(series=series).sel(event=event).values
-            label = f"{said(power)} ({said(least)} to {said(largest)})"
-            axes.errorbar(layers, middle, half, capsize=2, label=label, **_symbol(look))
+            power = float(powers["exponent"].isel(series=series).sel(event=event)[0])
+            axes.errorbar(layers, middle, half, capsize=2, **_symbol(look))
             stored = one["surveyed"].values > 0
             axes.plot(layers[stored], middle[stored], **_symbol(look) | SURVEYED)
             ends = np.array([layers.min(), layers.max()])
             through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
-            axes.plot(ends, through, color=_symbol(look)["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
+            colour = _symbol(look)["color"]
+            axes.plot(ends, through, color=colour, linewidth=0.9, linestyle=style.LINE_STYLES[look])
+            exponents.append((f"$N^{{{said(power)}}}$", float(ends[1]), float(through[1]), colour))
         style.logarithmic(axes)
         axes.set(xlabel="layers $N$", ylabel=style.FORCE)
         _plain(axes, apart(slabs["layers"].values.tolist()))
-        low, high = axes.get_ylim()
-        if low > 0.0:
-            axes.set_ylim(low, high * (high / low) ** 0.75)  # room for the legend
-        axes.legend(loc="upper left", title="exponent of $N$", fontsize=7, ncols=2, columnspacing=1.0)
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.set_xlim(right=1.5 * float(slabs["layers"].max()))
+        label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=8.0)
     key = panels[1, 1]
     key.set_axis_off()
     for look, series in enumerate(of_layers(powers)):
@@ -157,7 +159,7 @@ def _regions(slabs: xr.Dataset, paths: xr.Dataset, powers: xr.Dataset) -> Figure
     for axes, series in zip(panels[0], chosen, strict=False):
         rows = _slabs_of(slabs, powers, series)
         weight = float(powers["friction"][series]) > 0.0
-        for k, look in family(rows):
+        for k, look in family(rows, of="length"):
             layers, confinement = float(slabs["layers"][k]), float(slabs["confinement"][k])
             force = paths["force"].values[k] / (layers**2 if weight else layers * confinement)
             depth = paths["depth"].values[k] / (ROW * (layers - 1.0))
@@ -203,9 +205,10 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             axes.errorbar(x, middle, half, capsize=2, label=label, **style.marked_line(look) | {"markersize": 4.5})
         style.logarithmic(axes)
         axes.set(xlabel=APART[kind])
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         low, high = axes.get_ylim()
         if low > 0.0:
-            axes.set_ylim(low / 1.3, high * max((high / low) ** 0.7, 3.0))
+            axes.set_ylim(low / 1.3, high * max((high / low) ** 0.5, 2.0))
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_formatter("{x:g}")
             axis.set_minor_formatter("")

@@ -12,12 +12,14 @@ from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
 from granular_response.state import Box
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import family
+from granular_response_paper.panels import chain_key, chains, contact_ends, outer, titles
 
 from .parameters import Parameters
 
 #: Half of the width of the stress maps and of the profiles, in mean radii.
 MAP_HALF_WIDTH, PROFILE_HALF_WIDTH = 30.0, 20.0
+#: Force times depth per load that has the full width in the lower row of Fig. 13.
+DEEP = 2.0
 #: Contours of the stress maps, per largest stress.
 LEVELS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7)
 #: Contours of the differences, of both signs, per largest difference.
@@ -59,35 +61,33 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 
 def _force_chains(data: xr.Dataset) -> Figure:
-    """The central third of the slab; one scale for all panels."""
+    """The central third of the slab: the forces, and below them the forces by how they fall with the depth."""
     frictions = data["friction"].values
-    figure, panels = style.figure(len(frictions), 1, width="single", height=2.4 * len(frictions) + 0.1)
-    width, disk = float(data["width"]), int(data["loaded_disk"])
-    added, at_wall = data["contact_added_force"].values, data["wall_added_force"].values
-    scale = network.force_scale(added.reshape(-1, 2), longest=4.6, widest=4.6)
-    smallest = 1e-3 * float(np.linalg.norm(added, axis=-1).max())
+    figure, panels = style.figure(2, len(frictions), width="double", height=4.2)
+    width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"])
     radius = data["radius"].values
-    for index, axes in enumerate(panels[:, 0]):
-        position = data["position"].values[index]
-        pairs = data["contact_disk"].values, data["contact_partner"].values
-        walls = data["wall_disk"].values, data["wall_index"].values
+    forces = np.concatenate([data["contact_added_force"].values, data["wall_added_force"].values], axis=1)
+    size = np.linalg.norm(forces, axis=-1)
+    for index, position in enumerate(data["position"].values):
+        points, (first, second) = contact_ends(data, position)
+        x, z = position[disk]
         inside = np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0
-        network.draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT)
-        for point, force in (
-            (network.pair_points(position, radius, *pairs), added[index]),
-            (network.wall_points(position, radius, *walls), at_wall[index]),
+        near = np.abs(points[first, 0] - 0.5 * width) <= width / 6.0 + 2.0
+        depth = z - 0.5 * (points[first, 1] + points[second, 1])
+        for axes, values, largest, key, unit in (
+            (panels[0, index], size[index], float(size.max()), _round(load / 5.0), style.WEIGHT),
+            (panels[1, index], size[index] * depth / load, DEEP, 0.5, style.RADIUS),
         ):
-            shown = np.abs(point[:, 0] - 0.5 * width) <= width / 6.0
-            network.draw_force_chains(axes, point[shown], force[shown], smallest=smallest, **scale)
-        top = (float(position[disk, 0]), float(position[disk, 1]) + 1.0)
-        network.draw_loaded_disk(axes, (top[0], top[1] - 1.0), float(radius[disk]))
-        network.draw_load(axes, top)
-        network.draw_box(axes, Box(width), top[1], between=(width / 3.0, 2.0 * width / 3.0))
-        style.no_axes(axes)
-        axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-0.8, top[1] + 4.2))
-        style.letter(axes, chr(ord("a") + index), text=_friction(frictions[index]))
-        magnitude = _round(float(data["force"]) / 5.0)
-        network.draw_force_key(axes, (2.0 * width / 3.0 - 8.0, top[1] + 2.5), magnitude, **scale)
+            network.draw_disks(axes, position[inside], radius[inside], edgecolor=style.FAINT, linewidth=0.3)
+            chains(axes, points, (first[near], second[near]), values[near], largest)
+            chain_key(axes, (2.0 * width / 3.0 - 10.0, z + 3.0), key, largest, unit)
+            network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
+            network.draw_load(axes, (x, z + 1.0))
+            network.draw_box(axes, Box(width), z, between=(width / 3.0, 2.0 * width / 3.0))
+            style.no_axes(axes)
+            axes.set(xlim=(width / 3.0, 2.0 * width / 3.0), ylim=(-0.8, z + 5.2))
+    names = list(map(_friction, frictions))
+    titles(panels.flat, [*names, *(f"{name}, times depth" for name in names)])
     return figure
 
 
@@ -118,6 +118,7 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
             axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
         style.letter(axes, letters[rows + index], place="above", text=f"{name}, minus ({letters[len(maps)]})")
     for axes in [*panels[:, 0], *panels[:-1, 1]]:
+        network.draw_load(axes, (0.0, float(z.max())), length=3.0)
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
         axes.axhspan(0.0, width, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
         axes.axhline(width, color=style.MUTED, linewidth=0.5)
@@ -128,7 +129,7 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         axes.set_ylabel(style.HEIGHT)
     empty = panels[-1, 1]
     empty.set_axis_off()
-    steps, both = (0.0, 0.005, 0.02, 0.05, 0.1, 0.15), (-0.02, -0.01, -0.002, 0.0, 0.002, 0.01, 0.02)
+    steps, both = (0.0, 0.005, 0.02, 0.05, 0.1, 0.15), (-0.02, -0.005, 0.0, 0.005, 0.02)
     for place, mapped, label, ticks in (
         (0.62, image, style.STRESS, [t for t in steps if t <= largest]),
         (0.16, change, f"difference of {style.STRESS}", [t for t in both if abs(t) <= furthest]),
@@ -142,22 +143,27 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
 
 
 def _force_profiles(data: xr.Dataset) -> Figure:
+    """A row for each depth on a scale of its own; a line for each of the two orientations of contacts."""
     frictions, depths = data["friction"].values, data["depth"].values
-    figure, panels = style.figure(1, len(frictions), width="double", height=3.1, sharex=True, sharey=True)
-    for index, axes in enumerate(panels[0]):
-        for row, (depth, look) in enumerate(family(depths, dashed=True)):
-            look |= {"linewidth": 0.8, "markersize": 2.8}
-            x, magnitude = (data[name].values[index, row] for name in ("contact_x", "magnitude"))
-            axes.plot(x, magnitude, **look, label=f"${depth:.1f}\\,{style.RADIUS}$")
-        half = PROFILE_HALF_WIDTH
-        axes.set(xlabel=style.POSITION, xlim=(-half, half))
-        style.letter(axes, chr(ord("a") + index), place="above", text=_friction(frictions[index]))
-    # small forces far from the middle are seen beside the largest ones
-    panels[0, 0].set_yscale("function", functions=(lambda y: np.sqrt(np.maximum(y, 0.0)), np.square))
-    panels[0, 0].set_ylim(0.0, 1.06 * float(np.nanmax(data["magnitude"].values)))
-    panels[0, 0].set_yticks([0.0, 1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0])
-    panels[0, 0].set_ylabel(style.CONTACT_FORCE)
-    panels[0, -1].legend(title="depth", loc="upper right")
+    figure, panels = style.figure(len(depths), len(frictions), width="double", height=4.8, sharex=True, sharey="row")
+    half = PROFILE_HALF_WIDTH
+    for (row, column), axes in np.ndenumerate(panels):
+        x, magnitude = (data[name].values[column, row] for name in ("contact_x", "magnitude"))
+        known = np.isfinite(x) & np.isfinite(magnitude)
+        x, magnitude = x[known], magnitude[known]
+        # on the lattice the middles of the contacts down to the right are half a radius to the right of disks
+        right = np.round(x - 0.5 - np.floor(data["row"].values[row])) % 2 == 0
+        for side, name, look in ((right, "right", style.line(0)), (~right, "left", style.line(1))):
+            order = np.flatnonzero(side)[np.argsort(x[side])]
+            axes.fill_between(x[order], magnitude[order], color=look["color"], alpha=0.15, linewidth=0.0)
+            axes.plot(x[order], magnitude[order], **look, linewidth=1.0, label=f"down to the {name}")
+        axes.set(xlim=(-half, half), ylim=(0.0, None))
+        name = f"depth ${depths[row]:.1f}\\,{style.RADIUS}$"
+        axes.text(0.98, 0.9, name, transform=axes.transAxes, ha="right", va="top")
+    outer(panels, style.POSITION, "")
+    figure.supylabel(style.CONTACT_FORCE, fontsize=9)
+    panels[0, -1].legend(loc="upper left", fontsize=7)
+    titles(panels[0], map(_friction, frictions))
     return figure
 
 

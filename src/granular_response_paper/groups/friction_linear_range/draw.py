@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,7 @@ from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
-from granular_response_paper.panels import among, family, titles, zero
+from granular_response_paper.panels import among, family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
 
@@ -46,7 +46,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     response = datasets["response"]
     figures = {
         "fig06_linear_range": _linear_range(response),
-        "fig12_friction_crossover": _friction_axis(datasets["friction_axis"]),
+        "fig12_friction_crossover": _friction_axis(datasets["friction_axis"], response),
     }
     stored = response["friction"].values
     if np.isin(PROFILE_FRICTIONS, stored).all():
@@ -95,46 +95,50 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _linear_range(response: xr.Dataset) -> Figure:
     """Fig. 6."""
-    figure, axes = style.figure(height=3.0)
+    figure, axes = style.figure(width="double", height=3.2)
     panel = axes[0, 0]
     frictions = response["friction"].values
-    for friction, look in family(frictions):
+    ends = []
+    for friction, look in family(frictions, of="friction"):
         curve = response["response_at_centre"].sel(friction=friction).dropna("force")
-        panel.plot(curve["force"], curve, label=f"{friction:g}", **look | {"markersize": 3.0})
+        panel.plot(curve["force"], curve, **look | {"markersize": 3.0})
+        ends.append(
+            (style.equals(style.FRICTION, friction), float(curve["force"][-1]), float(curve[-1]), look["color"])
+        )
     panel.set_xscale("log")
     panel.xaxis.set_major_formatter("{x:g}")
-    panel.set_ylim(bottom=0.0, top=1.1 * float(response["response_at_centre"].max()))
+    panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE, ylim=(0.0, None))
+    panel.set_xlim(right=2.0 * max(x for _, x, *_ in ends))
+    label_ends(panel, ends)
     for friction, force in PAPER_OPENINGS.items():
         name = f"paper, $\\mu = {friction:g}$: {force:g}"
-        style.paper_value(panel, force, name, side="behind" if force == max(PAPER_OPENINGS.values()) else "before")
-    panel.set(xlabel=style.FORCE, ylabel=style.RESPONSE_AT_CENTRE)
-    panel.legend(title=f"${style.FRICTION}$", loc="lower left", ncols=2, columnspacing=1.0)
+        last = force == max(PAPER_OPENINGS.values())
+        style.paper_value(panel, force, name, side="behind" if last else "before", at=0.6 if last else 0.36)
     return figure
 
 
 def _profiles(response: xr.Dataset) -> Figure:
     """Fig. 7."""
-    figure, axes = style.figure(1, 2, width="double", height=2.7, sharey=True)
-    extents = []
-    titles(axes[0], [style.equals(style.FRICTION, friction) for friction in PROFILE_FRICTIONS])
+    figure, axes = style.figure(1, 2, width="double", height=3.0, sharey=True)
+    notes = {0.2: f"; paper: two peaks near {PAPER_CROSSOVER:g}", 1.0: ""}
+    titles(axes[0], [style.equals(style.FRICTION, friction) + notes[friction] for friction in PROFILE_FRICTIONS])
     for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
-        curves = at_forces(response.sel(friction=friction), PROFILE_FORCES)
-        extents.append(_plot_profiles(panel, curves, _labels(curves["force"]), style.FORCE))
-        if friction == 1.0:
-            _enlarge(panel, curves)
-        else:
-            style.paper_note(panel, f"paper:\n{PAPER_CROSSOVER:g} crossover")
-    _fit(axes[0, 0], *extents)
-    axes[0, 0].set_ylabel(style.RESPONSE)
+        one = response.sel(friction=friction)
+        _plot_profiles(panel, at_forces(one, PROFILE_FORCES), "force", one.isel(force=0))
+    _enlarge(axes[0, 1])
+    axes[0, 0].set(ylabel=style.RESPONSE, ylim=(0.0, None))
+    handles, names = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, names, title=style.FORCE, loc="outside upper center", ncols=len(names), handlelength=2.8)
     return figure
 
 
-def _friction_axis(axis: xr.Dataset) -> Figure:
+def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
     """Fig. 12."""
     figure, axes = style.figure(height=2.6)
     curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
-    _fit(axes[0, 0], _plot_profiles(axes[0, 0], curves, _labels(curves["friction"]), f"${style.FRICTION}$"))
-    axes[0, 0].set_ylabel(style.RESPONSE)
+    _plot_profiles(axes[0, 0], curves, "friction", response.isel(friction=-1, force=0))
+    axes[0, 0].set(ylabel=style.RESPONSE, ylim=(0.0, None))
+    axes[0, 0].legend(title=f"${style.FRICTION}$", loc="upper right", handlelength=2.8)
     return figure
 
 
@@ -142,21 +146,21 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     """Fig. 16; the profile at the largest symmetric force of (b) is followed by those beyond the instability."""
     figure, axes = style.figure(1, 2, width="double", height=2.9)
     left, right = axes[0]
-    curves = at_forces(response.sel(friction=LARGE_FRICTION), LARGE_FORCES)
-    _fit(left, _plot_profiles(left, curves, _labels(curves["force"]), style.FORCE))
-    style.paper_note(left, f"paper:\n{PAPER_CROSSOVER:g} crossover\n{PAPER_THIRD_PEAK:g} third peak")
-    curves = at_forces(dynamic, DYNAMIC_FORCES)
-    _fit(right, _plot_profiles(right, curves, _labels(curves["force"]), style.FORCE, categorical=True))
-    style.paper_note(right, f"paper:\n{PAPER_SYMMETRIC:g} symmetric")
-    titles(axes[0], [style.equals(style.FRICTION, friction) for friction in (0.2, float(dynamic["friction"]))])
+    one = response.sel(friction=LARGE_FRICTION)
+    _plot_profiles(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
+    _plot_profiles(right, at_forces(dynamic, DYNAMIC_FORCES), "force", response.isel(friction=-1, force=0))
+    paper = (
+        f"paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}",
+        f"paper: symmetric at {PAPER_SYMMETRIC:g}",
+    )
+    frictions = (LARGE_FRICTION, float(dynamic["friction"]))
+    titles(axes[0], [f"{style.equals(style.FRICTION, mu)}; {note}" for mu, note in zip(frictions, paper, strict=True)])
     zero(right)
+    left.set_ylim(bottom=0.0)
     for panel in (left, right):
         panel.set_ylabel(style.RESPONSE)
+        panel.legend(title=style.FORCE, loc="upper right", handlelength=2.8)
     return figure
-
-
-def _labels(values: xr.DataArray) -> list[str]:
-    return [f"{value:g}" for value in values.values]
 
 
 def contact_forces(states: xr.Dataset) -> list[float]:
@@ -171,54 +175,40 @@ def at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
     return stored.sel(force=among(stored["force"], forces))
 
 
-def _plot_profiles(
-    panel: Axes, curves: xr.Dataset, labels: Sequence[str], title: str, *, categorical: bool = False
-) -> tuple[float, float]:
-    """Response against position, one curve for each label along the dimension that is not the floor's.
-
-    Returns the smallest and the largest response shown.
-    """
-    dimension = next(str(dim) for dim in curves["floor_response"].dims if dim != "floor_disk")
+def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "friction"], elastic: xr.Dataset) -> None:
+    """Response against position, a curve for each value ``along`` a dimension, before the ``elastic`` one in grey."""
+    grey_limit(panel, curves["x"].values, elastic["floor_response"].values)
     # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
-    for index, (label, look) in enumerate(family(labels, dashed=True)):
+    for index, (value, look) in enumerate(family(curves[along].values, of=along, dashed=True)):
         look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD)}
-        if categorical:
-            look |= {"color": style.line(index)["color"]}
-        panel.plot(curves["x"], curves["floor_response"].isel({dimension: index}), label=label, **look)
+        panel.plot(curves["x"], curves["floor_response"].isel({along: index}), label=f"{value:g}", **look)
     panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
-    panel.legend(title=title, loc="upper right", handlelength=2.8)
-    shown = curves["floor_response"].where(abs(curves["x"]) <= REACH)
-    return float(shown.min()), float(shown.max())
 
 
-def _fit(panel: Axes, *extents: tuple[float, float]) -> None:
-    """Limits of the vertical axis that leave a margin around all ``extents``."""
-    low, high = min(low for low, _ in extents), max(high for _, high in extents)
-    panel.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
-
-
-def _enlarge(panel: Axes, curves: xr.Dataset) -> None:
-    """The tops of curves that nearly cover each other, in the upper left corner."""
-    inside = panel.inset_axes((0.09, 0.5, 0.28, 0.46))
-    near = curves.isel(floor_disk=np.flatnonzero(np.abs(curves["x"].values) <= CLOSE))
-    for top, look in family(near["floor_response"].values, dashed=True):
-        inside.plot(near["x"], top, **look | {"markersize": 2.6})
+def _enlarge(panel: Axes) -> None:
+    """The tops of curves that nearly cover each other, in the upper right corner."""
+    inside = panel.inset_axes((0.67, 0.42, 0.24, 0.55))
+    for line in panel.get_lines():
+        x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        near = np.abs(x) <= CLOSE
+        (top,) = inside.plot(x[near], y[near])
+        top.update_from(line)
+        top.set(markevery=1, markersize=2.6, transform=inside.transData)
     inside.set_xlim(-CLOSE, CLOSE)
-    inside.tick_params(labelsize=6)
+    inside.tick_params(labelsize=6, labelleft=False, labelright=True)
 
 
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
     stored, shown = states["force"].values, contact_forces(states)
-    figure, axes = style.figure(len(shown), 1, height=2.5 * len(shown) + 0.3)
+    figure, axes = style.figure(1, len(shown), width="double", height=2.1)
     rest = states.isel(state=0)
     handles: dict[str, Any] = {}
-    for index, force in enumerate(shown):
+    for panel, force in zip(axes[0], shown, strict=True):
         loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
-        panel = axes[index, 0]
         drawn = draw_state_changes(panel, rest, loaded, loaded["contact_status"].values == SLIDING)
         handles.update({name: line for name, line in drawn.items() if name not in handles})
-        text = f"{style.equals(style.FRICTION, friction)}, {style.equals(style.F_EXT, force, style.WEIGHT)}"
-        style.letter(panel, "abcdefgh"[index], place="above", text=text)
+    mu = style.equals(style.FRICTION, friction)
+    titles(axes[0], [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)
     return figure

@@ -14,13 +14,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, MultipleLocator
+from matplotlib.ticker import FixedLocator
 
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
 from granular_response_paper.captions import Caption, letters, of_group, of_scene, panels, values
-from granular_response_paper.panels import family, titles, zero
+from granular_response_paper.panels import family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
 
@@ -92,10 +92,11 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
     chosen = nearest(data["force"].values, PROFILE_FORCES)
-    for at, (k, look) in enumerate(family(chosen, marked=False, dashed=True)):
+    grey_limit(profiles, x, data["floor_response"].values[0])
+    for at, (k, look) in enumerate(family(chosen, of="force", dashed=True)):
         one = data.isel(force=k)
-        look |= {"marker": style.marked_line(at)["marker"], "markersize": 2.2}
-        profiles.plot(x, one["floor_response"], **look, linewidth=0.9, label=f"{float(one['force']):g}")
+        look |= {"markersize": 3.0, "markevery": (at % 3, 3)}
+        profiles.plot(x, one["floor_response"], **look, label=f"{float(one['force']):g}")
     zero(profiles)
     profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
     profiles.legend(title=style.FORCE, loc="upper right")
@@ -149,9 +150,7 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
 
 def _teardrop(sizes: xr.Dataset) -> Figure:
     stiffnesses = np.unique(sizes["normal_stiffness"].values)
-    figure, panels = style.figure(
-        len(stiffnesses), 2, width="double", height=0.3 + 2.2 * len(stiffnesses), sharex=True, sharey="col"
-    )
+    figure, panels = style.figure(len(stiffnesses), 2, width="double", height=0.3 + 2.2 * len(stiffnesses), sharex=True)
     for row, stiffness in zip(panels, stiffnesses, strict=True):
         slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
         for axes, name, label in zip(
@@ -159,25 +158,25 @@ def _teardrop(sizes: xr.Dataset) -> Figure:
         ):
             _growth(axes, slabs, name, lambda one: f"{int(one['layers'])}")
             axes.set_ylabel(label)
-        row[0].legend(title="layers", loc="upper right")
-        row[0].annotate(
-            style.equals("k_N", stiffness, style.STIFFNESS_UNIT), (0.03, 0.86), xycoords="axes fraction", fontsize=8
-        )
-    panels[0, 1].annotate(
-        "open: region at the floor", (1.0, 1.0), (-5.0, -5.0), xycoords="axes fraction", textcoords="offset points",
-        ha="right", va="top", fontsize=8, color=style.MUTED,
-    )  # fmt: skip
+    panels[0, 0].legend(title="layers", loc="upper left")
     for axes in panels[-1]:
-        axes.set_xlabel(style.FORCE)
-        axes.xaxis.set_major_locator(MultipleLocator(5.0))
-    style.letters(panels)
+        axes.set(xscale="log", xlabel=style.FORCE)
+        axes.xaxis.set_major_formatter("{x:g}")
+    texts = [style.equals("k_N", stiffness, style.STIFFNESS_UNIT) for stiffness in stiffnesses for _ in range(2)]
+    titles(panels.flat, texts)
     return figure
 
 
 def _growth(axes: Axes, slabs: xr.Dataset, name: str, label: Callable[[xr.Dataset], str]) -> None:
-    """A measure of the teardrop against the force, up to where it reaches the floor (open marker)."""
-    for at, look in family(range(slabs.sizes["slab"])):
+    """A measure of the teardrop against the force, up to where it reaches the floor (open marker).
+
+    Colours and markers tell the layers, dashes the widths of slabs of as many layers.
+    """
+    layers = slabs["layers"].values.tolist()
+    looks = dict(family(sorted(set(layers)), of="length"))
+    for at, count in enumerate(layers):
         one = slabs.isel(slab=at)
+        look = looks[count] | {"linestyle": style.LINE_STYLES[layers[:at].count(count)]}
         reached = np.flatnonzero(one["reaches_floor"].values > 0)
         end = int(reached[0]) + 1 if len(reached) else one.sizes["force"]
         force, values = one["force"].values[:end], one[name].values[:end]
@@ -192,9 +191,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
     k = data["normal_stiffness"].values
     held = data["new_neighbours"].values == 0
 
-    for at, index in enumerate(nearest(data["force"].values, STIFFNESS_FORCES)):
+    for index, look in family(nearest(data["force"].values, STIFFNESS_FORCES), of="force"):
         response = data["response_at_centre"].isel(force=index).values
-        look = style.marked_line(at)
         centre.plot(k[held], (response / response[-1])[held], **look, label=f"{data['force'].values[index]:g}")
     low, high = PAPER_STIFFNESSES
     centre.fill_between(
@@ -207,22 +205,15 @@ def _stiffness(data: xr.Dataset) -> Figure:
     centre.set_ylabel(f"{style.RESPONSE_AT_CENTRE},\nover that of the stiffest")
     centre.legend(title=style.FORCE)
 
-    for at, index in enumerate(nearest(data["force"].values, TEARDROP_FORCES)):
-        force = data["force"].values[index]
-        for kind, (name, filled) in enumerate((("depth", True), ("width", False))):
-            look = style.marked_line(2 * at + kind)
-            if not filled:
-                look |= {"markerfacecolor": "white", "markeredgewidth": 0.8, "linestyle": (0, (4, 1.5))}
-            size.plot(
-                k[held],
-                data[f"teardrop_{name}"].isel(force=index).values[held],
-                **look,
-                label=f"{name}, {style.equals(style.F_EXT, force, style.WEIGHT)}",
-            )
+    ends = []
+    for index, look in family(nearest(data["force"].values, TEARDROP_FORCES), of="force"):
+        force = style.equals(style.F_EXT, data["force"].values[index], style.WEIGHT)
+        for name, dash in (("depth", "-"), ("width", (0, (4, 1.5)))):
+            values = data[f"teardrop_{name}"].isel(force=index).values[held]
+            size.plot(k[held], values, **look | {"linestyle": dash})
+            ends.append((f"{name}, {force}", float(k[held][-1]), float(values[-1]), look["color"]))
     size.set_ylabel(f"size of the region$\\,/\\,{style.RADIUS}$")
-    style.paper_value(size, PAPER_SATURATION, f"paper: {PAPER_SATURATION:g}")
-    size.set_ylim(top=1.9 * size.get_ylim()[1])
-    size.legend(loc="upper right", handlelength=1.2, handletextpad=0.5, borderaxespad=0.3)
+    style.paper_value(size, PAPER_SATURATION, f"paper: {PAPER_SATURATION:g}", at=0.3)
 
     for at, (name, label) in enumerate(EVENTS.items()):
         bracket = data[f"{name}_bracket"].values
@@ -236,21 +227,31 @@ def _stiffness(data: xr.Dataset) -> Figure:
     events.legend()
     for axes in (centre, size, events):
         axes.set(xscale="log", xlabel=style.STIFFNESS)
+    size.set_ylim(top=1.15 * size.get_ylim()[1])
+    label_ends(size, ends, ha="right", va="bottom")
     style.letters(np.array([centre, size, events]), first=next(letters("fig05b_stiffness")), place="above")
     return figure
 
 
 def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
-    figure, ((box, profiles, events),) = style.figure(1, 3, width="double", height=2.6)
+    figure, ((box, profiles, events),) = style.figure(1, 3, width="double", height=3.2)
     stiffnesses = np.unique(sizes["normal_stiffness"].values)
     stiffest = widths.isel(slab=np.flatnonzero(widths["normal_stiffness"].values == stiffnesses[-1]))
     _growth(box, stiffest, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
     box.set(xlabel=style.FORCE, ylabel=style.DEPTH)
-    box.legend(title="layers $\\times$ disks", loc="lower right", fontsize=7)
+    handles, names = box.get_legend_handles_labels()
+    figure.legend(
+        handles,
+        names,
+        title="(h) layers $\\times$ disks in a row",
+        loc="outside lower center",
+        ncols=5,
+        handlelength=3.0,
+    )
 
     softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
     at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
-    for at, look in family(range(softest.sizes["slab"]), marked=False, dashed=True):
+    for at, look in family(range(softest.sizes["slab"]), of="length", marked=False, dashed=True):
         one = at_force.isel(slab=at)
         height = 2.0 + np.sqrt(3.0) * (float(one["layers"]) - 1.0)
         seen = np.abs(one["x"].values) <= 1.5 * height

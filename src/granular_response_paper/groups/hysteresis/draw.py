@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import material, packing, titles, zero
+from granular_response_paper.panels import family, material, titles, zero
 
 from .parameters import Parameters
 
@@ -20,11 +20,11 @@ from .parameters import Parameters
 REACH = 30.0
 #: Least part that is drawn on the logarithmic axes: what is below it is rounding, or none.
 LEAST = 1e-4
-#: What the events are called, and their markers.
+#: What the events are called, their markers and their colours.
 NAMES = {
-    "first_opening": ("first contact opens", "v"),
-    "linear_range": ("end of the linear range", "o"),
-    "reversible_range": ("end of the reversible range", "s"),
+    "first_opening": ("first contact opens", "v", style.VERMILION),
+    "linear_range": ("end of the linear range", "o", style.BLACK),
+    "reversible_range": ("end of the reversible range", "s", style.PURPLE),
 }
 
 
@@ -73,8 +73,9 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
     figure, ((loops, below),) = style.figure(1, 2, width="double", height=2.9)
     friction = curves["friction"].values
     cases, one = looped(curves["polydispersity"].values, friction)
+    colours = dict(family(sorted(set(friction[cases])), of="friction"))
     for k, case in enumerate(cases):
-        look = style.line(k)
+        look = {"color": colours[friction[case]]["color"]}
         for branch in range(curves.sizes["branch"]):
             x, load = (curves[name].isel(case=case, branch=branch).values for name in ("displacement", "load"))
             again = {"linestyle": "none", "marker": style.MARKERS[k], "markersize": 2.6} if branch == 2 else {}
@@ -110,64 +111,48 @@ def _loops(curves: xr.Dataset, floor: xr.Dataset) -> Figure:
 
 
 def _ranges(loops: xr.Dataset, events: xr.Dataset) -> Figure:
-    """(a) what is left, (b) what is lost, by force; (c) where ranges end."""
-    figure, ((left, lost, ends),) = style.figure(1, 3, width=7.0, height=3.1, width_ratios=(1.0, 1.0, 1.15))
+    """(a) what is left, (b), (c) what the first and the second loop lose, by force; (d) where ranges end."""
+    figure, panels = style.figure(2, 3, width="double", height=5.2, sharex="row", sharey="row")
+    grid = panels[0, 0].get_gridspec()
+    for axes in panels[1]:
+        axes.remove()
+    ends, drawn = figure.add_subplot(grid[1, :]), panels[0]
     delta, friction = loops["polydispersity"].values, loops["friction"].values
-    spreads, frictions = sorted(set(delta)), sorted(set(friction))
     first, again = loops["slid"] + loops["crossed"], loops["slid_again"] + loops["crossed_again"]
-    for case in range(loops.sizes["case"]):
-        if not friction[case]:
-            continue
+    parts = (loops["floor_left"], first / loops["work"], again / loops["work"])
+    rubbing = np.flatnonzero(friction > 0.0)
+    spreads = sorted(set(delta))
+    colours = dict(family(sorted(set(friction)), of="friction"))
+    for case in rubbing:
+        dash = style.LINE_STYLES[spreads.index(delta[case])]
+        look = colours[friction[case]] | {"linestyle": dash, "label": material(delta[case], friction[case])}
         force = loops["force"].isel(case=case).values
-        look = style.line(frictions.index(friction[case])) | {
-            "linestyle": style.LINE_STYLES[spreads.index(delta[case])],
-            "marker": style.MARKERS[frictions.index(friction[case])],
-            "markersize": 3.0,
-            "linewidth": 0.9,
-        }
-        left.plot(force, _shown(loops["floor_left"].isel(case=case)), **look)
-        for values, filled in ((first, True), (again, False)):
-            part = _shown((values / loops["work"]).isel(case=case))
-            lost.plot(force, part, **look | {"markerfacecolor": look["color"] if filled else "white"})
-    left.axhline(events.attrs["left"], color=style.BLACK, linewidth=0.7, linestyle=(0, (4, 2)))
-    for axes, label in ((left, "remainder / change on the floor"), (lost, "dissipated / work of the load")):
-        axes.set(xscale="log", yscale="log", ylim=(LEAST, 1.0), xlabel=style.FORCE, ylabel=label)
+        for axes, part in zip(drawn, parts, strict=True):
+            value = part.isel(case=case).mean("realization").values
+            axes.plot(force, np.where(value > LEAST, value, np.nan), **look)
+            below = force[value <= LEAST]
+            caret = {"linestyle": "none", "marker": "v", "markersize": 4.0, "color": look["color"]}
+            axes.plot(below, np.full(below.shape, 1.2 * LEAST), **caret)
+    drawn[0].axhline(events.attrs["left"], color=style.MUTED, linewidth=0.7, linestyle=(0, (4, 2)))
+    for axes in drawn:
+        axes.set(xscale="log", yscale="log", ylim=(LEAST, 1.0), xlabel=style.FORCE)
         axes.xaxis.set_minor_formatter("")
-    materials = [
-        Line2D([], [], color=style.line(k)["color"], marker=style.MARKERS[k], markersize=3.0, linewidth=0.9)
-        for k, mu in enumerate(frictions)
-        if mu
-    ]
-    packings = [
-        Line2D([], [], color=style.MUTED, linestyle=style.LINE_STYLES[k], linewidth=0.9) for k in range(len(spreads))
-    ]
-    loop = [
-        Line2D([], [], color=style.MUTED, linestyle="none", marker="o", markersize=3.0, markerfacecolor=fill)
-        for fill in (style.MUTED, "white")
-    ]
+    drawn[0].set_ylabel("relative to the load")
     _ends(ends, events, delta, friction)
-    handles = [
-        Line2D([], [], color=style.COLOURS[k], marker=marker, linestyle="none", markersize=4.0)
-        for k, (_, marker) in enumerate(NAMES.values())
-    ]
-    texts = [text for text, _ in NAMES.values()]
-    rubbing = [style.equals(style.FRICTION, mu) for mu in frictions if mu]
-    names = [*rubbing, *(packing(one) for one in spreads), "first loop", "second loop", *texts]
-    figure.legend([*materials, *packings, *loop, *handles], names, loc="outside lower center", ncols=5)
-    titles((left, lost, ends), ("after unloading", "energy", "ranges"))
+    handles, names = drawn[0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside upper center", ncols=3, handlelength=3.0)
+    titles(
+        (*drawn, ends),
+        ("remainder on the floor", "dissipated, first loop", "dissipated, second loop", "ends of ranges"),
+    )
     return figure
-
-
-def _shown(values: xr.DataArray) -> np.ndarray:
-    """(turn,) means over the realizations, no smaller than what is drawn."""
-    return np.maximum(values.mean("realization").values, LEAST)
 
 
 def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarray) -> None:
     """A row for each case: medians over the realizations, from the smallest to the largest of them."""
     last = float(events["low"].max())
     first = min(float(events["high"].fillna(np.inf).min()), 3.0 * last)
-    for index, (name, (_, marker)) in enumerate(NAMES.items()):
+    for index, (name, (text, marker, colour)) in enumerate(NAMES.items()):
         for case in range(events.sizes["case"]):
             one = events.sel(event=name).isel(case=case)
             low, high = one["low"].values, one["high"].values
@@ -176,7 +161,6 @@ def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarra
                 continue
             low, high = low[there], high[there]
             row = case + 0.22 * (index - 1)
-            colour = style.COLOURS[index]
             reached = np.isfinite(high)
             middle = np.where(reached, 0.5 * (low + np.where(reached, high, low)), low)
             axes.plot([middle.min(), middle.max()], [row, row], color=colour, linewidth=0.9, linestyle="-")
@@ -189,6 +173,8 @@ def _ends(axes: Axes, events: xr.Dataset, delta: np.ndarray, friction: np.ndarra
                     "", (1.0, row), (middle.max(), row), xycoords=("axes fraction", "data"), textcoords="data",
                     arrowprops={"arrowstyle": "->", "color": colour, "linewidth": 0.9},
                 )  # fmt: skip
+        axes.plot([], [], color=colour, marker=marker, markersize=4.0, linestyle="none", label=text)
+    axes.legend(loc="upper left")
     names = list(map(material, delta, friction))
     axes.set(xlabel=style.FORCE, ylim=(len(names) - 0.4, -0.6))
     if last > 0.0:

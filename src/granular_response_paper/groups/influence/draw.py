@@ -57,7 +57,8 @@ def _maps(data: xr.Dataset) -> Figure:
     figure, (panels,) = style.figure(1, len(cases), width="double", height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
     largest = float(np.nanquantile(data["total"].values[cases], 0.995))
-    titles(panels, [_name(data, case) for case in cases])
+    medians = np.nanmedian(data["total"].values[cases], axis=1)
+    titles(panels, [f"{_name(data, case)}, median {middle:.1f}" for case, middle in zip(cases, medians, strict=True)])
     for case, axes in zip(cases, panels, strict=True):
         one = data.isel(case=case)
         x, z = one["position"].values.T

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import material, outer, titles, zero
+from granular_response_paper.panels import label_ends, material, outer, titles, zero
 
 from .parameters import Parameters
 
@@ -159,14 +159,17 @@ def _lattice(data: xr.Dataset) -> Figure:
     figure, ((closed, opened, turn),) = style.figure(1, 3, width="double", height=3.4)
     ratio = data["stiffness_ratio"].values
     for axes, contacts in ((closed, "closed"), (opened, "open")):
-        one = data.sel(contacts=contacts)
+        one, names = data.sel(contacts=contacts), []
         for index, name in enumerate("abcd"):
             # b stands around a, which it is equal to where all contacts are closed
             around = {"markersize": 6.5, "markerfacecolor": "none", "markeredgewidth": 0.9} if name == "b" else {}
             look = style.marked_line(index) | {"linestyle": "none", "markersize": 3.5} | around
-            axes.plot(ratio, one["moduli"].sel(following="free", modulus=name), label=f"${name}$", **look)
-            axes.plot(ratio, one["closed_form"].sel(rotations="free", modulus=name), **style.line(index))
-        axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylim=(0.0, None))
+            axes.plot(ratio, one["moduli"].sel(following="free", modulus=name), **look)
+            closed_form = one["closed_form"].sel(rotations="free", modulus=name)
+            axes.plot(ratio, closed_form, **style.line(index))
+            names.append((f"${name}$", float(ratio[-1]), float(closed_form[-1]), style.line(index)["color"]))
+        axes.set(xlabel=f"${style.STIFFNESS_RATIO}$", ylim=(0.0, None), xlim=(0.0, 1.12 * ratio[-1]))
+        label_ends(axes, names)
     closed.set_ylabel("moduli $/\\,k_N$")
     for index, body in enumerate(data["body"].values):
         for rotations, filled in (("free", True), ("suppressed", False)):
@@ -189,6 +192,5 @@ def _lattice(data: xr.Dataset) -> Figure:
     turn.set(xlabel="1 / layers", ylabel=f"${style.STIFFNESS_RATIO}$ where two peaks end")
     turn.set_xlim(-0.006, None)
     titles((closed, opened, turn), ("horizontal contacts closed", "open", "end of two peaks"))
-    keys = [(key, name) for axes in (opened, turn) for key, name in zip(*axes.get_legend_handles_labels(), strict=True)]
-    figure.legend(*zip(*keys, strict=True), loc="outside lower center", ncols=3)
+    figure.legend(*turn.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure

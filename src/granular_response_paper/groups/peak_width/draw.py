@@ -25,6 +25,8 @@ DEFINITIONS = {"half_maximum": ("at half maximum", "full"), "half_force": ("with
 GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
 #: Over symbols of packings of the survey.
 SURVEYED: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
+#: Half widths per depth that are shown.
+PER_DEPTH = 0.28, 2.0
 #: Labelled on logarithmic axes, in every decade.
 TICKS = (1.0, 2.0, 5.0)
 DASHED, DOTTED = (0, (4, 2)), (0, (1, 1.5))
@@ -83,56 +85,35 @@ def kinds(data: xr.Dataset) -> tuple[tuple[str, list[int]], ...]:
 
 
 def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
-    """Upper row: inside the highest slab of each case. Lower row: on the floors of all slabs."""
+    """Upper row: inside the highest slab of each case. Lower row: on the floors of all slabs. Width per depth."""
     parts = kinds(inside)
-    figure, panels = style.figure(2, len(parts), width="double", height=5.2, sharex="row", sharey="row")
+    figure, panels = style.figure(2, len(parts), width="double", height=5.0, sharex="row", sharey=True)
     for row, (data, label) in enumerate(((inside, "depth"), (floors, "height of the slab"))):
         for (_, cases), axes in zip(parts, panels[row], strict=True):
             for place, case in enumerate(cases):
-                _widths(axes, data, case, place)
-            axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$")
-            for axis in (axes.xaxis, axes.yaxis):
-                axis.set_major_locator(LogLocator(subs=TICKS))
+                _widths(axes, data.isel(case=case).sel(definition="half_maximum"), name(data, case), place)
+            axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$", ylim=PER_DEPTH)
+            for axis, ticks in ((axes.xaxis, TICKS), (axes.yaxis, (1.0, 2.0, 4.0, 6.0))):
+                axis.set_major_locator(LogLocator(subs=ticks))
                 axis.set_major_formatter("{x:g}")
                 axis.set_minor_formatter("")
-        panels[row, 0].set_ylabel(rf"half width$\,/\,{style.RADIUS}$")
+            guide = np.array([10.0, 22.0])
+            axes.plot(guide, 0.46 * (guide[0] / guide) ** (ELASTIC - DIFFUSIVE), linestyle=DOTTED, **GUIDE)
+        panels[row, 0].set_ylabel(f"half width / {label}")
     titles(panels.flat, [title + where for where in (", inside", ", on the floor") for title, _ in parts])
-    for axes in panels.ravel():
-        _guides(axes)
     for axes in panels[0]:
-        axes.legend(loc="upper left", fontsize=7)
+        axes.legend(loc="upper right", fontsize=7)
     return figure
 
 
-def _widths(axes: Axes, data: xr.Dataset, case: int, place: int) -> None:
-    """Both widths of a case as symbols, of the elastic slab as lines, and where it has two peaks as crosses."""
-    one = data.isel(case=case)
+def _widths(axes: Axes, one: xr.Dataset, text: str, place: int) -> None:
+    """Half width at half maximum per depth, black edges where packings are stored; of the elastic slab a grey line."""
     depth = one["depth"].values
     look = style.marked_line(place) | {"linestyle": "none", "markersize": 3.8}
     stored = np.broadcast_to(one["surveyed"].values > 0.0, depth.shape)  # inside all points are of one slab
-    for definition, (_, fill) in DEFINITIONS.items():
-        found = one.sel(definition=definition)
-        edge = {"fillstyle": fill, "markeredgewidth": 0.0 if fill == "full" else 0.7}
-        axes.plot(depth, found["length"], label=name(data, case) if fill == "full" else None, **look | edge)
-        if fill == "full":
-            axes.plot(depth[stored], found["length"][stored], **look | SURVEYED)
-        if place == 0:  # the others have it too, in shorter slabs
-            axes.plot(depth, found["elastic_length"], color=style.MUTED, linewidth=0.8, linestyle="-", zorder=1)
-    axes.plot(depth, one["length"].sel(definition="peak_position"), **look | {"marker": "x", "markeredgewidth": 0.8})
-
-
-def _guides(axes: Axes) -> None:
-    """Slopes 1 and 1/2 through one point, in the lower right corner."""
-    low, high = axes.get_xlim()
-    bottom, top = axes.get_ylim()
-    start = low * (high / low) ** 0.55
-    level = bottom * (top / bottom) ** 0.08
-    x = np.array([start, high / (high / low) ** 0.12])
-    for power, dash, text in ((ELASTIC, DASHED, "1"), (DIFFUSIVE, DOTTED, "1/2")):
-        y = level * (x / start) ** power
-        axes.plot(x, y, linestyle=dash, **GUIDE)
-        axes.annotate(text, (x[1], y[1]), (2, 0), textcoords="offset points", va="center", fontsize=7)
-    axes.set(xlim=(low, high), ylim=(bottom, top))
+    axes.plot(depth, one["length"] / depth, label=text, **look)
+    axes.plot(depth[stored], (one["length"] / depth)[stored], **look | SURVEYED)
+    axes.plot(depth, one["elastic_length"] / depth, color=style.FAINT, linewidth=3.5, linestyle="-", zorder=1)
 
 
 def _powers(inside: xr.Dataset, floors: xr.Dataset) -> Figure:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
-from granular_response_paper.panels import family, outer, packing, titles
+from granular_response_paper.panels import family, label_ends, outer, packing, titles
 
 from .parameters import Parameters
 
@@ -22,12 +22,20 @@ from .parameters import Parameters
 FOUND, BELOW, ABOVE = 0, 1, 2
 #: Levels of the thick and of the thin bar.
 THICK, THIN = (0.16, 0.84), (0.025, 0.975)
+#: Experiments of Sec. VII: from what to what force, in particle weights; a caret is beyond the axis.
+EXPERIMENTS = (
+    ("photoelastic\ndisks, 2D:\nabout 150", 150.0, 150.0),
+    ("sand, 3D:\na few", 2.0, 5.0),
+    ("FCC and HCP,\n3D: thousands", 2e3, 5e3),
+)
+#: Forces of the diagram, as in the paper.
+FORCES = 0.5, 500.0
 #: A response leans visibly from this difference of mirror images on, per largest response.
 ASYMMETRIC = 0.01
 #: Friction and force at which the paper's lattice beside smooth walls becomes asymmetric (Sec. V.E).
 SMOOTH_WALLS = 1.0, 91.0
-#: Fills of the regions; white is what was not simulated, or where too few packings bear the force.
-TWO_PEAKS, ONE_PEAK = "#C9D3DC", "#EFF2F4"
+#: Fill of the forces that were simulated, and that enough packings bear.
+SIMULATED = "#EFF2F4"
 
 
 @style.context()
@@ -39,7 +47,8 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         datasets[name].isel(case=usual) for name in ("crossovers", "shapes", "definitions", "realizations")
     )
     return {
-        "fig22_phase_diagram": _diagrams(shown, shapes, realizations),
+        "fig22_phase_diagram": _diagram(shown.isel(width=-1)),
+        "crossover_intervals": _intervals(shown, shapes, realizations),
         "five_realizations": _few(shown, shapes),
         "peak_definitions": _definitions(shown, others, realizations),
         "starts": _starts(datasets["starts"]),
@@ -67,7 +76,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     return of_group(
         "phase_diagram",
         {
-            "fig22_phase_diagram": given,
+            "fig22_phase_diagram": given | {"width": parameters.widths[-1]},
+            "crossover_intervals": given,
             "five_realizations": given | {"friction": rubbing, "wall_friction": rubbing} | disordered,
             "peak_definitions": given | disordered,
             "starts": {"friction": [0.0, 0.2]} | disordered,
@@ -79,26 +89,65 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )
 
 
-def _diagrams(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
-    """A row for each smoothing width, a column for each polydispersity."""
+def _diagram(crossovers: xr.Dataset) -> Figure:
+    """Fig. 22: the crossover force of every polydispersity in one plane, beside the forces of experiments."""
+    figure, ((axes,),) = style.figure(width="double", height=3.9)
+    axes.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel=style.FORCE, **_FRICTION_AXES)
+    axes.set(xlim=(-0.05, 1.14), ylim=FORCES)
+    axes.yaxis.set_major_formatter("{x:g}")
+    ends = []
+    deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
+    for k, (delta, look) in enumerate(family(deltas, of="polydispersity")):
+        one = crossovers.isel(case=_of(crossovers, delta))
+        friction, force, found = one["friction"].values, one["force"].values, one["kind"].values == FOUND
+        low, high = np.clip(one["interval"].sel(level=list(THICK)).values[found].T, *FORCES)
+        axes.fill_between(friction[found], low, high, color=look["color"], alpha=0.16, linewidth=0.0)
+        axes.plot(friction[found], force[found], **look | {"linewidth": 1.4, "markersize": 4.5})
+        ends += [(packing(delta), friction[found][-1], force[found][-1], look["color"])] if found.any() else []
+        _bounds(axes, one, look["color"], 0.02 * (k - 0.5 * (len(deltas) - 1)), FORCES)
+    for text, x, y in (("two peaks\n(hyperbolic-like)", 0.06, 0.83), ("one peak\n(elastic-like)", 0.62, 0.17)):
+        axes.text(x, y, text, transform=axes.transAxes, va="center", style="italic", fontsize=10, color=style.MUTED)
+    label_ends(axes, ends)
+    for text, low, high in EXPERIMENTS:
+        ends_at = np.clip([low, high], *FORCES)
+        look = {"color": style.MUTED, "linestyle": "-", "clip_on": False, "transform": axes.get_yaxis_transform()}
+        axes.plot([1.03, 1.03], ends_at, linewidth=3.0, marker="^" if low > FORCES[1] else "_", **look)
+        label_ends(axes, [(text, 1.03, float(np.sqrt(ends_at.prod())), style.MUTED)], xycoords=look["transform"])
+    return figure
+
+
+def _bounds(axes: Axes, data: xr.Dataset, colour: str, shift: float, limits: tuple[float, float]) -> None:
+    """A caret for each crossover force that is only known to lie below or above a force, to the side where it lies."""
+    for x, bound, what in zip(data["friction"].values, data["force"].values, data["kind"].values, strict=True):
+        if what != FOUND:
+            at = float(np.clip(bound, 1.1 * limits[0], limits[1] / 1.1))
+            axes.plot(x + shift, at, marker="^" if what == ABOVE else "v", color=colour, markersize=5.0, zorder=5)
+
+
+def _intervals(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
+    """A row for each smoothing width, a column for each polydispersity: 68 and 95 % of the draws."""
     deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
     widths = crossovers["width"].values.tolist()
     applied = shapes["applied_force"].values
-    limits = 0.2 * float(np.nanmin(applied)), 5.0 * float(np.nanmax(applied))
+    limits = FORCES[0], 2.0 * float(np.nanmax(applied))
+    colours = style.ordered_colours(len(deltas), of="polydispersity")
     figure, panels = _grid(widths, deltas, 0.5 + 1.85 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     for (width, delta), axes in panels.items():
         here = _of(crossovers, delta)
+        one, colour = crossovers.sel(width=width).isel(case=here), colours[deltas.index(delta)]
         axes.set(ylim=limits, **_FRICTION_AXES)
-        if delta:
-            ordered = crossovers.sel(width=width).isel(case=np.flatnonzero(crossovers["polydispersity"].values == 0.0))
-            ordered = ordered.sortby("friction")
-            axes.plot(ordered["friction"], ordered["force"], color=style.MUTED, linestyle="--", linewidth=0.7)
-        _diagram(axes, crossovers.sel(width=width).isel(case=here), applied[here], limits)
+        friction, found = one["friction"].values, one["kind"].values == FOUND
+        smallest, largest = np.nanmin(applied[here], axis=1), np.nanmax(applied[here], axis=1)
+        axes.fill_between(friction, smallest, largest, color=SIMULATED, linewidth=0.0, zorder=0)
+        axes.plot(friction[found], one["force"].values[found], color=colour, linestyle="-", marker="o", markersize=4.0)
+        for levels, linewidth in ((THIN, 0.7), (THICK, 2.4)):
+            low, high = one["interval"].sel(level=list(levels)).transpose("level", ...).values
+            for x, bottom, top in zip(friction, low, high, strict=True):
+                if bottom < top:
+                    _bar(axes, x, bottom, top, limits, linewidth, colour)
+        _bounds(axes, one, colour, 0.0, limits)
         if not delta:
             _transitions(axes, realizations.sel(width=width).isel(case=here), applied[here])
-    first = panels[widths[0], deltas[0]]
-    for text, x, y in (("two peaks", 0.06, 0.76), ("one peak", 0.45, 0.42)):
-        first.text(x, y, text, transform=first.transAxes, va="center", style="italic", fontsize=8)
     return figure
 
 
@@ -128,33 +177,6 @@ def _of(crossovers: xr.Dataset, delta: float) -> NDArray[np.intp]:
     return here[np.argsort(crossovers["friction"].values[here])]
 
 
-def _diagram(axes: Axes, data: xr.Dataset, applied: FloatArray, limits: tuple[float, float]) -> None:
-    """The crossovers of one polydispersity with their intervals; an arrow for a bound, to the side where it lies.
-
-    ``data`` holds the cases in the order of friction, ``applied`` (case, step) their forces.
-    """
-    friction, force, kind = (data[name].values for name in ("friction", "force", "kind"))
-    smallest, largest = np.nanmin(applied, axis=1), np.nanmax(applied, axis=1)
-    boundary = np.clip(force, smallest, largest)
-    axes.fill_between(friction, boundary, largest, color=TWO_PEAKS, linewidth=0.0, zorder=0)
-    axes.fill_between(friction, smallest, boundary, color=ONE_PEAK, linewidth=0.0, zorder=0)
-    axes.plot(friction, force, color=style.BLACK, linestyle=(0, (1.0, 2.0)), linewidth=0.7)  # to the bounds too
-    found = kind == FOUND
-    axes.plot(friction[found], force[found], color=style.BLACK, linestyle="-", linewidth=0.9)
-    for levels, linewidth in ((THIN, 0.7), (THICK, 2.4)):
-        low, high = data["interval"].sel(level=list(levels)).transpose("level", ...).values
-        for x, bottom, top in zip(friction, low, high, strict=True):
-            if bottom < top:
-                _bar(axes, x, bottom, top, limits, linewidth)
-    axes.plot(friction[found], force[found], linestyle="none", marker="o", markersize=4.0, color=style.BLACK, zorder=5)
-    for x, bound, what in zip(friction, force, kind, strict=True):
-        if what != FOUND:
-            axes.plot(x, bound, marker="o", markersize=4.0, color=style.BLACK, markerfacecolor="white", zorder=5)
-            factor = 2.2 if what == ABOVE else 1.0 / 2.2
-            arrow = {"arrowstyle": "-|>", "color": style.BLACK, "linewidth": 0.8, "shrinkA": 2.0, "shrinkB": 0.0}
-            axes.annotate("", (x, bound * factor), (x, bound), arrowprops=arrow, annotation_clip=False)
-
-
 def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> None:
     """A cross between the last force under which a lattice is symmetric and the first under which it is not."""
     for case in range(lattice.sizes["case"]):
@@ -167,13 +189,15 @@ def _transitions(axes: Axes, lattice: xr.Dataset, applied: FloatArray) -> None:
     axes.plot(*SMOOTH_WALLS, marker="*", color=style.BLUE, markerfacecolor="white", markersize=6.0, zorder=6)
 
 
-def _bar(axes: Axes, x: float, low: float, high: float, limits: tuple[float, float], linewidth: float) -> None:
+def _bar(
+    axes: Axes, x: float, low: float, high: float, limits: tuple[float, float], linewidth: float, colour: str
+) -> None:
     """An interval in force; an end beyond every simulated force goes to the edge and has an arrow head there."""
     ends = np.clip([low, high], *limits)
-    axes.plot([x, x], ends, color=style.VERMILION, linewidth=linewidth, linestyle="-", solid_capstyle="butt", zorder=3)
+    axes.plot([x, x], ends, color=colour, linewidth=linewidth, linestyle="-", solid_capstyle="butt", zorder=3)
     for end, edge, marker in ((low, limits[0], "v"), (high, limits[1], "^")):
         if not np.isfinite(end):
-            axes.plot(x, edge, marker=marker, markersize=5.0, color=style.VERMILION, clip_on=False, zorder=6)
+            axes.plot(x, edge, marker=marker, markersize=5.0, color=colour, zorder=6)
 
 
 def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
@@ -220,7 +244,7 @@ def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Da
     handles = {}
     for (width, delta), axes in panels.items():
         here = _of(crossovers, delta)
-        for (tolerance, data), look in family(sorted(tolerances, key=lambda pair: pair[0])):
+        for (tolerance, data), look in family(sorted(tolerances, key=lambda pair: pair[0]), of="other"):
             one = data.sel(width=width).isel(case=here)
             found = one["kind"].values == FOUND
             friction, force = one["friction"].values[found], one["force"].values[found]

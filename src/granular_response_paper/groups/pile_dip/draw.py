@@ -11,12 +11,13 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy.spatial import ConvexHull
+from scipy.special import erfc
 
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field
-from granular_response.state import Box
+from granular_response.state import FLOOR, Box
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import titles
+from granular_response_paper.panels import chain_key, chains, contact_ends, titles
 
 from .parameters import Parameters
 
@@ -43,8 +44,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     figure, panels = style.figure(3, 2, width="double", height=3.9)
     shown = piles.sel(case=list(DRAWN))
-    scale = network.force_scale(shown["contact_force"].values.reshape(-1, 2), longest=3.4, widest=2.8)
-    fields = stress["stress_zz"].sel(case=list(DRAWN))
+    strongest = float(np.linalg.norm(shown["contact_force"].values, axis=-1).max())
+    fields = stress["stress_zz"].sel(case=list(DRAWN)) + _wall_part(shown, stress)
     largest = float(fields.max())
     levels = np.asarray(MaxNLocator(8).tick_values(0.0, largest))[1:-1]  # without zero and what is above all
     width = float(piles["width"])
@@ -52,12 +53,10 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     for column, case in enumerate(DRAWN):
         forces, map_axes, contacts = panels[:, column]
         one = piles.sel(case=case)
-        _forces(forces, one, scale)
+        _forces(forces, one, strongest)
         field = fields.sel(case=case)
         image = draw_field(map_axes, stress["x"], stress["z"], field, norm=Normalize(0.0, largest), levels=levels)
         _outline(map_axes, one)
-        near = float(stress["stress_width"])
-        map_axes.axhspan(0.0, near, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
         map_axes.set(xlabel=style.POSITION, ylabel=style.HEIGHT if column == 0 else "")
         _network(contacts, one)
         for axes in (forces, contacts):
@@ -65,7 +64,7 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
             style.no_axes(axes)
             axes.set(xlim=(-2.6, width + 2.6), ylim=(-1.6, top + 0.2))
         map_axes.set(xlim=(-0.5 * width, 0.5 * width), ylim=(0.0, top))
-        network.draw_force_key(forces, (0.8 * width, 0.9 * top), KEY, **scale)
+        chain_key(forces, (0.8 * width, 0.9 * top), KEY, strongest, style.WEIGHT)
     titles(panels.flat, [*(f"forces, {name}" for name in DRAWN.values()), *2 * ["$\\sigma_{zz}$"], *2 * ["contacts"]])
     bar = figure.colorbar(image, ax=panels[1], shrink=0.9, aspect=14, pad=0.02, ticks=[0.0, *levels[1::2]])
     bar.ax.hlines(levels, 0.0, 1.0, transform=bar.ax.get_yaxis_transform(), color="white", linewidth=0.6)
@@ -73,15 +72,28 @@ def _pile(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
     return figure
 
 
-def _forces(axes: Axes, one: xr.Dataset, scale: Mapping[str, float]) -> None:
+def _wall_part(piles: xr.Dataset, stress: xr.Dataset) -> xr.DataArray:
+    """(case, z, x) stress that the forces of the floor add (Weinhart et al., Granular Matter 14, 289 (2012)).
+
+    The line of a contact with the floor ends at the floor, so the coarse-grained stress falls to about half there; with
+    the line continued downwards it is that of the material up to the floor.
+    """
+    on_floor = piles["wall_index"].values == FLOOR
+    w, middle = float(stress["stress_width"]), 0.5 * float(piles["width"])
+    at = piles["position"].isel(axis=0, disk=piles["wall_disk"].values[on_floor]).values - middle
+    near = np.exp(-(((stress["x"].values - at[..., None]) / w) ** 2)) / (np.sqrt(np.pi) * w)
+    pushed = piles["wall_force"].isel(axis=1).values[:, on_floor]
+    along = np.einsum("cw,cwx->cx", pushed, near)
+    below = 0.5 * erfc(stress["z"].values / w)
+    return xr.DataArray(along[:, None] * below[:, None], dims=("case", "z", "x"))
+
+
+def _forces(axes: Axes, one: xr.Dataset, strongest: float) -> None:
     position, radius = one["position"].values, one["radius"].values
     network.draw_disks(axes, position, radius)
-    touching = one["contact_status"].values != 0
-    pairs = one["contact_disk"].values[touching], one["contact_partner"].values[touching]
-    force = one["contact_force"].values[touching]
-    network.draw_force_chains(axes, network.pair_points(position, radius, *pairs), force, **scale)
-    at_wall = network.wall_points(position, radius, one["wall_disk"].values, one["wall_index"].values)
-    network.draw_force_chains(axes, at_wall, one["wall_force"].values, **scale)
+    touching = np.where(one["contact_status"].values[:, None] != 0, one["contact_force"].values, 0.0)
+    size = np.linalg.norm(np.concatenate([touching, one["wall_force"].values]), axis=1)
+    chains(axes, *contact_ends(one, position), size, strongest)
 
 
 def _outline(axes: Axes, one: xr.Dataset) -> None:
@@ -116,8 +128,8 @@ def _profiles(piles: xr.Dataset, stress: xr.Dataset) -> Figure:
         look = {**style.marked_line(index), "linestyle": style.LINE_STYLES[index]}
         floor.plot(piles["x_floor"], piles["floor_force"].sel(case=case), **look)
     line.set(xlabel=style.POSITION, ylabel=style.STRESS_OF_GRAVITY)
-    line.set_ylim(0.0, 1.32 * float(stress["profile_zz"].max()))
-    line.legend(loc="upper right", borderaxespad=0.3)
+    line.set_ylim(bottom=0.0)
+    figure.legend(*line.get_legend_handles_labels(), loc="outside upper center", ncols=len(names))
     height = style.equals("z", float(stress["dip_height"]), style.RADIUS)
     titles((line, floor), (height, ""), stem="fig17_pile_profiles", place="inside")
     floor.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$")

@@ -9,19 +9,32 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, material, packing, titles, zero
+from granular_response_paper.panels import (
+    chain_key,
+    chains,
+    contact_ends,
+    family,
+    grey_limit,
+    label_ends,
+    material,
+    packing,
+    titles,
+    zero,
+)
 
 from .parameters import Parameters
 
 #: Fig. 21 is smoothed with this width, and shows at most so many forces of a case.
 FIG21_WIDTH, MOST_FORCES = 6.0, 4
 
-#: Forces of the keys of Fig. 2 in mean disk weights, at rest and added: both are drawn as the same line.
-KEYS = 20.0, 2.0
+#: Forces of the keys of Fig. 2 in mean disk weights, at rest and added; added force times depth per load that has the
+#: full width.
+KEYS, DEEP = (20.0, 1.0), 4.0
 
 START_NAMES = {
     "2.0075": "lattice constant $2.0075\\bar R$",
@@ -39,7 +52,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     ``fig21_disordered_forces`` and ``packings`` from the datasets of the study of the same name."""
     return {
         "fig02_polydisperse_forces": _forces(datasets["forces"]),
-        "fig19_disordered_response": _response(datasets["individual"]),
+        "fig19_disordered_response": _response(datasets["individual"], datasets["averages"]),
         "fig20_disordered_linear_range": _linear_range(datasets["linear_range"], datasets["averages"]),
         "fig21_disordered_forces": _averages(datasets["averages"]),
         "packings": _packings(datasets["packings"], datasets["averages"]),
@@ -102,33 +115,40 @@ def _counts(parameters: Parameters, polydispersities: Sequence[float]) -> list[i
 
 
 def _forces(data: xr.Dataset) -> Figure:
-    """Fig. 2: at rest, and what the load adds; the line of the key is the same, the force that it stands for is not."""
-    figure, panels = style.figure(2, 1, width="double", height=3.75)
+    """Fig. 2: the whole slab under gravity; what the load adds in the middle third, and that times the depth."""
+    figure, panels = style.figure(2, 2, width="double", height=4.4, height_ratios=(1.0, 1.6))
+    grid = panels[0, 0].get_gridspec()
+    for axes in panels[0]:
+        axes.remove()
     pair, wall = _contact_forces(data)
-    width, disk = float(data["width"]), int(data["loaded_disk"])
-    force = float(data["force"][1])
-    radius = data["radius"].values
-    top = float((data["position"].values[..., 1] + radius).max())
-    at_rest = network.force_scale(pair[0], wall[0], longest=3.8, widest=4.2)
-    for index, axes in enumerate(panels[:, 0]):
-        scale = {name: KEYS[0] / KEYS[index] * per_force for name, per_force in at_rest.items()}
-        position = data["position"].values[index]
-        shown = (pair[0], wall[0]) if index == 0 else (pair[1] - pair[0], wall[1] - wall[0])
-        network.draw_disks(axes, position, radius)
-        network.draw_rotations(axes, position, radius, data["angle"].values[index], color=style.SKY, linewidth=0.5)
+    at_rest = np.linalg.norm(np.concatenate([pair[0], wall[0]]), axis=1)
+    added = np.linalg.norm(np.concatenate([pair[1] - pair[0], wall[1] - wall[0]]), axis=1)
+    width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"][1])
+    radius, position = data["radius"].values, data["position"].values
+    top = float((position[..., 1] + radius).max())
+    x, z = position[1, disk]
+    points, (first, second) = contact_ends(data, position[1])
+    depth = z - 0.5 * (points[first, 1] + points[second, 1])
+    force = style.equals(style.F_EXT, load, style.WEIGHT)
+    wide = figure.add_subplot(grid[0, :])
+    drawn = (
+        (wide, 0, at_rest, float(at_rest.max()), KEYS[0], style.WEIGHT, (-1.5, width + 1.5)),
+        (panels[1, 0], 1, added, 0.5 * load, KEYS[1], style.WEIGHT, (x - width / 6.0, x + width / 6.0)),
+        (panels[1, 1], 1, added * depth / load, DEEP, 1.0, style.RADIUS, (x - width / 6.0, x + width / 6.0)),
+    )
+    for axes, state, size, largest, key, unit, limits in drawn:
+        network.draw_disks(axes, position[state], radius)
+        network.draw_rotations(axes, position[state], radius, data["angle"].values[state], color="#A8C8DC")
         network.draw_box(axes, Box(width), top)
-        pairs = data["contact_disk"].values, data["contact_partner"].values
-        network.draw_force_chains(axes, network.pair_points(position, radius, *pairs), shown[0], **scale)
-        at_wall = network.wall_points(position, radius, data["wall_disk"].values, data["wall_index"].values)
-        network.draw_force_chains(axes, at_wall, shown[1], **scale)
-        name = "at rest under gravity" if index == 0 else f"added by {style.equals(style.F_EXT, force, style.WEIGHT)}"
-        style.letter(axes, "ab"[index], place="above", text=name)
-        network.draw_force_key(axes, (width - 14.0, top + 2.8), KEYS[index], **scale)
+        chains(axes, *contact_ends(data, position[state]), size, largest)
+        chain_key(axes, (limits[1] - 0.09 * width, top + 2.8), key, largest, unit)
         style.no_axes(axes)
-        axes.set(xlim=(-1.5, width + 1.5), ylim=(-1.5, top + 4.0))
-    x, z = data["position"].values[1, disk] + [0.0, radius[disk]]
-    network.draw_loaded_disk(panels[1, 0], (x, z - radius[disk]), float(radius[disk]))
-    network.draw_load(panels[1, 0], (x, z), length=3.6)
+        axes.set(xlim=limits, ylim=(-1.5, top + 4.0))
+        if state:
+            network.draw_loaded_disk(axes, (x, z), float(radius[disk]))
+            network.draw_load(axes, (x, z + radius[disk]), length=3.6)
+            axes.set(xlim=limits)
+    titles((wide, *panels[1]), ("under gravity", f"added by {force}, middle third", "the same, times depth"))
     return figure
 
 
@@ -147,12 +167,12 @@ def _vectors(normal: FloatArray, data: xr.Dataset, kind: str) -> FloatArray:
     return contact_force(normal, data[f"{kind}_normal_force"].values, data[f"{kind}_tangential_force"].values)
 
 
-def _response(data: xr.Dataset) -> Figure:
+def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 19: every realization thin, the mean thick in a band of its standard error; a row for each start."""
     frictions = sorted(set(data["friction"].values.tolist()))
     starts = [name for name in START_NAMES if name in data["lattice_constant"].values]
     figure, panels = style.figure(
-        len(starts), len(frictions), width="double", height=0.5 + 1.95 * len(starts), sharex=True, sharey=True
+        len(starts), len(frictions), width="double", height=0.5 + 1.95 * len(starts), sharex=True, sharey="col"
     )
     x = data["x"].values
     for row, start in enumerate(starts):
@@ -165,7 +185,8 @@ def _response(data: xr.Dataset) -> Figure:
             rows = data["response"].values[case]
             rows = rows[np.isfinite(rows).all(axis=1)]
             mean, error = rows.mean(axis=0), rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
-            axes.plot(x, rows.T, color="#BDBDBD", linewidth=0.5, linestyle="-")
+            _elastic(axes, averages, float(data["width"]))
+            axes.plot(x, rows.T, color="#909090", linewidth=0.4, linestyle="-")
             axes.plot(x, mean, color=style.BLACK, linewidth=1.4, linestyle="-", zorder=3)
             axes.fill_between(x, mean - error, mean + error, color=style.VERMILION, linewidth=0.0, zorder=2.5)
             zero(axes)
@@ -175,6 +196,14 @@ def _response(data: xr.Dataset) -> Figure:
     for axes in panels[-1]:
         axes.set(xlabel=style.POSITION, xlim=(x[0], x[-1]))
     return figure
+
+
+def _elastic(axes: Axes, averages: xr.Dataset, width: float) -> None:
+    """The response of the lattice with the largest friction to its smallest force, smoothed alike, behind others."""
+    lattice = np.flatnonzero(averages["polydispersity"].values == 0.0)
+    if lattice.size and width in averages["width"].values:
+        case = int(lattice[np.argmax(averages["friction"].values[lattice])])
+        grey_limit(axes, averages["x"].values, averages["mean"].sel(width=width).values[case, 0])
 
 
 def _case(data: xr.Dataset, polydispersity: float, friction: float, start: str | None = None) -> int | None:
@@ -190,7 +219,7 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Fig. 20: one packing, the means of all, the lattice, smoothed alike, and the ends of the linear ranges."""
     deltas = sorted(set(data["polydispersity"].values.tolist()), reverse=True)
     frictions = sorted(set(data["friction"].values.tolist()))
-    looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions)}
+    looks = {friction: look | {"markersize": 3.0} for friction, look in family(frictions, of="friction")}
     figure, panels = style.figure(1, len(deltas) + 2, width="double", height=3.0)
     one, means, *others = panels[0]
     responses = [one, *others[:-1]]
@@ -207,11 +236,10 @@ def _linear_range(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         axes.tick_params(labelleft=False)
     one.set_ylabel(f"{style.FLOOR_STRESS} at $x = 0$")
     names = list(map(packing, deltas))
-    titles(panels[0], [f"{names[0]}, one packing", f"{names[0]}, rough walls", *names[1:], ""])
+    titles(panels[0], [f"{names[0]}, smooth walls", "mean, rough walls", *(f"{one}, smooth" for one in names[1:]), ""])
     ends = others[-1]
-    for index, (delta, name) in enumerate(zip(deltas, names, strict=True)):
-        here = data["polydispersity"].values == delta
-        _range_ends(ends, data.isel(path=here), style.marked_line(index), name)
+    for delta, look in family(deltas[::-1], of="polydispersity"):
+        _range_ends(ends, data.isel(path=data["polydispersity"].values == delta), look, packing(delta))
     ends.set(yscale="log", xlabel="$\\mu$", ylabel=f"end of the linear range, {style.FORCE}")
     ends.legend(loc="lower center", bbox_to_anchor=(0.45, 0.0))
     figure.legend(*one.get_legend_handles_labels(), loc="outside upper center", ncols=len(frictions))
@@ -259,7 +287,7 @@ def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -
 
 
 def _averages(data: xr.Dataset) -> Figure:
-    """Fig. 21: a panel for each polydispersity and friction, all on one scale, forces growing from dark to light.
+    """Fig. 21: a panel for each polydispersity and friction, one scale in each row, forces growing from dark to light.
 
     A number in brackets is that of the realizations at rest, where not all of them are.
     """
@@ -268,7 +296,7 @@ def _averages(data: xr.Dataset) -> Figure:
     deltas = sorted(set(data["polydispersity"].values[keep].tolist()))
     frictions = sorted(set(data["friction"].values[keep].tolist()))
     figure, panels = style.figure(
-        len(frictions), len(deltas), width="double", height=0.5 + 1.65 * len(frictions), sharex=True, sharey=True
+        len(frictions), len(deltas), width="double", height=0.5 + 1.35 * len(frictions), sharex=True, sharey="row"
     )
     w = smoothed_by(data)
     x = data["x"].values
@@ -279,13 +307,14 @@ def _averages(data: xr.Dataset) -> Figure:
             if case is None:
                 axes.set_axis_off()
                 continue
+            _elastic(axes, data, float(data["width"][w]))
             _family(axes, data.isel(case=case, width=w), x)
             letter = chr(ord("a") + row * len(deltas) + column)
-            style.letter(axes, letter, text=material(delta, friction))
-        panels[row, 0].set_ylabel(style.FLOOR_STRESS)
+            style.letter(axes, letter, text=material(delta, friction).replace(", ", "\n      "))
+        panels[row, 0].set(ylabel=style.FLOOR_STRESS, ylim=(None, 1.15 * panels[row, 0].get_ylim()[1]))
     for axes in panels[-1]:
         axes.set(xlabel=style.POSITION, xlim=(-45.0, 45.0))
-    note = f"over each panel: {style.FORCE}, in brackets the packings at rest where some collapsed"
+    note = f"over each panel: {style.FORCE}, in brackets the packings at rest where some collapsed; grey: elastic"
     figure.suptitle(note, fontsize=8)
     return figure
 
@@ -297,14 +326,17 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
     if not usable.size:
         return
     total = int(_realizations(one)[usable[0]])
-    for step, look in family(steps, marked=False, dashed=True):
+    for step, look in family(steps, of="force", marked=False, dashed=True):
         mean, error = one["mean"].values[step], one["standard_error"].values[step]
         count = int(one["count_at_rest"][step])
         label = f"{float(one['force'][step]):g}" + (f" ({count})" if count < total else "")
         axes.fill_between(x, mean - error, mean + error, color=look["color"], alpha=0.25, linewidth=0.0)
         axes.plot(x, mean, **look, linewidth=1.1, label=label)
     zero(axes)
+    handles, names = axes.get_legend_handles_labels()
     axes.legend(
+        handles[-len(steps) :],
+        names[-len(steps) :],
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
         ncols=len(steps),
@@ -325,49 +357,58 @@ def _realizations(one: xr.Dataset) -> np.ndarray:
 
 def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Directions of contacts, coordination numbers, and how many packings bear a force."""
-    figure, panels = style.figure(1, 3, width="double", height=3.0)
-    directions, coordination, bearing = panels[0]
     starts = data["lattice_constant"].values
     usual = starts[0]
     deltas = sorted(set(data["polydispersity"].values.tolist()))
-    angle = np.degrees(data["angle"].values)
-    literal = [start for start in START_NAMES if start != usual and start in starts]
-    for delta, start in [*((delta, usual) for delta in deltas if delta), *((deltas[1], start) for start in literal)]:
-        case = _case(data, delta, 0.0, start)
-        if case is None:
-            continue
-        density = np.nanmean(data["contact_angle_density"].values[case], axis=0)
-        look = style.line(deltas.index(delta)) if start == usual else {"color": style.BLACK, "linestyle": "-"}
-        name = packing(delta) + ("" if start == usual else ", start $2\\bar R$")
-        directions.plot(angle, density, **{**look, "linewidth": 1.0}, label=name)
-    directions.set(
-        xlabel="angle to the horizontal (degrees)",
-        ylabel="contact directions per radian, $\\mu = 0$",
-        xticks=range(0, 181, 60),
-        ylim=(0.0, None),
-    )
-    directions.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
-    for index, delta in enumerate(deltas):
+    colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
+    disordered = [delta for delta in deltas if delta]
+    figure, panels = style.figure(2, len(disordered), width="double", height=4.6)
+    grid = panels[0, 0].get_gridspec()
+    for axes in panels.flat:
+        axes.remove()
+    roses = [figure.add_subplot(grid[0, k], projection="polar") for k in range(len(disordered))]
+    for axes, delta in zip(roses, disordered, strict=True):
+        _rose(axes, data, delta, usual, {"color": colours[delta], "linestyle": "-"})
+    for start in START_NAMES:
+        if start != usual and start in starts:
+            _rose(roses[0], data, disordered[0], start, {"color": style.BLACK, "linestyle": "--", "linewidth": 0.8})
+    coordination, bearing = figure.add_subplot(grid[1, :-1]), figure.add_subplot(grid[1, -1])
+    ends = []
+    for delta, look in family(deltas, of="polydispersity"):
         here = np.flatnonzero((data["polydispersity"].values == delta) & (starts == usual))
         here = here[np.argsort(data["friction"].values[here])]
-        look = style.marked_line(index)
         here = here[np.isfinite(data["coordination_number_bulk"].values[here]).any(axis=1)]
-        numbers = data["coordination_number_bulk"].values[here]
+        numbers, friction = data["coordination_number_bulk"].values[here], data["friction"].values[here]
         mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
-        look |= {"markersize": 3.5, "elinewidth": 0.8, "capsize": 2.0}
-        coordination.errorbar(data["friction"].values[here], mean, spread, **look, label=packing(delta))
+        coordination.errorbar(friction, mean, spread, **look, elinewidth=0.8, capsize=2.0)
+        ends += [(packing(delta), float(friction[-1]), float(mean[-1]), look["color"])] if here.size else []
     coordination.set(xlabel=f"${style.BOTH_FRICTIONS}$", ylabel="coordination number $z$ in the bulk")
+    coordination.set_xlim(right=1.18)
     paper = rf"paper: {PAPER_CONTACTS:g} at $\delta = 0.01$, $\mu = 0$"
     style.paper_value(coordination, PAPER_CONTACTS, paper, along="y")
-    coordination.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
-    _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), deltas)
+    label_ends(coordination, ends)
+    _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), colours)
     bearing.set(xlabel=style.FORCE, ylabel="fraction of stable packings", xscale="log", ylim=(0.0, 1.05))
-    bearing.legend(loc="lower center", bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=7.5, columnspacing=1.0)
-    style.letters(panels, place="above")
+    if bearing.containers:  # some packings collapse
+        bearing.legend(loc="lower left", fontsize=7.5)
+    titles((*roses, coordination, bearing), [*map(packing, disordered), "", ""])
     return figure
 
 
-def _bearing(axes: Axes, averages: xr.Dataset, deltas: list[float]) -> None:
+def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str, look: Mapping[str, Any]) -> None:
+    """The distribution of the directions of contacts without friction over the full turn."""
+    case = _case(data, delta, 0.0, start)
+    if case is not None:
+        density = np.nanmean(data["contact_angle_density"].values[case], axis=0)
+        angle = np.concatenate([data["angle"].values, np.pi + data["angle"].values, data["angle"].values[:1]])
+        axes.plot(angle, np.concatenate([density, density, density[:1]]), **{"linewidth": 1.2, **look})
+    axes.set_xticks(np.radians(range(0, 360, 60)))
+    axes.tick_params(labelsize=7, pad=-2.0)
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.grid(color=style.FAINT, linewidth=0.4)
+
+
+def _bearing(axes: Axes, averages: xr.Dataset, colours: Mapping[float, str]) -> None:
     """The part of the packings at rest against the force with its standard error, where some of them collapse."""
     number = 0
     for case in np.lexsort((averages["friction"].values, averages["polydispersity"].values)):
@@ -378,7 +419,7 @@ def _bearing(axes: Axes, averages: xr.Dataset, deltas: list[float]) -> None:
         if np.all(at_rest == total):
             continue
         delta, friction = float(one["polydispersity"]), float(one["friction"])
-        look = {**style.marked_line(number), "color": style.COLOURS[deltas.index(delta)], "markersize": 4.0}
+        look = {**style.marked_line(number), "color": colours[delta], "markersize": 4.0}
         look |= {"markeredgewidth": 0.8, "markerfacecolor": "white", "elinewidth": 0.8, "capsize": 1.5}
         part = at_rest / total
         error = np.sqrt(part * (1.0 - part) / total)

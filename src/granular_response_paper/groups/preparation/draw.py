@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,8 +25,14 @@ PANELS = {
     "third_peak": "third peak",
     "loss_of_symmetry_path": "loss of symmetry",
 }
-#: Part of the distance between two frictions that the preparations of one take.
-SPREAD = 0.72
+#: How each way to prepare is named and marked, by how gravity comes; ramps of several times share a colour.
+WAYS = {
+    "at-once": ("gravity switched on", style.BLUE, "o"),
+    "slow": ("gravity ramped over", style.VERMILION, "sDv"),
+    "frictionless": ("prepared frictionless", style.GREEN, "^"),
+}
+#: Of those whose dashpots are weaker or stronger than those of the first way.
+WEAKER, STRONGER = "P", "X"
 
 
 @style.context()
@@ -33,19 +40,20 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """One figure, ``preparation``, from the brackets of the events."""
     events = datasets["events"]
     slabs = sorted(set(zip(events["wall_friction"].values.tolist(), events["friction"].values.tolist(), strict=True)))
-    ways = list(dict.fromkeys(events["way"].values.tolist()))
-    figure, axes = style.figure(2, 3, width="double", height=4.6, sharex=True, sharey=True)
-    titles(axes.flat, PANELS.values())
-    for panel, name in zip(axes.flat, PANELS, strict=True):
-        _event(panel, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs, ways)
-        panel.set_yscale("log")
-        panel.yaxis.set_major_formatter("{x:g}")
-        panel.set_xlim(-0.6, len(slabs) - 0.4)
-    for panel in axes[-1]:
-        panel.set_xticks(range(len(slabs)), [f"{mu:g}\nrough" if wall else f"{mu:g}" for wall, mu in slabs])
-        panel.tick_params(axis="x", which="both", length=0)
-    outer(axes, f"${style.FRICTION}$", style.FORCE)
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=min(4, len(ways)))
+    figure, panels = style.figure(2, 3, width="double", height=4.8, sharex=True, sharey=True)
+    titles(panels.flat, PANELS.values())
+    for axes, name in zip(panels.flat, PANELS, strict=True):
+        _event(axes, events.isel(event=np.flatnonzero(events["name"].values == name)), slabs)
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set_ylim(len(slabs) - 0.5, -0.5)
+    names = [f"${style.FRICTION} = {mu:g}$" + (", rough walls" if wall else "") for wall, mu in slabs]
+    panels[0, 0].set_yticks(range(len(slabs)), names)
+    outer(panels, style.FORCE, "")
+    handles = {
+        text: handle for axes in panels.flat for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)
     return {"preparation": figure}
 
 
@@ -56,28 +64,28 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     return of_group("preparation", {"preparation": said})
 
 
-def _event(panel: Axes, events: xr.Dataset, slabs: list[tuple[float, float]], ways: list[str]) -> None:
-    """Brackets of one event: a bar from end to end, its mark in the middle; an arrow where it does not come."""
-    for k in range(1, len(slabs)):
-        panel.axvline(k - 0.5, color=style.FAINT, linewidth=0.4, zorder=0)
-    offsets = (np.arange(len(ways)) - 0.5 * (len(ways) - 1)) * SPREAD / max(len(ways) - 1, 1)
-    for index, (way, offset) in enumerate(zip(ways, offsets.tolist(), strict=True)):
-        mine = events.isel(event=np.flatnonzero(events["way"].values == way))
-        walls, friction = mine["wall_friction"].values.tolist(), mine["friction"].values.tolist()
-        place = np.array([slabs.index(slab) + offset for slab in zip(walls, friction, strict=True)])
+def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> None:
+    """A row for each slab: the onset force by every way to prepare it, and how far they lie apart."""
+    usual = float(events["damping_ratio"][0])
+    ramps = sorted(set(events["ramp_time"].values[events["gravity"].values == "slow"].tolist()))
+    for row, (wall, friction) in enumerate(slabs):
+        mine = events.isel(event=(events["wall_friction"].values == wall) & (events["friction"].values == friction))
         low, high = mine["low"].values, mine["high"].values
-        colour = style.COLOURS[index % len(style.COLOURS)]
         come = np.isfinite(high)
-        # an event at the first force of all has no lower end: its bar ends there
-        floor = np.where(low > 0.0, low, high)
-        panel.vlines(place[come], floor[come], high[come], linewidth=1.0, color=colour)
-        panel.plot(
-            place[come],
-            np.sqrt(floor * high)[come],
-            linestyle="none",
-            marker=style.MARKERS[index % len(style.MARKERS)],
-            markersize=3.4,
-            label=way,
-            color=colour,
-        )
-        panel.plot(place[~come], low[~come], linestyle="none", marker=r"$\uparrow$", markersize=5.0, color=colour)
+        # an event at the first force of all has no lower end
+        middle = np.where(come, np.sqrt(np.where(low > 0.0, low, high) * np.where(come, high, 1.0)), low)
+        axes.plot([middle.min(), middle.max()], [row, row], color=style.FAINT, linewidth=2.0, linestyle="-", zorder=1)
+        for k, (force, there) in enumerate(zip(middle, come, strict=True)):
+            way, gravity = str(mine["way"].values[k]), str(mine["gravity"].values[k])
+            ramp, damping = float(mine["ramp_time"][k]), float(mine["damping_ratio"][k])
+            name, colour, markers = WAYS[gravity]
+            marker = markers[0]
+            if gravity == "slow":
+                marker, name = markers[ramps.index(ramp) % len(markers)], rf"{name} ${ramp:g}\,{style.TIME_UNIT}$"
+            if damping != usual:
+                marker, name, colour = STRONGER if damping > usual else WEAKER, way, style.BLACK
+            look: dict[str, Any] = {"color": colour, "markersize": 4.0, "linestyle": "none"}
+            if there:
+                axes.plot(force, row, marker=marker, label=name, **look)
+            else:
+                axes.plot(force, row, marker=">", markerfacecolor="none", **look)

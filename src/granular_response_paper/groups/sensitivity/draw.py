@@ -22,7 +22,9 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     # powers of ten as such
     texts = [str(text) for text in next(iter(datasets.values()))["text"].values[1:]]
     names = [re.sub(r"1e(-?\d+)", r"$10^{\1}$", text) for text in texts]
-    places = np.arange(len(names))[::-1]
+    # the largest on top; for scale the peak of the response itself
+    size = np.max([data["largest_difference"].values[1:] for data in datasets.values()], axis=0)
+    places = np.argsort(np.argsort(size))
     for index, (group, data) in enumerate(datasets.items()):
         look = style.marked_line(index) | {"linestyle": "none"}
         label = style.equals(style.FRICTION, float(group.removeprefix("mu_")))
@@ -30,7 +32,21 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     axes.set(xscale="log", xlabel=f"largest change of the {style.RESPONSE}", yticks=places)
     axes.set_yticklabels(names)
     axes.grid(axis="y", linewidth=0.3)
-    axes.legend(loc="upper right", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
+    axes.legend(loc="lower right", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
+    peak = max(float(data["floor_response"].values[0].max()) for data in datasets.values())
+    axes.axvline(peak, color=style.FAINT, linewidth=3.5, linestyle="-", zorder=0)
+    axes.annotate(
+        "peak of the response",
+        (peak, 0.5),
+        (-3.0, 0.0),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        rotation=90,
+        ha="right",
+        va="center",
+        fontsize=7,
+        color=style.MUTED,
+    )
     return {"sensitivity": figure}
 
 

@@ -90,9 +90,12 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
 def _distances(axes: Axes, data: xr.Dataset) -> None:
     """Distance against the number of layers, one line for each case."""
     for index, (case, slabs) in enumerate(_cases(data)):
-        axes.plot(
-            data["layers"].values[slabs], data["distance"].values[slabs], **style.marked_line(index), label=_name(case)
-        )
+        layers, distance = data["layers"].values[slabs], data["distance"].values[slabs]
+        axes.plot(layers, distance, **style.marked_line(index), label=_name(case))
+        for k in np.flatnonzero(np.diff(np.log(distance)) > 1.0) + 1:
+            axes.annotate(
+                "row opened", (layers[k], distance[k]), (0, 5), textcoords="offset points", ha="center", fontsize=7
+            )
     layers = np.array([data["layers"].values.min(), data["layers"].values.max()], dtype=float)
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))

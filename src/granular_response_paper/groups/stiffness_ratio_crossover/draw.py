@@ -37,7 +37,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     figure, ((simulated, bodies, dips),) = style.figure(1, 3, width="double", height=3.1)
     force = float(response["force"])
     shown = among(response["stiffness_ratio"], DRAWN)
-    looks = {ratio: look | {"linewidth": 1.1} for ratio, look in family(shown, marked=False, dashed=True)}
+    looks = {ratio: look | {"linewidth": 1.1} for ratio, look in family(shown, of="other", marked=False, dashed=True)}
     for ratio in shown:
         one = response["floor_response"].sel(stiffness_ratio=ratio)
         simulated.plot(response["x"], one, **looks[ratio], label=f"{ratio:g}")

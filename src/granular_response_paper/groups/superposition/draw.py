@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from granular_response.plot import style
+from granular_response.plot import network, style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, lettered, of_group, of_scene
 from granular_response_paper.panels import family, titles, zero
@@ -69,43 +69,34 @@ def _responses(dataset: xr.Dataset, force: float) -> Figure:
     data = dataset.isel(realization=REALIZATION).sel(force=force)
     distances = data["distance"].values
     rows = (len(distances) + 1) // 2
-    figure, panels = style.figure(rows, 2, width="double", height=0.45 + 2.0 * rows, sharex=True, sharey=True)
-    responses = data["floor_response"].values
-    x = data["x"].values
-    drawn = dataset["floor_response"].isel(realization=REALIZATION).sel(force=list(FORCES.values())).values
-    high, low = float(drawn.max()), float(min(0.0, drawn.min()))  # of both figures, which share their scale
-    for axes in panels.ravel()[len(distances) :]:
+    figure, grid = style.figure(
+        2 * rows, 2, width="double", height=0.45 + 2.4 * rows, sharex=True, sharey="row", height_ratios=[4, 1] * rows
+    )
+    panels, strips = grid[::2], grid[1::2]
+    x, responses = data["x"].values, data["floor_response"].values
+    both_figures = dataset.isel(realization=REALIZATION).sel(force=list(FORCES.values()))["floor_response"].values
+    high, low = float(both_figures.max()), float(min(0.0, both_figures.min()))  # they share their scales
+    furthest = 1.1 * float(np.abs(both_figures[:, :, 2] - both_figures[:, :, :2].sum(axis=2)).max())
+    for axes in [*panels.ravel()[len(distances) :], *strips.ravel()[len(distances) :]]:
         axes.set_axis_off()
-    for k, axes in enumerate(panels.flat[: len(distances)]):
+    for k, (axes, strip) in enumerate(zip(panels.flat[: len(distances)], strips.flat, strict=False)):
         left, right, both = responses[k]
-        zero(axes)
+        zero(axes, strip)
         axes.plot(x, left, **{**style.line(0), "linestyle": (0, (5, 1.6)), "linewidth": 0.9}, label="Left")
         axes.plot(x, right, **{**style.line(2), "linewidth": 1.1}, label="Right")
         axes.plot(x, both, color=style.BLACK, linestyle="-", linewidth=0.9, label="(Left+Right)")
-        axes.plot(
-            x,
-            left + right,
-            linestyle="none",
-            marker="o",
-            markersize=3.2,
-            markerfacecolor="none",
-            markeredgecolor=style.VERMILION,
-            markeredgewidth=0.8,
-            label="(Left)+(Right)",
-        )
+        circles = {"markerfacecolor": "none", "markeredgecolor": style.VERMILION, "markeredgewidth": 0.8}
+        axes.plot(x, left + right, "o", markersize=3.2, **circles, label="(Left)+(Right)")
+        strip.plot(x, both - left - right, color=style.VERMILION, linestyle="-", linewidth=0.9)
         for at in data["load_x"].values[k]:
-            axes.annotate(
-                "",
-                (at, 1.10 * high),
-                (at, 1.30 * high),
-                arrowprops={"arrowstyle": "-|>", "linewidth": 0.8, "color": style.MUTED, "shrinkA": 0, "shrinkB": 0},
-            )
+            network.draw_load(axes, (at, 1.10 * high), length=0.2 * high)
         axes.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(1.2 * low if low < 0.0 else -0.03 * high, 1.36 * high))
+        strip.set_ylim(-furthest, furthest)
         if k % 2 == 0:
             axes.set_ylabel(style.RESPONSE)
+            strip.set_ylabel("difference", fontsize=7)
         if k + 2 >= len(distances):
-            axes.set_xlabel(style.POSITION)
-            axes.tick_params(labelbottom=True)
+            strip.set_xlabel(style.POSITION)
     titles(panels.flat, [f"$d = {distance:g}$ diameters" for distance in distances])
     panels[0, 1].legend(loc="upper right", fontsize=7.5)
     return figure
@@ -123,7 +114,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
         axes.axvspan(quarter, min(three_quarters, force[-1]), color=style.FAINT, alpha=0.35, linewidth=0.0, zorder=0)
         if np.isfinite(middle):
             axes.axvline(middle, ymax=0.78, color=style.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
-        for k, look in family(range(len(distances))):
+        for k, look in family(range(len(distances)), of="length"):
             _mean_with_error(axes, force, errors[name].values[:, k], look, f"{distances[k]:g}")
         style.paper_value(axes, LINEAR_UNTIL, f"paper: {LINEAR_UNTIL:g}", at=0.2)
         axes.set(xscale="log", yscale="log", xlabel=style.FORCE)
@@ -132,7 +123,7 @@ def _errors(datasets: Mapping[str, xr.Dataset]) -> Figure:
     floor.set_ylabel("relative deviation from superposition")
     last = FORCES["fig24_superposition"]
     profiles = errors["row_error"].sel(force=last).values
-    for k, look in family(range(len(distances))):
+    for k, look in family(range(len(distances)), of="length"):
         _mean_with_error(deep, errors["gap"].values, profiles[:, k], look, "")
     deep.set(yscale="log", ylim=(1e-4, 1.5), xlabel=rf"depth below the loads$\,/\,{style.RADIUS}$", xlim=(0.0, None))
     handles, names = floor.get_legend_handles_labels()

@@ -19,6 +19,8 @@ from .parameters import Parameters
 
 #: A contact is marked when its tangential force is within this fraction of the Coulomb limit.
 MARGIN = 0.05
+#: A response is not symmetric from this difference of mirror images on, per largest response.
+ASYMMETRIC = 0.01
 #: Part of the slab that profiles show, to both sides of the load (radii).
 REACH = 30.0
 #: Most copies of the packing in one panel.
@@ -44,7 +46,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     figure, axes = style.figure(rows, 2, width="double", height=3.3 + 2.3 * (rows - 1), height_ratios=[1.3, 1.0][:rows])
     _protocols(axes[0, 0], datasets["runs"], datasets["held"])
     _copies(axes[0, 1], copies)
-    loads = ["after loading to one force", f"copies, {_load(float(copies['force']))}"]
+    loads = [_symmetric(datasets["runs"]), f"copies, {_load(float(copies['force']))}"]
     handles: dict[str, Any] = {}
     if with_states:
         for panel, state in zip(axes[1], (1, 2), strict=True):
@@ -109,6 +111,12 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
     style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.8)
     panel.set(xlabel=style.FORCE, ylabel="asymmetry of the floor response")
     panel.legend(**OVER)
+
+
+def _symmetric(runs: xr.Dataset) -> str:
+    """Up to which force the response is symmetric after each ramp."""
+    kept = runs.isel(run=runs["asymmetry"].values < ASYMMETRIC).to_dataframe().groupby("ramp_time")["force"].max()
+    return "symmetric up to " + ", ".join(f"{force:.1f} (ramp {ramp:g})" for ramp, force in kept.items())
 
 
 def _copies(panel: Axes, copies: xr.Dataset) -> None:

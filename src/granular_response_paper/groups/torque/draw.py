@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, titles
+from granular_response_paper.panels import chain_key, chains, family, titles
 
 from .parameters import Parameters
 
@@ -43,7 +43,8 @@ def _chains(data: xr.Dataset) -> Figure:
     height = np.ptp(limits["ylim"]) / np.ptp(limits["xlim"]) * style.DOUBLE / 3.0 + 0.2
     figure, panels = style.figure(rows, 3, width="double", height=float(height) * rows)
     added = data["contact_added_force"].values
-    scale = network.force_scale(added.reshape(-1, 2), longest=3.2, widest=4.6)
+    size = np.linalg.norm(added, axis=-1)
+    largest = float(size.max())
     pairs = data["contact_disk"].values, data["contact_partner"].values
     for index, axes in enumerate(panels.ravel()):
         style.no_axes(axes)
@@ -52,14 +53,14 @@ def _chains(data: xr.Dataset) -> Figure:
         position = data["position"].values[index]
         inside = (np.abs(position[:, 0] - 0.5 * width) <= width / 6.0 + 1.0) & (position[:, 1] >= low - 1.0)
         network.draw_disks(axes, position[inside], radius[inside])
-        point = network.pair_points(position, radius, *pairs)
-        shown = (point[:, 0] >= left) & (point[:, 0] <= right) & (point[:, 1] >= low)
-        network.draw_force_chains(axes, point[shown], added[index][shown], **scale)
+        middle = 0.5 * (position[pairs[0]] + position[pairs[1]])
+        shown = (middle[:, 0] >= left) & (middle[:, 0] <= right) & (middle[:, 1] >= low)
+        chains(axes, position, (pairs[0][shown], pairs[1][shown]), size[index][shown], largest)
         network.draw_loaded_disk(axes, position[disk], float(radius[disk]))
         # the force as a straight arrow to the disk's centre, a clockwise torque as an arc over it
         network.draw_load(axes, position[disk], data["applied_force"].values, length=4.6)
         network.draw_torque(axes, position[disk], -float(torques[index]))
-        network.draw_force_key(axes, (right - 5.0, top + 1.4), KEY, **scale)
+        chain_key(axes, (right - 7.0, top + 1.4), KEY, largest, style.WEIGHT)
         axes.set(**limits)
     titles(panels.flat, map(_torque, torques.tolist()))
     return figure
@@ -79,7 +80,7 @@ def _reach(data: xr.Dataset) -> Figure:
     changes = changes[changes > 0.0]  # none without a torque, or where the rings lie beyond the slab
     titles(panels[0], panel_of.values(), stem="fig18_torque_reach")
     for axes, name in zip(panels[0], panel_of, strict=True):
-        for k, look in family(turned):
+        for k, look in family(turned, of="other"):
             axes.plot(data["ring"], data[name][k], **look, label=f"{torques[k]:g}")
         axes.set(xlabel=rf"distance from the load$\,/\,{style.RADIUS}$", xlim=(0.0, None))
         if changes.size:
