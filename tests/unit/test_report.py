@@ -468,7 +468,7 @@ def crossovers():
             ),
         },
         {
-            "width": variable(("width",), [3.0], "width"),
+            "width": variable(("width",), [6.0], "width"),
             "polydispersity": variable(case, [0.0, 0.0, 0.25, 0.25], "spread"),
             "friction": variable(case, [1.0, 0.2, 0.2, 1.0], "friction"),
             "lattice_constant": variable(case, ["touching-largest"] * 3 + ["2.0"], "lattice"),
@@ -524,8 +524,8 @@ def test_slabs_of_the_explorer_and_fig_22_stand_beside_the_others():
     data = explorer.payload(friction_study(), more, {"crossovers": crossovers()})
     lattice, disordered = data["slabs"][3:]
     assert (lattice["polydispersity"], lattice["ratio"], lattice["smoothed"]) == (0.0, 0.2, None)
-    # a smoothed stress times the distance of two floor disks is what one of them bears
-    assert disordered["smoothed"] == [[0.1429] * 7] * 3 and disordered["centre"] == [0.14] * 3
+    # as in Fig. 20 a smoothed response is a stress; the force of a disk is one over the distance of two floor disks
+    assert disordered["smoothed"] == disordered["response"] == [[0.0714] * 7] * 3 and disordered["centre"] == [0.07] * 3
     assert disordered["peaks"] is None and lattice["peaks"] == [1, 1, 1]
     assert lattice["paper"] == [] and [one["force"] for one in data["slabs"][1]["paper"]] == [4.0, 20.0, 40.0]
     assert data["crossovers"] == [
@@ -656,7 +656,7 @@ def test_the_explorer_follows_mouse_and_keys(opened):
     x, y, width = tab.centre("#force")
     tab.drag(x + 0.49 * width, y, x - 0.49 * width)
     (said, words), now = force(tab), drawn(tab)
-    assert said == "1 mg" and words.startswith("Under 1 mg: no contacts are opened, 23 slide")
+    assert said == "1 mg" and words.startswith("F = 1 mg: 0 contacts opened, 23 at the Coulomb limit.")
     # the response of these slabs is the same under every force
     assert [a != b for a, b in zip(before, now, strict=True)] == [True, False, True, True]
     tab.key("ArrowRight", 39)
@@ -674,6 +674,148 @@ def test_the_explorer_follows_mouse_and_keys(opened):
     tab.click(*tab.centre("input[name=friction][value='0.0']")[:2])
     assert "µ = 0, " in tab.run("document.getElementById('network').getAttribute('aria-label')")
     assert tab.problems == []
+
+
+def test_the_force_grows_by_itself_and_stops_at_the_end(opened):
+    tab = opened(1400)
+    assert force(tab)[0] == "90 mg"
+    tab.click(*tab.centre("#play")[:2])
+    assert tab.run("document.getElementById('play').textContent") == "Stop" and force(tab)[0] != "90 mg"
+    tab.wait("document.getElementById('play').textContent === 'Play'", 10.0)
+    assert force(tab)[0] == "90 mg" and tab.problems == []
+
+
+def test_a_link_leads_to_a_state(opened):
+    tab = opened(1400)
+    tab.run("location.hash = '#delta=0.25&mu=0.2&ratio=0.2&F=3'")
+    tab.wait("document.getElementById('force').getAttribute('aria-valuetext') === '4 mg'", 5.0)
+    assert "δ = 0.25" in tab.run("document.getElementById('about').textContent")
+    assert tab.run("document.getElementById('link').hash") == "#delta=0.25&mu=0.2&ratio=0.2&F=4"
+    assert tab.problems == []
+
+
+#: Groups whose datasets the explorer shows.
+EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
+
+
+@pytest.fixture(scope="module")
+def stepped(tab, root, tmp_path_factory):
+    """The stored datasets, and what the explorer says of a state of them."""
+    if missing := [group for group in EXPLORED if not (ROOT / "data" / f"{group}.nc").exists()]:
+        pytest.skip(f"not simulated yet: {', '.join(missing)}")
+    folder = tmp_path_factory.mktemp("stepped")
+    (folder / "figures").mkdir()
+    shutil.copy(root / "figures" / "claims.json", folder / "figures")
+    (folder / "data").symlink_to(ROOT / "data")
+    path = report.write(folder / "figures" / "report.html", folder)
+    del tab.problems[:]
+    tab.open(path, 1400)
+    tab.wait("'ready' in document.getElementById('explorer').dataset")
+
+    def say(delta, friction, ratio, applied):
+        tab.run(f"location.hash = '#delta={delta:g}&mu={friction:g}&ratio={ratio:g}&F={applied:g}'")
+        tab.wait(f"document.getElementById('force-label').textContent === 'F = {applied:g} mg'", 10.0)
+        about, words = tab.run("[document.getElementById('about').textContent, said.textContent]")
+        assert (f"δ = {delta:g}," if delta else "ordered") in about and f"µ = {friction:g}," in about
+        return words.replace("\u2212", "-")
+
+    yield {group: store.read(ROOT / "data" / f"{group}.nc") for group in EXPLORED}, say
+    assert tab.problems == []
+
+
+def network(states, friction):
+    """Of each state the numbers of opened contacts and of those at the Coulomb limit within 30 R of the load."""
+    rest = states["position"].values[0, :, 0]
+    near = np.abs(rest - rest[int(states["loaded_disk"])]) <= 30.0
+    shown = near[states["contact_disk"].values] & near[states["contact_partner"].values]
+    touching = states["contact_status"].values[:, shown] != 0
+    normal, across = (states[f"contact_{k}_force"].values[:, shown].astype(float) for k in ("normal", "tangential"))
+    sliding = touching & (np.abs(across) >= 0.99 * friction * normal) if friction else np.zeros_like(touching)
+    return (touching[0] & ~touching).sum(axis=1), sliding.sum(axis=1)
+
+
+def crossover_said(phase, delta, friction):
+    """What Fig. 22 has for a packing."""
+    one = phase["crossovers"].sel(width=6.0)
+    one = one.isel(
+        case=(one["polydispersity"].values == delta)
+        & (one["friction"].values == friction)
+        & (one["lattice_constant"].values == "touching-largest")
+    )
+    words = ("two peaks from {} mg on.", "two peaks already below {} mg.", "two peaks not up to {} mg.")
+    two_digits = float(f"{one['force'].item():.2g}")
+    return words[int(one["kind"].item())].format(f"{two_digits:g}")
+
+
+def hold(words, counts, measured, phase, slab):
+    """The sentence of one state against what is stored of it; ``measured`` is x = 0, and peaks and asymmetry."""
+    opened, sliding = counts
+    delta, friction, ratio, walls = slab
+    centre, peaks, asymmetry = measured
+    assert f": {opened} contacts opened, {sliding} at the Coulomb limit." in words
+    assert f"The response ({'rough' if walls else 'smooth'} walls, " in words
+    assert ("smoothed with w = 3 R\u0304) is" if delta else "not smoothed) has") in words
+    assert f"{centre:.4f} at x = 0;" in words
+    if not delta:
+        assert f" has {peaks} peak{'s' if peaks > 1 else ''}, is {'not ' if asymmetry > 0.2 else ''}symmetric," in words
+    if ratio == 0.8:
+        who = f"Fig. 22 ({'mean of the ensemble, ' if delta else ''}{'rough' if friction else 'smooth'} walls, "
+        assert f"{who}smoothed with w = 6 R\u0304): {crossover_said(phase, delta, friction)}" in words
+    else:
+        assert "Fig. 22" not in words
+
+
+def one_peak_then_more(said):
+    """No sentence of a slab denies another: ``said`` are forces, numbers of peaks and sentences."""
+    for applied, peaks, words in said:
+        first = re.search(r"This slab has one peak up to ([\d.]+) mg(?: and more from ([\d.]+) mg on)?\.", words)
+        assert first and (applied <= float(first[1])) == (peaks == 1)
+        assert first[2] is None or (applied >= float(first[2])) == (peaks > 1)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2, 1.0])
+def test_every_sentence_of_an_ordered_slab_is_what_is_stored(stepped, friction):
+    data, say = stepped
+    study = data["friction_linear_range"]
+    path, large = study[f"states_mu_{friction:g}"], study["large_forces"]
+    own = study["response"].sel(friction=friction)
+    first = float(large["force"].min()) if float(large["friction"]) == friction else np.inf
+    parts = [(path, own, path["force"].values[1:], "load path")]
+    if np.isfinite(first):
+        states = study["large_force_states"]
+        below = path["force"].values[1:]
+        parts = [(path, own, below[below < first], "load path")]
+        parts += [(states, large, states["force"].values[1:], "dynamics from rest")]
+    said = []
+    for states, response, forces, reached in parts:
+        counts = network(states, friction)
+        for applied in forces:
+            state = int(np.flatnonzero(states["force"].values == applied)[0])
+            one = response.sel(force=applied)
+            peaks = int(one["peak_count"])
+            words = say(0.0, friction, 0.8, applied)
+            measured = float(one["response_at_centre"]), peaks, float(one["asymmetry"])
+            hold(words, [count[state] for count in counts], measured, data["phase_diagram"], (0.0, friction, 0.8, 0.0))
+            assert (f"({reached})" in words) == np.isfinite(first)
+            said.append((applied, peaks, words))
+    one_peak_then_more(said)
+
+
+def test_every_sentence_of_an_added_slab_is_what_is_stored(stepped):
+    data, say = stepped
+    for slab in data["explorer"].values():
+        names = ("polydispersity", "friction", "stiffness_ratio", "wall_friction")
+        delta, friction, ratio, walls = (float(slab[name]) for name in names)
+        counts, said = network(slab, friction), []
+        for state in range(1, slab.sizes["state"]):
+            one = slab.isel(state=state)
+            words = say(delta, friction, ratio, float(one["force"]))
+            measured = float(one["response_at_centre"]), int(one["peak_count"]), 0.0
+            mine = (delta, friction, ratio, walls)
+            hold(words, [count[state] for count in counts], measured, data["phase_diagram"], mine)
+            said.append((float(one["force"]), int(one["peak_count"]), words))
+        if not delta:
+            one_peak_then_more(said)
 
 
 def test_the_explorer_follows_a_finger(opened):
