@@ -79,7 +79,8 @@ def test_simulate_and_draw(group, tmp_path):
     assert yaml.safe_load(attributes["parameters"])["count"] == 4
     paths = drawing.draw(group)
     assert sorted(map(str, paths)) == [
-        f"figures/squares/{name}" for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png")
+        f"figures/squares/{name}"
+        for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png", "fig99_squares.svgz")
     ]
     assert json.loads(Path("figures/squares/captions.json").read_text()) == {
         "fig99_squares": {

@@ -45,6 +45,7 @@ FORMATS = {
     ".pdf": "application/pdf",
     ".png": "image/png",
     ".py": "text/x-python",
+    ".svgz": "image/svg+xml",
     ".yaml": "application/yaml",
 }
 

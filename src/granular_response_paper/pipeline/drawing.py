@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gzip
 import json
+import re
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from granular_response.scene import SceneError, text
 from granular_response.store import atomic
@@ -12,9 +14,23 @@ from granular_response.store import files as store
 from granular_response_paper import captions
 from granular_response_paper.pipeline import TOO_LITTLE, GroupError, figures_folder, group_member, stored
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: What a compressed vector picture is called, which a page shows in place of the raster one.
+VECTOR = ".svgz"
+
+#: Largest SVG in bytes: with more elements than that a browser is slow, and fields of colour show seams.
+LARGEST = 300_000
+
+#: Coordinates of an SVG file, and their digits behind the second: a hundredth of a point is not seen.
+_COORDINATES, _DIGITS = re.compile(r' (?:d|x|y|points)="[^"]*"'), re.compile(r"(\.\d\d)\d+")
+
 
 def draw(group: str, data: Path | None = None, folder: Path | None = None) -> list[Path]:
     """Draw the figures of a group from its datasets and write their captions; returns the paths of the files.
+
+    A figure that is smaller as SVG than as PNG, and below :data:`LARGEST`, is stored as a compressed SVG too.
 
     Raises
     ------
@@ -36,7 +52,8 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
         panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
         said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
         for stem, figure in figures.items():
-            paths += style.save(figure, stem, target, inputs=[path])
+            saved = style.save(figure, stem, target, inputs=[path])
+            paths += [*saved, *_vector(figure, saved[0], [path])]
     except TOO_LITTLE as error:
         problem = " ".join(f"{type(error).__name__}: {error}".split())
         raise GroupError(f"{path}: {group} cannot be drawn with these parameters ({problem})") from error
@@ -44,6 +61,22 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     atomic.check_writable(beside, [path])
     atomic.write_bytes(beside, (json.dumps(said, ensure_ascii=False, indent=1) + "\n").encode())
     return [*paths, beside]
+
+
+def _vector(figure: Figure, png: Path, inputs: list[Path]) -> list[Path]:
+    """Write the vector picture beside a raster one, or remove it if it is not the smaller one."""
+    from granular_response.plot import style
+
+    drawn = style.render(figure, "svg").decode()
+    drawn = _COORDINATES.sub(lambda match: _DIGITS.sub(r"\1", match[0]).replace("\n", " "), drawn)
+    drawn = re.sub(r"<metadata>.*</metadata>", "", re.sub(r">\s+<", "><", drawn), flags=re.DOTALL)
+    target = png.with_suffix(VECTOR)
+    atomic.check_writable(target, inputs)
+    if len(drawn) > min(png.stat().st_size, LARGEST):
+        target.unlink(missing_ok=True)
+        return []
+    atomic.write_bytes(target, gzip.compress(drawn.encode(), 9, mtime=0))
+    return [target]
 
 
 def _parameters(group: str, path: Path) -> Any:

@@ -116,7 +116,7 @@
     if (hollow) { pen.strokeStyle = ink; pen.lineWidth = 1.3; pen.stroke(); }
   }
 
-  const LEFT = 46;
+  const LEFT = 50;
   function across(width) {  // the same x axis for contacts and floor
     const scale = (width - LEFT) / (2 * data.reach + 2);
     return {scale: scale, X: function (x) { return LEFT + (x + data.reach + 1) * scale; }};
@@ -155,8 +155,10 @@
         if (level > 0) { counts.most = Math.max(counts.most, part); } else { counts.least = Math.max(counts.least, part); }
         if (part >= 0.008) {
           pen.lineCap = level > 0 ? "round" : "butt";
-          if (level > 0) {
-            line(pen, ends, colour.curve, width);
+          if (level > 0) {  // the thinnest are paler, as a printer would make them wider
+            pen.globalAlpha = Math.min(1, width / 0.6);
+            line(pen, ends, colour.curve, Math.max(width, 0.6));
+            pen.globalAlpha = 1;
           } else {  // hollow
             line(pen, ends, colour.lost, Math.max(width, 2.4));
             line(pen, ends, colour.paper, Math.max(width, 2.4) - 1.6);
@@ -187,7 +189,7 @@
   }
   function upright(pen, words, y) {  // along the y axis
     pen.save();
-    pen.translate(7, y);
+    pen.translate(6, y);
     pen.rotate(-Math.PI / 2);
     text(pen, words, 0, 0, "center");
     pen.restore();
@@ -301,7 +303,7 @@
     }).forEach(function (pair) {
       const one = pair[0], mine = one.polydispersity === slab.polydispersity, ink = mine ? colour.curve : colour.soft;
       const points = one.friction.map(function (friction, k) { return [X(friction), Y(one.force[k])]; });
-      line(pen, points, ink, mine ? 2 : 1, mine ? [] : [4, 3]);
+      line(pen, points.filter(function (_, k) { return !one.kind[k]; }), ink, mine ? 2 : 1, mine ? [] : [4, 3]);
       points.forEach(function (point, k) {
         if (mine && one.low[k] !== one.high[k]) {
           line(pen, [[point[0], Y(one.low[k] || low)], [point[0], Y(one.high[k] || 600)]], ink, 1);
@@ -355,7 +357,7 @@
     slider.setAttribute("aria-valuetext", force + " mg");
     byId("link").href = "#delta=" + slab.polydispersity + "&mu=" + slab.friction + "&ratio=" + slab.ratio + "&F=" + force;
     const reached = slab.motion && force >= slab.motion ? "dynamics from rest" : slab.motion ? "load path" : "";
-    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + counts.opened + " contacts opened, " +
+    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + counts.opened + (counts.opened === 1 ? " contact opened, " : " contacts opened, ") +
       counts.sliding + " at the Coulomb limit. Largest increase of a contact force: " + short(counts.most) +
       " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index) + own() + figure22();
     byId("network").setAttribute("aria-label", "Contacts of the slab, " + slab.about + ". " + said.textContent);

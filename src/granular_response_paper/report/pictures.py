@@ -15,12 +15,16 @@ from PIL import Image
 from granular_response.inputs import read_json
 from granular_response.machine import threads
 from granular_response_paper import captions
+from granular_response_paper.pipeline.drawing import VECTOR
 
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
 SHOWN = 0.62
 
 #: Largest size of a small picture, in its own pixels, and how hard it is compressed, from 0 to 100.
 SMALL, SMALL_QUALITY = (256, 144), 45
+
+#: Largest width of a raster picture that only stands in for a vector one, in its own pixels, and its colours.
+STAND_IN, STAND_IN_COLOURS = 868, 32
 
 #: Of 255: a picture that is brighter on average is a plot on white paper, which a dark page shows inverted.
 PAPER = 160.0
@@ -65,6 +69,7 @@ class Picture:
     height: int
     shown: int  #: width on a wide screen in pixels of the page
     plot: bool  #: whether it is drawn on white paper
+    vector: str = ""  #: compressed SVG in base64, if there is one: the page's script shows it in place of the raster
     caption: str = ""  #: with all its parameters, in plain text
     alternative: str = ""  #: what stands for it where it cannot be seen
 
@@ -172,21 +177,30 @@ def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
 
 
 def embed(path: Path) -> Picture:
-    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG."""
+    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG.
+
+    Where a vector picture is beside it, the raster one is smaller, for readers without scripts.
+    """
     with Image.open(path) as image:
         plain = image.convert("RGB")
     small = plain.copy()
     small.thumbnail(SMALL)
-    few = plain.quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).convert("RGB")
+    beside = path.with_suffix(VECTOR)
+    vector = base64.b64encode(beside.read_bytes()).decode() if beside.exists() else ""
+    few = plain.copy()
+    if vector:
+        few.thumbnail((STAND_IN, plain.height))
+    few = few.quantize(STAND_IN_COLOURS if vector else 256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     return Picture(
         path.stem,
         path.parent.name,
-        _webp(few, lossless=True, quality=76),
+        _webp(few.convert("RGB"), lossless=True, quality=76),
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
         round(SHOWN * plain.width),
         bool(np.asarray(small).mean() > PAPER),
+        vector,
     )
 
 
