@@ -17,9 +17,6 @@ from granular_response_paper.pipeline import TOO_LITTLE, GroupError, figures_fol
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: What a compressed vector picture is called, which a page shows in place of the raster one.
-VECTOR = ".svgz"
-
 #: Largest SVG in bytes: with more elements than that a browser is slow, and fields of colour show seams.
 LARGEST = 300_000
 
@@ -70,7 +67,7 @@ def _vector(figure: Figure, png: Path, inputs: list[Path]) -> list[Path]:
     drawn = style.render(figure, "svg").decode()
     drawn = _COORDINATES.sub(lambda match: _DIGITS.sub(r"\1", match[0]).replace("\n", " "), drawn)
     drawn = re.sub(r"<metadata>.*</metadata>", "", re.sub(r">\s+<", "><", drawn), flags=re.DOTALL)
-    target = png.with_suffix(VECTOR)
+    target = png.with_suffix(captions.VECTOR)
     atomic.check_writable(target, inputs)
     if len(drawn) > min(png.stat().st_size, LARGEST):
         target.unlink(missing_ok=True)

@@ -170,7 +170,7 @@ def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
 
 
 def _ordered(datasets: Datasets) -> Iterator[Slab]:
-    """The slabs of Figs. 6 to 9 and 16: the load path, and dynamics from rest from the first force that it was run to."""
+    """The slabs of Figs. 6 to 9 and 16: the load path, then dynamics from rest from its first force on."""
     for friction in FRICTIONS:
         name = f"states_mu_{friction:g}"
         if name not in datasets:

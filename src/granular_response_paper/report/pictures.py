@@ -15,7 +15,6 @@ from PIL import Image
 from granular_response.inputs import read_json
 from granular_response.machine import threads
 from granular_response_paper import captions
-from granular_response_paper.pipeline.drawing import VECTOR
 
 #: Pixels of the page per pixel of a drawn picture, which has 200 to an inch: letters as large as the text.
 SHOWN = 0.62
@@ -185,7 +184,7 @@ def embed(path: Path) -> Picture:
         plain = image.convert("RGB")
     small = plain.copy()
     small.thumbnail(SMALL)
-    beside = path.with_suffix(VECTOR)
+    beside = path.with_suffix(captions.VECTOR)
     vector = base64.b64encode(beside.read_bytes()).decode() if beside.exists() else ""
     few = plain.copy()
     if vector:
