@@ -800,10 +800,18 @@ def stepped(tab, root, tmp_path_factory):
     tab.open(path, 1400)
     tab.wait("'ready' in document.getElementById('explorer').dataset")
 
-    def say(delta, friction, ratio, applied):
-        tab.run(f"location.hash = '#delta={delta:g}&mu={friction:g}&ratio={ratio:g}&F={applied:g}'")
-        tab.wait(f"document.getElementById('force-label').textContent === 'F = {applied:g} mg'", 10.0)
-        about, words = tab.run("[document.getElementById('about').textContent, said.textContent]")
+    tab.run(
+        "window.choose = (delta, mu, ratio, index) => {"
+        " for (const [name, value] of [['packing', delta], ['friction', mu], ['ratio', ratio]])"
+        " document.querySelectorAll(`input[name=${name}]`).forEach(i => { if (Number(i.value) === value) i.click(); });"
+        " const slider = document.getElementById('force'); slider.value = index;"
+        " slider.dispatchEvent(new Event('input'));"
+        " return ['force-label', 'about', 'said'].map(id => document.getElementById(id).textContent); }; 0"
+    )
+
+    def say(delta, friction, ratio, applied, index):
+        label, about, words = tab.run(f"choose({delta}, {friction}, {ratio}, {index})")
+        assert label == f"F = {applied:g} mg"
         assert (f"δ = {delta:g}," if delta else "ordered") in about and f"µ = {friction:g}," in about
         return words.replace("\u2212", "-")
 
@@ -881,7 +889,7 @@ def test_every_sentence_of_an_ordered_slab_is_what_is_stored(stepped, friction):
             state = int(np.flatnonzero(states["force"].values == applied)[0])
             one = response.sel(force=applied)
             peaks = int(one["peak_count"])
-            words = say(0.0, friction, 0.8, applied)
+            words = say(0.0, friction, 0.8, applied, len(said))
             measured = float(one["response_at_centre"]), peaks, float(one["asymmetry"])
             hold(words, [count[state] for count in counts], measured, data["phase_diagram"], (0.0, friction, 0.8, 0.0))
             assert (f"({reached})" in words) == np.isfinite(first)
@@ -897,7 +905,7 @@ def test_every_sentence_of_an_added_slab_is_what_is_stored(stepped):
         counts, said = network(slab, friction), []
         for state in range(1, slab.sizes["state"]):
             one = slab.isel(state=state)
-            words = say(delta, friction, ratio, float(one["force"]))
+            words = say(delta, friction, ratio, float(one["force"]), state - 1)
             measured = float(one["response_at_centre"]), int(one["peak_count"]), 0.0
             mine = (delta, friction, ratio, walls)
             hold(words, [count[state] for count in counts], measured, data["phase_diagram"], mine)

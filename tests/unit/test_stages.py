@@ -1,9 +1,11 @@
 """Stages of a figure group that is made up for it: simulated, drawn, interrupted; progress on a terminal."""
 
 import fcntl
+import gzip
 import io
 import json
 import os
+import re
 import time
 from pathlib import Path
 
@@ -70,6 +72,18 @@ def test_a_group_has_the_common_parameters_and_its_own(group):
     assert given == {"count": 4, "method": "auto"} and described == Study.Parameters(count=4, method="auto")
     with pytest.raises(pipeline.GroupError, match=r"params.yaml: section cubes is missing"):
         simulation.parameters("cubes")
+
+
+def test_a_vector_picture_is_stored_where_it_is_the_smaller_one(group, monkeypatch):
+    simulation.simulate(group, workers=1)
+    drawing.draw(group)
+    stored = Path("figures/squares/fig99_squares.svgz")
+    drawn = gzip.decompress(stored.read_bytes()).decode()
+    assert drawn.startswith("<?xml") and drawn.rstrip().endswith("</svg>") and "<text" not in drawn
+    coordinates = re.findall(r' d="([^"]*)"', drawn)
+    assert coordinates and not any(re.search(r"\.\d{3}", path) for path in coordinates)
+    monkeypatch.setattr(drawing, "LARGEST", 10)
+    assert stored not in drawing.draw(group) and not stored.exists()
 
 
 def test_simulate_and_draw(group, tmp_path):

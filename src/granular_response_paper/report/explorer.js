@@ -189,7 +189,7 @@
   }
   function upright(pen, words, y) {  // along the y axis
     pen.save();
-    pen.translate(6, y);
+    pen.translate(9, y);
     pen.rotate(-Math.PI / 2);
     text(pen, words, 0, 0, "center");
     pen.restore();
