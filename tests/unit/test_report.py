@@ -413,13 +413,17 @@ def test_captions_that_are_none_are_one_line(root, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-def test_a_picture_called_overview_stands_at_the_top_and_unknown_groups_at_the_end(root, tmp_path):
+def test_the_overview_stands_at_the_top_and_unknown_groups_at_the_end(root, tmp_path):
     shutil.copytree(root, tmp_path / "copy")
-    for name in ("overview/overview", "another/another"):
+    for name in ("overview/overview", "overview/growing_force", "another/another"):
         path = tmp_path / "copy" / "figures" / f"{name}.png"
-        path.parent.mkdir()
+        path.parent.mkdir(exist_ok=True)
         Image.new("RGB", (1400, 500), "black").save(path)
+    (tmp_path / "copy" / "figures" / "overview" / "growing_force.gif").write_bytes(b"GIF89a")
     text = report.page(tmp_path / "copy")
+    part = text.partition('id="picture-growing_force"')[2]
+    assert part.index('src="data:image/gif;base64,R0lGODlh"') < part.index('href="overview/growing_force.gif">GIF</a>')
+    assert text.index('id="picture-overview"') < text.index('class="tiles"') < text.index('id="picture-growing_force"')
     assert text.index('id="summary"') < text.index('id="picture-overview"') < text.index('id="try"')
     assert text.count('picture-overview"') == 1
     assert (

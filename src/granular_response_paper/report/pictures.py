@@ -28,7 +28,7 @@ STAND_IN, STAND_IN_COLOURS = 868, 32
 #: Of 255: a picture that is brighter on average is a plot on white paper, which a dark page shows inverted.
 PAPER = 160.0
 
-#: A picture with this stem stands at the top of the page.
+#: The pictures of this group stand in the summary, the one of its name first.
 OVERVIEW = "overview"
 
 #: The questions that the figures answer, and the figure groups of each. What is in none stands behind them.
@@ -78,6 +78,7 @@ class Picture:
         folder = f"src/granular_response_paper/groups/{self.group}"
         return (
             ("PDF", f"figures/{self.group}/{self.stem}.pdf"),
+            ("GIF", f"figures/{self.group}/{self.stem}.gif"),
             ("data", f"data/{self.group}.nc"),
             ("drawing", f"{folder}/draw.py"),
             ("folder of the group", folder),
@@ -120,12 +121,11 @@ class Picture:
 class Pictures:
     """All drawn pictures."""
 
-    overview: Picture | None
+    overview: tuple[Picture, ...]
     questions: Mapping[str, tuple[Picture, ...]]  #: the pictures by question, first those of the paper's figures
 
     def all(self) -> Iterator[Picture]:
-        if self.overview:
-            yield self.overview
+        yield from self.overview
         for found in self.questions.values():
             yield from found
 
@@ -154,13 +154,14 @@ def collect(folder: Path) -> Pictures:
         for caption, alternative in [said.get((plain.group, plain.stem), ("", ""))]
     ]
     shown.sort(key=lambda picture: picture.number or captions.NUMBER_OF_FIGURES + 1)  # the others as they are
-    overview = next((picture for picture in shown if picture.stem == OVERVIEW), None)
+    overview = [picture for picture in shown if picture.group == OVERVIEW]
+    overview.sort(key=lambda picture: picture.stem != OVERVIEW)
     known = {group: question for question, groups in QUESTIONS.items() for group in groups}
     by_question = {
-        question: tuple(p for p in shown if p is not overview and known.get(p.group, FURTHER) == question)
+        question: tuple(p for p in shown if p.group != OVERVIEW and known.get(p.group, FURTHER) == question)
         for question in (*QUESTIONS, FURTHER)
     }
-    return Pictures(overview, {question: found for question, found in by_question.items() if found})
+    return Pictures(tuple(overview), {question: found for question, found in by_question.items() if found})
 
 
 def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
@@ -178,14 +179,15 @@ def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
 def embed(path: Path) -> Picture:
     """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG.
 
-    Where a vector picture is beside it, the raster one is smaller, for readers without scripts.
+    Where a vector picture is beside it, the raster one is smaller, for readers without scripts; where an animation is,
+    that stands in its place.
     """
     with Image.open(path) as image:
         plain = image.convert("RGB")
     small = plain.copy()
     small.thumbnail(SMALL)
-    beside = path.with_suffix(captions.VECTOR)
-    vector = base64.b64encode(beside.read_bytes()).decode() if beside.exists() else ""
+    moving, beside = path.with_suffix(".gif"), path.with_suffix(captions.VECTOR)
+    vector = base64.b64encode(beside.read_bytes()).decode() if beside.exists() and not moving.exists() else ""
     few = plain.copy()
     if vector:
         few.thumbnail((STAND_IN, plain.height))
@@ -193,7 +195,7 @@ def embed(path: Path) -> Picture:
     return Picture(
         path.stem,
         path.parent.name,
-        _webp(few.convert("RGB"), lossless=True, quality=76),
+        _uri("gif", moving.read_bytes()) if moving.exists() else _webp(few.convert("RGB"), lossless=True, quality=76),
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
@@ -206,4 +208,8 @@ def embed(path: Path) -> Picture:
 def _webp(image: Image.Image, **options: bool | int) -> str:
     buffer = io.BytesIO()
     image.save(buffer, format="WEBP", method=4, **options)
-    return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
+    return _uri("webp", buffer.getvalue())
+
+
+def _uri(kind: str, data: bytes) -> str:
+    return f"data:image/{kind};base64," + base64.b64encode(data).decode()
