@@ -60,7 +60,8 @@ html_theme = "pydata_sphinx_theme"
 html_title = "granular-response"
 html_show_sourcelink = False
 html_copy_source = False
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["narrow.css"]
 html_theme_options = {
     "navigation_with_keys": False,
     "show_prev_next": False,

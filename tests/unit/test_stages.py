@@ -1,9 +1,11 @@
 """Stages of a figure group that is made up for it: simulated, drawn, interrupted; progress on a terminal."""
 
 import fcntl
+import gzip
 import io
 import json
 import os
+import re
 import time
 from pathlib import Path
 
@@ -72,6 +74,18 @@ def test_a_group_has_the_common_parameters_and_its_own(group):
         simulation.parameters("cubes")
 
 
+def test_a_vector_picture_is_stored_where_it_is_the_smaller_one(group, monkeypatch):
+    simulation.simulate(group, workers=1)
+    drawing.draw(group)
+    stored = Path("figures/squares/fig99_squares.svgz")
+    drawn = gzip.decompress(stored.read_bytes()).decode()
+    assert drawn.startswith("<?xml") and drawn.rstrip().endswith("</svg>") and "<text" not in drawn
+    coordinates = re.findall(r' d="([^"]*)"', drawn)
+    assert coordinates and not any(re.search(r"\.\d{3}", path) for path in coordinates)
+    monkeypatch.setattr(drawing, "LARGEST", 10)
+    assert stored not in drawing.draw(group) and not stored.exists()
+
+
 def test_simulate_and_draw(group, tmp_path):
     assert simulation.simulate(group, workers=1) == Path("data/squares.nc")
     assert store.read("data/squares.nc")["squares"]["square"].values.tolist() == [0, 1, 4, 9]
@@ -79,7 +93,8 @@ def test_simulate_and_draw(group, tmp_path):
     assert yaml.safe_load(attributes["parameters"])["count"] == 4
     paths = drawing.draw(group)
     assert sorted(map(str, paths)) == [
-        f"figures/squares/{name}" for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png")
+        f"figures/squares/{name}"
+        for name in ("captions.json", "fig99_squares.pdf", "fig99_squares.png", "fig99_squares.svgz")
     ]
     assert json.loads(Path("figures/squares/captions.json").read_text()) == {
         "fig99_squares": {

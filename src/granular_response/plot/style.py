@@ -131,7 +131,7 @@ RC: dict[str, Any] = {
     "pdf.fonttype": 42,
     "savefig.bbox": None,
     "savefig.dpi": 200,
-    "svg.fonttype": "none",
+    "svg.fonttype": "path",  # letters as drawn, whatever fonts the reader has
     "svg.hashsalt": "granular_response",
     "xtick.direction": "in",
     "xtick.labelsize": 8,

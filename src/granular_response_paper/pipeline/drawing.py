@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,12 +18,20 @@ from granular_response_paper.pipeline import TOO_LITTLE, GroupError, figures_fol
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.animation import FuncAnimation
+    from matplotlib.figure import Figure
+
+#: Largest SVG in bytes: with more elements than that a browser is slow, and fields of colour show seams.
+LARGEST = 300_000
+
+#: Coordinates of an SVG file, and their digits behind the second: a hundredth of a point is not seen.
+_COORDINATES, _DIGITS = re.compile(r' (?:d|x|y|points)="[^"]*"'), re.compile(r"(\.\d\d)\d+")
 
 
 def draw(group: str, data: Path | None = None, folder: Path | None = None) -> list[Path]:
     """Draw the figures of a group from its datasets and write their captions; returns the paths of the files.
 
     Animations of a group (``animations`` of its ``draw.py``) are GIFs, each beside the picture of its name.
+    A figure that is smaller as SVG than as PNG, and below :data:`LARGEST`, is stored as a compressed SVG too.
 
     Raises
     ------
@@ -44,7 +54,8 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
         panels = {stem: style.drawn_letters(figure) for stem, figure in figures.items()}
         said = captions.document(group_member(group, "draw", "captions")(datasets, described), panels)
         for stem, figure in figures.items():
-            paths += style.save(figure, stem, target, inputs=[path])
+            saved = style.save(figure, stem, target, inputs=[path])
+            paths += [*saved, *_vector(figure, saved[0], [path])]
         for stem, moving in _animations(group, datasets).items():
             paths.append(target / f"{stem}.gif")
             atomic.check_writable(paths[-1], [path])
@@ -65,6 +76,22 @@ def _animations(group: str, datasets: Mapping[str, xr.Dataset]) -> Mapping[str, 
     except AttributeError:
         return {}
     return animations(datasets)
+
+
+def _vector(figure: Figure, png: Path, inputs: list[Path]) -> list[Path]:
+    """Write the vector picture beside a raster one, or remove it if it is not the smaller one."""
+    from granular_response.plot import style
+
+    drawn = style.render(figure, "svg").decode()
+    drawn = _COORDINATES.sub(lambda match: _DIGITS.sub(r"\1", match[0]).replace("\n", " "), drawn)
+    drawn = re.sub(r"<metadata>.*</metadata>", "", re.sub(r">\s+<", "><", drawn), flags=re.DOTALL)
+    target = png.with_suffix(captions.VECTOR)
+    atomic.check_writable(target, inputs)
+    if len(drawn) > min(png.stat().st_size, LARGEST):
+        target.unlink(missing_ok=True)
+        return []
+    atomic.write_bytes(target, gzip.compress(drawn.encode(), 9, mtime=0))
+    return [target]
 
 
 def _parameters(group: str, path: Path) -> Any:

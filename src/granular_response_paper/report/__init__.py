@@ -21,6 +21,7 @@ from granular_response.errors import GranularError
 from granular_response.store import atomic, generated
 from granular_response.store import files as store
 
+from .. import captions
 from ..claims import stored
 from ..claims.verdict import key
 from . import against, benchmarks, beyond, contents, explorer, pictures, readings
@@ -32,8 +33,6 @@ OUTPUT = Path("figures") / "report.html"
 #: Figure groups that the explorer shows, and the one whose table the readings come from.
 EXPLORED = ("friction_linear_range", "explorer", "phase_diagram")
 SENSITIVITY = "sensitivity"
-#: The group whose pictures stand in the summary.
-OVERVIEW = "overview"
 
 
 class ReportError(GranularError):
@@ -135,13 +134,12 @@ def page(root: Path, folder: Path | None = None) -> str:
         "size": _SIZE,
         "claims": claims,
         "verdicts": [(k["verdict"], key(k["verdict"])) for k in claims["verdict_kinds"]],
-        "numbered": shown.numbered,
-        "small": {figure.number: figure.pictures[0].small for figure in shown.numbered if figure.pictures},
-        "of_figure": lambda number: [row for row in claims["table"] if number in row.get("figures", ())],
-        "of_group": lambda group: [row for row in claims["table"] if row["group"] == group and not row.get("figures")],
+        "numbers": range(1, captions.NUMBER_OF_FIGURES + 1),
+        "first": shown.first,
+        "overview": shown.overview,
+        "questions": shown.questions,
+        "claims_of": lambda picture: _claims_of(picture, shown.first, claims["table"]),
         "linked": lambda picture: _linked(picture, root, root / OUTPUT.parent if folder is None else folder),
-        "overview": [picture for picture in shown.further if picture.group == OVERVIEW],
-        "further": [picture for picture in shown.further if picture.group != OVERVIEW],
         "states": _json_in_html(states) if states else None,
         "explored": states and _choices(states["slabs"]),
         "readings": tried,
@@ -151,13 +149,22 @@ def page(root: Path, folder: Path | None = None) -> str:
         "versions": _versions(root / "requirements.lock"),
         "style": _resource("style.css"),
         "script": _resource("explorer.js"),
-        "enlarge": _resource("enlarge.js"),
+        "behaviour": _resource("page.js"),
     }
     try:
         text = template.render(values) + "\n"
     except jinja2.UndefinedError as error:
         raise ReportError(f"{root / stored.OUTPUT}: is not a whole table of claims: {error}") from None
     return text.replace(_SIZE, f"{len(text.encode()) / 1e6:.1f} MB")
+
+
+def _claims_of(
+    picture: pictures.Picture, first: Mapping[int, str], table: Sequence[Mapping[str, Any]]
+) -> list[Mapping[str, Any]]:
+    """What a picture shows: the claims of its figure, once, or those of its group that no figure of the paper shows."""
+    if picture.number is None:
+        return [row for row in table if row["group"] == picture.group and not row["figures"]]
+    return [row for row in table if picture.number in row["figures"]] if first[picture.number] == picture.stem else []
 
 
 def _stored(path: Path) -> dict[str, xr.Dataset]:

@@ -1,8 +1,8 @@
-"""Stored benchmark metrics: goals, pictures and tables."""
+"""Stored benchmark metrics: goals and pictures."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,86 +10,63 @@ from granular_response.inputs import read_json
 
 from . import pictures
 
-#: Goals beside what was measured, by ``benchmarks/document.py``; and their picture folder.
+#: Goals beside what was measured, by ``benchmarks/document.py``; and the folder of pictures.
 SUMMARY, PICTURES = "summary", "figures"
 
-#: What the pictures show, by stem.
+#: What each picture is about and what it shows, by stem.
 CAPTIONS = {
-    "arena": "Microseconds per step on one core, ours and those of other codes.",
-    "bounces": "Energy that a disk keeps when it bounces off a wall with friction, by angle, ours and by other codes.",
-    "convergence": "Dynamics approaches the load path like one over the ramp time.",
-    "depth": "Depth and width of the region of contacts that a load opens without friction, in slabs up to 240 layers "
-    "deep; open symbols: it has reached the floor.",
-    "kernel": "Disks times time steps per second on one core.",
-    "linear": "Factorisations of the tangent stiffness of slabs at rest, ours beside those of libraries.",
-    "precision": "Run time against the error of the floor response. Open symbols of integrators: without the static "
-    "finish.",
-    "responses": "Processor time against the error of the floor response of 908 disks, ours and by other codes.",
-    "scale": "Time and memory of whole runs against the number of disks.",
-    "skipping": "What a scene pays if a part that it does not need is forced on.",
-    "trajectory": "Error of trajectories against the time step.",
+    "arena": ("Comparison with other codes", "Microseconds per step on one core."),
+    "bounces": (
+        "Single collisions",
+        "Energy that a disk keeps when it bounces off a wall with friction, by angle, ours and by other codes.",
+    ),
+    "convergence": ("Dynamics and path", "Dynamics approaches the load path like one over the ramp time."),
+    "depth": (
+        "Deep slabs",
+        "Depth and width of the region of contacts that a load opens without friction, in slabs up to 240 layers deep; "
+        "open symbols: it has reached the floor.",
+    ),
+    "kernel": ("Kernel", "Disks times time steps per second on one core."),
+    "linear": (
+        "Factorizations",
+        "Factorisations of the tangent stiffness of slabs at rest, ours beside those of libraries.",
+    ),
+    "precision": (
+        "Precision",
+        "Run time against the error of the floor response. Open symbols of integrators: without the static finish.",
+    ),
+    "responses": (
+        "Responses by other codes",
+        "Processor time against the error of the floor response of 908 disks, ours and by other codes.",
+    ),
+    "scale": ("Large packings", "Time and memory of whole runs against the number of disks."),
+    "skipping": ("Work that is skipped", "What a scene pays if a part that it does not need is forced on."),
+    "trajectory": ("Trajectories", "Error of trajectories against the time step."),
 }
 
 
 @dataclass(frozen=True)
 class Benchmark:
-    """One benchmark: its picture, if one is drawn, and its records as tables of ``notes``, ``columns``, ``rows``."""
+    """One benchmark that is drawn."""
 
     title: str
     caption: str
-    picture: pictures.Picture | None
-    tables: list[dict[str, Any]]
+    picture: pictures.Picture
 
 
 def collect(folder: Path) -> list[Benchmark]:
-    """One for each ``folder/*.json`` with records, apart from the summary."""
+    """One for each ``folder/figures/*.png``."""
     found = []
-    for path in sorted(folder.glob("*.json")):
-        drawn = folder / PICTURES / f"{path.stem}.png"
-        records = [] if path.stem == SUMMARY else tables(path)
-        if records:
-            picture = pictures.embed(drawn) if drawn.exists() else None
-            found.append(Benchmark(_words(path.stem).capitalize(), CAPTIONS.get(path.stem, ""), picture, records))
+    for drawn in sorted((folder / PICTURES).glob("*.png")):
+        title, caption = CAPTIONS.get(drawn.stem, (drawn.stem.replace("_", " ").capitalize(), ""))
+        found.append(Benchmark(title, caption, replace(pictures.embed(drawn), alternative=caption)))
     return found
 
 
 def goals(folder: Path) -> list[dict[str, Any]]:
     """Records ``what``, ``goal``, ``measured``, ``met`` of the summary, none without one."""
-    found = _read(folder / f"{SUMMARY}.json").get("goals")
-    return found if isinstance(found, list) else []
-
-
-def tables(path: Path) -> list[dict[str, Any]]:
-    """One table for each list of records in a file: title, columns, rows; scalars as notes."""
-    metrics = _read(path)
-    found = []
-    notes = [f"{_words(k)}: {_cell(v)}" for k, v in metrics.items() if isinstance(v, (str, int, float))]
-    for name, records in metrics.items():
-        if isinstance(records, list) and records and all(isinstance(record, dict) for record in records):
-            columns = list(dict.fromkeys(key for record in records for key in record))
-            columns = [c for c in columns if not any(isinstance(r.get(c), (list, dict)) for r in records)]
-            rows = [[_cell(record.get(column)) for column in columns] for record in records]
-            found.append({"title": _words(name), "notes": notes, "columns": [_words(c) for c in columns], "rows": rows})
-    return found
-
-
-def _read(path: Path) -> dict[str, Any]:
     try:
-        metrics = read_json(path)
-    except (OSError, ValueError):
-        return {}
-    return metrics if isinstance(metrics, dict) else {}
-
-
-def _words(name: str) -> str:
-    return str(name).replace("_", " ")
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        return f"{value:.3g}"
-    return str(value)
+        found = read_json(folder / f"{SUMMARY}.json")["goals"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+    return found if isinstance(found, list) else []

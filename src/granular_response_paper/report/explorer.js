@@ -67,7 +67,7 @@
   function mark() {
     marks.textContent = "";
     const list = byId("paper");
-    list.textContent = slab.paper.length ? "The paper:" : "The paper names no force for this slab.";
+    list.textContent = slab.paper.length ? "In the paper:" : "The paper names no force for this slab.";
     slab.paper.forEach(function (one) {
       const forces = slab.forces, after = Math.max(1, forces.findIndex(function (f) { return f >= one.force; }));
       const part = Math.log(one.force / forces[after - 1]) / Math.log(forces[after] / forces[after - 1]);
@@ -76,8 +76,8 @@
       marks.append(tick);
       const button = document.createElement("button");
       button.type = "button";
-      button.textContent = one.force + " mg: " + one.what + " (" + one.place + ")";
-      button.addEventListener("click", function () { slider.value = nearest(one.force); moved(); });
+      button.textContent = one.force + " mg: " + one.what + " (" + one.place + (one.here ? "; here " + one.here : "") + ")";
+      button.addEventListener("click", function () { stop(); slider.value = nearest(one.force); moved(); });
       list.append(" ", button);
     });
   }
@@ -116,7 +116,7 @@
     if (hollow) { pen.strokeStyle = ink; pen.lineWidth = 1.3; pen.stroke(); }
   }
 
-  const LEFT = 46;
+  const LEFT = 50;
   function across(width) {  // the same x axis for contacts and floor
     const scale = (width - LEFT) / (2 * data.reach + 2);
     return {scale: scale, X: function (x) { return LEFT + (x + data.reach + 1) * scale; }};
@@ -127,7 +127,7 @@
     const paper = sheet("network", function () { return (slab.height + 5.5) * scale + 34; });
     const pen = paper.pen, frame = slab.frames[index], lines = slab.lines, floor = paper.height - 32;
     const Z = function (z) { return floor - z * scale; };
-    const counts = {opened: 0, sliding: 0, most: 0, least: 0};
+    const counts = {opened: 0, sliding: 0, most: 0, least: 0};  // of the contacts that are shown
     pen.strokeStyle = colour.grid;
     pen.lineWidth = 1;
     pen.beginPath();
@@ -154,9 +154,11 @@
         const part = data.strongest * (level / data.full) * (level / data.full), width = widest * part;
         if (level > 0) { counts.most = Math.max(counts.most, part); } else { counts.least = Math.max(counts.least, part); }
         if (part >= 0.008) {
-          pen.lineCap = "butt";
-          if (level > 0) {
-            line(pen, ends, colour.curve, width);
+          pen.lineCap = level > 0 ? "round" : "butt";
+          if (level > 0) {  // the thinnest are paler, as a printer would make them wider
+            pen.globalAlpha = Math.min(1, width / 0.6);
+            line(pen, ends, colour.curve, Math.max(width, 0.6));
+            pen.globalAlpha = 1;
           } else {  // hollow
             line(pen, ends, colour.lost, Math.max(width, 2.4));
             line(pen, ends, colour.paper, Math.max(width, 2.4) - 1.6);
@@ -181,10 +183,18 @@
     line(pen, [[bar, high], [bar + 3 * scale, high]], colour.curve, 0.5 * widest);
     text(pen, "0.5 F", bar + 3 * scale + 5, high, "left");
     [0, 10, 20].forEach(function (z) { text(pen, String(z), LEFT - 4, Z(z), "right"); });
-    text(pen, "z/R\u0304", LEFT - 22, Z(15), "right");
+    upright(pen, "z/R\u0304", Z(10));
     xTicks(pen, X, floor + 12, paper.width);
     return counts;
   }
+  function upright(pen, words, y) {  // along the y axis
+    pen.save();
+    pen.translate(9, y);
+    pen.rotate(-Math.PI / 2);
+    text(pen, words, 0, 0, "center");
+    pen.restore();
+  }
+  function quantity() { return slab.width ? "stress \u03c3 R\u0304 / F" : "force on a disk / F"; }
   function xTicks(pen, X, y, width) {
     [-20, -10, 0, 10, 20].forEach(function (x) { text(pen, typed(x), X(x), y, "center"); });
     text(pen, "x/R\u0304", width, y, "right");
@@ -203,7 +213,9 @@
       line(pen, [[LEFT, Y(tick * step)], [paper.width, Y(tick * step)]], tick ? colour.grid : colour.soft, 1);
       text(pen, typed((tick * step).toFixed(2)), LEFT - 4, Y(tick * step), "right");
     }
-    const values = slab.smoothed ? slab.smoothed[index] : slab.response[index];
+    upright(pen, quantity(), (paper.height - 28) / 2);
+    const rows = slab.smoothed || slab.response, values = rows[index];
+    line(pen, slab.x.map(function (x, k) { return [X(x), Y(rows[0][k])]; }), colour.soft, 3);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.curve, 1.8);
     slab.x.forEach(function (x, k) { dot(pen, X(x), Y(slab.response[index][k]), 2.1, colour.curve, Boolean(slab.smoothed)); });
     xTicks(pen, X, paper.height - 10, paper.width);
@@ -221,6 +233,7 @@
       ? data.slabs.filter(function (one) { return one.polydispersity === slab.polydispersity; })
         .map(function (one) { return {friction: one.friction, force: one.forces, centre: one.centre}; })
       : data.range;
+    const motion = slab.motion ? slab.forces.indexOf(slab.motion) : slab.forces.length;
     let top = 0.01, bottom = 0;
     others.concat([{centre: slab.centre}]).forEach(function (one) {
       one.centre.forEach(function (value) { top = Math.max(top, value); bottom = Math.min(bottom, value); });
@@ -234,6 +247,7 @@
     }
     [0.1, 1, 10, 100].forEach(function (force) { text(pen, String(force), X(force), paper.height - 26, "center"); });
     text(pen, "F / mg", (LEFT + paper.width) / 2, paper.height - 9, "center");
+    upright(pen, quantity(), (paper.height - 36) / 2);
     slab.paper.forEach(function (one) { line(pen, [[X(one.force), 8], [X(one.force), paper.height - 36]], colour.soft, 1, [2, 3]); });
     let low = -20;
     others.map(function (one) { return [Y(one.centre[one.centre.length - 1]), one]; })
@@ -243,7 +257,9 @@
         line(pen, one.force.map(function (f, k) { return [X(f), Y(one.centre[k])]; }), colour.soft, 1);
         text(pen, "\u00b5 " + short(one.friction), paper.width, low, "right");
       });
-    line(pen, slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k])]; }), colour.curve, 2);
+    const own = slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k])]; });
+    line(pen, own.slice(0, motion), colour.curve, 2);
+    own.slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.curve, true); });
     const force = slab.forces[index];
     line(pen, [[X(force), 8], [X(force), paper.height - 36]], colour.ink, 1);
     dot(pen, X(force), Y(slab.centre[index]), 4.5, colour.ink);
@@ -267,14 +283,15 @@
   function phase(index) {
     const paper = sheet("phase", function (width) { return Math.max(190, 0.72 * width); }), pen = paper.pen;
     const X = function (friction) { return LEFT + 10 + friction * (paper.width - LEFT - 26); };
-    const Y = logarithm(0.03, 600, paper.height - 38, 8);
+    const low = 0.08, height = logarithm(low, 600, paper.height - 38, 8);
+    const Y = function (force) { return height(Math.min(600, Math.max(1.4 * low, force))); };  // bounds stay inside
     [0.1, 1, 10, 100].forEach(function (force) {
       line(pen, [[LEFT, Y(force)], [paper.width, Y(force)]], colour.grid, 1);
       text(pen, String(force), LEFT - 4, Y(force), "right");
     });
     [0, 0.2, 0.5, 1].forEach(function (friction) { text(pen, String(friction), X(friction), paper.height - 26, "center"); });
     text(pen, "\u00b5", paper.width - 8, paper.height - 9, "right");
-    text(pen, "F / mg", LEFT - 4, Y(350), "right");
+    upright(pen, "F / mg", (paper.height - 38) / 2);
     text(pen, "\u03b4", LEFT, paper.height - 9, "left");
     data.crossovers.forEach(function (one, k) {
       const x = LEFT + 18 + 46 * k;
@@ -286,10 +303,10 @@
     }).forEach(function (pair) {
       const one = pair[0], mine = one.polydispersity === slab.polydispersity, ink = mine ? colour.curve : colour.soft;
       const points = one.friction.map(function (friction, k) { return [X(friction), Y(one.force[k])]; });
-      line(pen, points, ink, mine ? 2 : 1, mine ? [] : [4, 3]);
+      line(pen, points.filter(function (_, k) { return !one.kind[k]; }), ink, mine ? 2 : 1, mine ? [] : [4, 3]);
       points.forEach(function (point, k) {
         if (mine && one.low[k] !== one.high[k]) {
-          line(pen, [[point[0], Y(one.low[k] || 0.03)], [point[0], Y(one.high[k] || 600)]], ink, 1);
+          line(pen, [[point[0], Y(one.low[k] || low)], [point[0], Y(one.high[k] || 600)]], ink, 1);
         }
         if (one.kind[k]) {
           polygon(pen, point[0], point[1], 3, 3.4, ink, false, one.kind[k] === 2 ? 0 : Math.PI);
@@ -303,36 +320,54 @@
     line(pen, [[x, 8], [x, paper.height - 38]], colour.ink, 1);
     dot(pen, x, y, 4.5, colour.ink);
   }
-  function crossing() {
+  const mean = function (value) { return typed(value.toFixed(4)); };
+  const counted = function (count) { return count + (count === 1 ? " peak" : " peaks"); };
+  function smoothing(width) { return width ? "smoothed with w = " + width + " R\u0304" : "not smoothed"; }
+  function walls(friction) { return friction ? "rough walls" : "smooth walls"; }
+  // where two peaks begin: in this slab by its own states, and in Fig. 22
+  function own() {
+    if (!slab.peaks) { return ""; }
+    const first = slab.peaks.findIndex(function (count) { return count > 1; }), f = slab.forces;
+    return " This slab has one peak " + (first < 0 ? "up to " + f[f.length - 1] + " mg."
+      : first ? "up to " + f[first - 1] + " mg and more from " + f[first] + " mg on." : "under no force.");
+  }
+  function figure22() {
     const curve = data.crossovers.find(function (one) { return one.polydispersity === slab.polydispersity; });
     const k = curve && slab.ratio === 0.8 ? curve.friction.indexOf(slab.friction) : -1;
     if (k < 0) { return ""; }
-    return " In Fig. 22 two peaks begin " + ["at ", "below ", "above "][curve.kind[k]] + short(curve.force[k]) + " mg.";
+    return " Fig. 22 (" + (slab.polydispersity ? "mean of the ensemble, " : "") + walls(slab.friction) + ", " + smoothing(data.width) +
+      "): two peaks " + ["from ", "already below ", "not up to "][curve.kind[k]] + short(curve.force[k]) + " mg" + (curve.kind[k] ? "." : " on.");
+  }
+  function shape(index) {
+    const start = "The response (" + walls(slab.walls) + ", " + smoothing(slab.width) + ") ";
+    const value = mean(slab.centre[index]) + " at x = 0; under " + slab.forces[0] + " mg it is " + mean(slab.centre[0]) + ".";
+    return start + (slab.peaks ? "has " + counted(slab.peaks[index]) + ", is " + (slab.symmetric[index] ? "" : "not ") +
+      "symmetric, and is " : "is ") + value;
   }
 
-  const plural = function (count, one, many) { return (count || "no") + " " + (count === 1 ? one : many); };
   function show() {
     readColours();
     byId("range-of").textContent = slab.polydispersity ? "as in Fig. 20" : "Fig. 6";
+    byId("floor-of").textContent = slab.width ? "Floor stress, " + smoothing(slab.width) + " (as in Fig. 20)" : "Normalized floor response";
     const index = Number(slider.value), force = slab.forces[index], counts = contacts(index);
     response(index);
     range(index);
     phase(index);
     label.textContent = "F = " + force + " mg";
     slider.setAttribute("aria-valuetext", force + " mg");
-    const peaks = slab.peaks ? "The response has " + plural(slab.peaks[index], "peak", "peaks") + " and is " : "The smoothed response is ";
-    said.textContent = "Under " + force + " mg: " + plural(counts.opened, "contact is", "contacts are") + " opened, " +
-      plural(counts.sliding, "slides", "slide") + "; one contact gains at most " + short(counts.most) +
-      " F, one that stays closed loses at most " + short(counts.least) + " F. " + peaks +
-      typed(slab.centre[index].toFixed(4)) + " F at x = 0." + crossing();
+    byId("link").href = "#delta=" + slab.polydispersity + "&mu=" + slab.friction + "&ratio=" + slab.ratio + "&F=" + force;
+    const reached = slab.motion && force >= slab.motion ? "dynamics from rest" : slab.motion ? "load path" : "";
+    said.textContent = "F = " + force + " mg" + (reached ? " (" + reached + ")" : "") + ": " + counts.opened + (counts.opened === 1 ? " contact opened, " : " contacts opened, ") +
+      counts.sliding + " at the Coulomb limit. Largest increase of a contact force: " + short(counts.most) +
+      " F; largest decrease of one that stays closed: " + short(counts.least) + " F. " + shape(index) + own() + figure22();
     byId("network").setAttribute("aria-label", "Contacts of the slab, " + slab.about + ". " + said.textContent);
-    byId("floor").setAttribute("aria-label", "Floor response per disk against x under " + force + " mg, largest " +
-      typed(Math.max.apply(null, slab.response[index]).toFixed(3)) + ". " + peaks + typed(slab.centre[index].toFixed(4)) + " F at x = 0.");
-    byId("range").setAttribute("aria-label", "Response at x = 0 against the force, from " + typed(slab.centre[0].toFixed(4)) +
-      " at " + slab.forces[0] + " mg to " + typed(slab.centre[slab.centre.length - 1].toFixed(4)) + " at " +
+    byId("floor").setAttribute("aria-label", "Floor response against x under " + force + " mg, largest " +
+      typed(Math.max.apply(null, slab.response[index]).toFixed(3)) + ". " + shape(index));
+    byId("range").setAttribute("aria-label", "Response at x = 0 against the force, from " + mean(slab.centre[0]) +
+      " at " + slab.forces[0] + " mg to " + mean(slab.centre[slab.centre.length - 1]) + " at " +
       slab.forces[slab.forces.length - 1] + " mg; the cursor is at " + force + " mg.");
     byId("phase").setAttribute("aria-label", "Force from which there are two peaks against friction; the cursor is at friction " +
-      slab.friction + " and " + force + " mg." + crossing());
+      slab.friction + " and " + force + " mg." + figure22());
   }
   function moved() {
     wanted = slab.forces[Number(slider.value)];
@@ -344,12 +379,49 @@
     window.cancelAnimationFrame(waiting);
     waiting = window.requestAnimationFrame(show);
   });
-  slider.addEventListener("input", moved);
-  document.querySelectorAll("#explorer input[type=radio]").forEach(function (input) { input.addEventListener("change", select); });
+  slider.addEventListener("input", function () { stop(); moved(); });
+
+  // the force grows by itself, from the beginning if it is at the end
+  const play = byId("play");
+  let playing = 0;
+  function stop() {
+    window.clearInterval(playing);
+    playing = 0;
+    play.textContent = "Play";
+  }
+  play.addEventListener("click", function () {
+    if (playing) { stop(); return; }
+    if (slider.value === slider.max) { slider.value = 0; moved(); }
+    play.textContent = "Stop";
+    playing = window.setInterval(function () {
+      slider.value = Number(slider.value) + 1;
+      moved();
+      if (slider.value === slider.max) { stop(); }
+    }, 300);
+  });
+
+  // a link to a state: #delta=0&mu=0.2&ratio=0.8&F=20
+  function linked() {
+    const asked = new URLSearchParams(window.location.hash.slice(1));
+    if (!asked.has("F")) { return false; }
+    [["packing", "delta"], ["friction", "mu"], ["ratio", "ratio"]].forEach(function (pair) {
+      document.querySelectorAll("input[name=" + pair[0] + "]").forEach(function (input) {
+        if (asked.has(pair[1]) && Number(input.value) === Number(asked.get(pair[1]))) { input.checked = true; }
+      });
+    });
+    if (Number(asked.get("F")) > 0) { wanted = Number(asked.get("F")); }
+    stop();
+    select();
+    return true;
+  }
+  window.addEventListener("hashchange", linked);
+  document.querySelectorAll("#explorer input[type=radio]").forEach(function (input) {
+    input.addEventListener("change", function () { stop(); select(); });
+  });
   // print is light whatever the screen is
   ["(prefers-color-scheme: dark)", "print"].forEach(function (medium) {
     window.matchMedia(medium).addEventListener("change", show);
   });
-  select();
+  if (linked()) { byId("try").scrollIntoView(); } else { select(); }
   byId("explorer").dataset.ready = "";
 })();

@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from granular_response.observe.peaks import asymmetry
 from granular_response.scene import Scene
 from granular_response.state import OPEN, FloatArray
 
@@ -39,17 +40,21 @@ MARGIN = 0.01
 LARGEST_OF_FIG_6 = 50.0
 
 #: Width of the Gaussian of the Fig. 22 that is shown.
-WIDTH = 3.0
+WIDTH = 6.0
 
-#: Coefficient of friction, force in mg, what the paper says happens there, and where: ordered slabs, k_T/k_N = 0.8.
-PAPER: tuple[tuple[float, float, str, str], ...] = (
-    (0.0, 0.75, "the first contact opens", "Sec. V.B"),
-    (0.2, 4.0, "the first contact opens", "Sec. V.B"),
-    (0.2, 20.0, "the open region reaches the floor; from one peak to two", "Sec. V.E"),
-    (0.2, 40.0, "a small third peak", "Sec. V.E"),
-    (1.0, 6.0, "the first contact opens", "Sec. V.B"),
-    (1.0, 50.0, "still one peak", "Sec. V.A"),
-    (1.0, 91.0, "the response loses its symmetry", "Sec. V.E"),
+#: From this asymmetry on the response counts as having lost its symmetry (as ``loss_of_symmetry``).
+ASYMMETRY = 0.2
+
+#: Coefficient of friction, force in mg, what the paper says happens there, where, and the stored events beside it:
+#: ordered slabs, k_T/k_N = 0.8.
+PAPER: tuple[tuple[float, float, str, str, tuple[str, ...]], ...] = (
+    (0.0, 0.75, "the first contact opens", "Sec. V.B", ("first_opening",)),
+    (0.2, 4.0, "the first contact opens", "Sec. V.B", ("first_opening",)),
+    (0.2, 20.0, "open contacts reach the floor; two peaks", "Sec. V.E", ("reaches_floor", "crossover")),
+    (0.2, 40.0, "a small third peak", "Sec. V.E", ("third_peak",)),
+    (1.0, 6.0, "the first contact opens", "Sec. V.B", ("first_opening",)),
+    (1.0, 50.0, "still one peak", "Sec. V.A", ()),
+    (1.0, 91.0, "the response loses its symmetry", "Sec. V.E", ("loss_of_symmetry",)),
 )
 
 
@@ -66,10 +71,17 @@ class Slab:
     force: FloatArray  #: (k,)
     chosen: NDArray[np.intp]  #: (k, 2) which of ``states``, and which state of it
     x: FloatArray  #: (floor_disk,)
-    response: FloatArray  #: (k, floor_disk)
-    smoothed: FloatArray | None  #: (k, floor_disk), of a disordered slab
-    centre: FloatArray  #: (k,) response at x = 0
+    response: FloatArray  #: (k, floor_disk) floor force per applied force; of a disordered slab stress times R
+    smoothed: FloatArray | None  #: (k, floor_disk) stress times R per applied force, of a disordered slab
+    centre: FloatArray  #: (k,) response at x = 0, smoothed if there is a smoothed one
     peaks: FloatArray  #: (k,)
+    width: float = 0.0  #: of the Gaussian that smooths a disordered slab
+    motion: float | None = None  #: smallest force whose state dynamics from rest reached; below it lies the load path
+
+    @property
+    def symmetric(self) -> list[bool]:
+        """Of each state of an ordered slab."""
+        return [asymmetry(self.x, row) <= ASYMMETRY for row in self.response]
 
     @property
     def shown(self) -> NDArray[np.bool_]:
@@ -111,9 +123,13 @@ def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | 
                 "centre": _rounded(slab.centre, 6),
                 # noise gives a disordered slab many
                 "peaks": None if slab.polydispersity else [int(count) for count in slab.peaks],
+                "symmetric": None if slab.polydispersity else slab.symmetric,
+                "walls": slab.wall_friction,
+                "width": slab.width,
+                "motion": slab.motion,
                 "paper": [
-                    {"force": force, "what": what, "place": place}
-                    for mu, force, what, place in PAPER
+                    {"force": force, "what": what, "place": place, "here": _here(friction, mu, events)}
+                    for mu, force, what, place, events in PAPER
                     if (slab.polydispersity, slab.stiffness_ratio, mu) == (0.0, 0.8, slab.friction)
                 ],
             }
@@ -121,6 +137,7 @@ def payload(friction: Datasets, more: Datasets | None = None, phase: Datasets | 
         ],
         "range": _range(friction),
         "crossovers": _crossovers(phase) if phase else [],
+        "width": WIDTH,
         "packed": base64.b64encode(zlib.compress(packed, 9)).decode(),
     }
 
@@ -137,8 +154,23 @@ def _about(slab: Slab) -> str:
     return f"{kind}, µ = {slab.friction:g}, {walls}{ratio}, k_N = {slab.normal_stiffness:g} mg/R"
 
 
+def _here(datasets: Datasets, friction: float, names: Sequence[str]) -> str:
+    """At which forces the stored events happen here, in words; empty where none is stored."""
+    stored = datasets.get("events")
+    if stored is None or not names:
+        return ""
+    own = stored.isel(event=stored["friction"].values == friction)
+    rows = [own.isel(event=own["name"].values == name) for name in names]
+    ends = [(float(row["low"][0]), float(row["high"][0])) for row in rows if row.sizes["event"]]
+    said = []
+    for low, high in ends:
+        first, last = f"{low:.3g}", f"{high:.3g}"
+        said.append(f"above {first}" if np.isnan(high) else first if first == last else f"between {first} and {last}")
+    return f"{', '.join(said)} mg" if said else ""
+
+
 def _ordered(datasets: Datasets) -> Iterator[Slab]:
-    """The slabs of Figs. 6 to 9 and 16."""
+    """The slabs of Figs. 6 to 9 and 16: the load path, then dynamics from rest from its first force on."""
     for friction in FRICTIONS:
         name = f"states_mu_{friction:g}"
         if name not in datasets:
@@ -146,17 +178,18 @@ def _ordered(datasets: Datasets) -> Iterator[Slab]:
         along = datasets["response"]
         along = along.isel(friction=int(np.abs(along["friction"].values - friction).argmin()))
         sources, parts = [datasets[name]], [(0, along)]
-        large = datasets.get("large_forces")
+        large, motion = datasets.get("large_forces"), None
         if large is not None and float(large["friction"]) == friction:
             sources.append(datasets["large_force_states"])
             parts.append((1, large))
+            motion = float(large["force"].min())
         chosen: list[tuple[int, int]] = []
         rows: list[xr.Dataset] = []
         for source, measured in parts:
             for k, force in enumerate(sources[source]["force"].values.tolist()):
                 here = np.flatnonzero(np.isclose(measured["force"].values, force))
-                known = [float(row["force"]) for row in rows]
-                if force > 0.0 and here.size and not np.isclose(known, force).any():
+                replaced = source == 0 and motion is not None and force >= motion
+                if force > 0.0 and here.size and not replaced:
                     chosen.append((source, k))
                     rows.append(measured.isel(force=int(here[0])))
         scene = Scene.from_text(datasets[name].attrs["scene"])
@@ -174,6 +207,7 @@ def _ordered(datasets: Datasets) -> Iterator[Slab]:
             smoothed=None,
             centre=np.array([float(row["response_at_centre"]) for row in rows]),
             peaks=np.array([float(row["peak_count"]) for row in rows]),
+            motion=motion,
         )
 
 
@@ -181,8 +215,8 @@ def _added(data: xr.Dataset) -> Slab:
     """A slab of the group ``explorer``."""
     loaded = data.isel(state=slice(1, None))
     width = float(data["smoothing_width"])
-    # a smoothed response is a stress; times the distance of two floor disks it is again what one disk bears
-    spacing = float(np.diff(data["x"].values).mean())
+    # a smoothed response is a stress, as in Fig. 20; so is the force of one disk over the distance to the next one
+    spacing = float(np.diff(data["x"].values).mean()) if width else 1.0
     return Slab(
         states=(data,),
         polydispersity=float(data["polydispersity"]),
@@ -193,10 +227,11 @@ def _added(data: xr.Dataset) -> Slab:
         force=loaded["force"].values.astype(float),
         chosen=np.array([(0, k) for k in range(1, data.sizes["state"])]),
         x=data["x"].values,
-        response=loaded["floor_response"].values,
-        smoothed=loaded["smoothed_response"].values * spacing if width else None,
-        centre=loaded["response_at_centre"].values * (spacing if width else 1.0),
+        response=loaded["floor_response"].values / spacing,
+        smoothed=loaded["smoothed_response"].values if width else None,
+        centre=loaded["response_at_centre"].values,
         peaks=loaded["peak_count"].values,
+        width=width,
     )
 
 

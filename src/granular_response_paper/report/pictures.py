@@ -1,13 +1,15 @@
-"""The drawn figures, in the order of the paper, as pictures inside a page."""
+"""The drawn figures as pictures inside a page, by the question that they answer."""
 
 from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
 from granular_response.inputs import read_json
@@ -18,10 +20,40 @@ from granular_response_paper import captions
 SHOWN = 0.62
 
 #: Largest size of a small picture, in its own pixels, and how hard it is compressed, from 0 to 100.
-SMALL, SMALL_QUALITY = (192, 128), 55
+SMALL, SMALL_QUALITY = (256, 144), 45
 
-#: Two figures that are not wider than this, in pixels of the page, stand beside each other.
-NARROW = 480
+#: Largest width of a raster picture that only stands in for a vector one, in its own pixels, and its colours.
+STAND_IN, STAND_IN_COLOURS = 868, 32
+
+#: Of 255: a picture that is brighter on average is a plot on white paper, which a dark page shows inverted.
+PAPER = 160.0
+
+#: The pictures of this group stand in the summary, the one of its name first.
+OVERVIEW = "overview"
+
+#: The questions that the figures answer, and the figure groups of each. What is in none stands behind them.
+QUESTIONS: Mapping[str, tuple[str, ...]] = {
+    "What do continuum theories predict?": ("theory", "slab_comparison", "moduli"),
+    "When does one peak become two?": (
+        "frictionless_crossover",
+        "stiffness_ratio_crossover",
+        "crossover_scaling",
+        "peak_width",
+    ),
+    "What does friction change?": (
+        "friction_linear_range",
+        "friction_fields",
+        "preparation",
+        "symmetry_breaking",
+    ),
+    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer"),
+    "What do piles, torques and several forces do?": ("pile_dip", "torque", "superposition", "influence", "hysteresis"),
+    "How certain are the numbers?": ("sensitivity", "numerics", "contact_law", "stability"),
+}
+FURTHER = "Further figures"
+
+#: The end of a first sentence, which the next one follows.
+_SENTENCE = re.compile(r"(?<!Fig)(?<!Figs)(?<!Sec)(?<!Secs)(?<!Eq)(?<!eq)[.?!]\s+(?=[A-Z(])")
 
 
 @dataclass(frozen=True)
@@ -35,6 +67,8 @@ class Picture:
     width: int
     height: int
     shown: int  #: width on a wide screen in pixels of the page
+    plot: bool  #: whether it is drawn on white paper
+    vector: str = ""  #: compressed SVG in base64, if there is one: the page's script shows it in place of the raster
     caption: str = ""  #: with all its parameters, in plain text
     alternative: str = ""  #: what stands for it where it cannot be seen
 
@@ -57,45 +91,52 @@ class Picture:
 
     @property
     def title(self) -> str:
-        return self.stem.replace("_", " ").capitalize()
-
-
-@dataclass(frozen=True)
-class Figure:
-    """A figure of the paper with its pictures, none if it is not drawn yet."""
-
-    number: int
-    pictures: tuple[Picture, ...]
+        """Of a figure of the paper its number, with what follows it in the name of the file where that is a letter."""
+        match = re.match(r"fig0*(\d+)([a-z]?)_", self.stem)
+        return f"Fig. {match[1]}{match[2]}" if match else self.stem.replace("_", " ").capitalize()
 
     @property
-    def caption(self) -> str:
-        """Those of its pictures, one after the other."""
-        return " ".join(picture.caption for picture in self.pictures if picture.caption)
+    def message(self) -> str:
+        """First sentence of the caption."""
+        return self._parts[0]
 
     @property
-    def narrow(self) -> bool:
-        """Whether another figure has room beside it."""
-        return bool(self.pictures) and all(picture.shown <= NARROW for picture in self.pictures)
+    def details(self) -> str:
+        """What follows it."""
+        return self._parts[1]
 
-    def alternative(self, picture: Picture) -> str:
-        """Text that stands for one of the pictures, of its own for each."""
-        count = len(self.pictures)
-        which = f", picture {self.pictures.index(picture) + 1} of {count}" if count > 1 else ""
-        subject = picture.stem.partition("_")[2].replace("_", " ")
-        return f"Figure {self.number}{which}, {subject}: {picture.alternative}"
+    @property
+    def _parts(self) -> tuple[str, str]:
+        end = _SENTENCE.search(self.caption)
+        return (self.caption[: end.start() + 1], self.caption[end.end() :]) if end else (self.caption, "")
+
+    @property
+    def text(self) -> str:
+        """What stands for it where it cannot be seen, with its name."""
+        name = f"{self.title}, {self.stem.partition('_')[2].replace('_', ' ')}" if self.number else self.title
+        return f"{name}: {self.alternative}" if self.alternative else name
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """The figures of the paper, and what else is drawn."""
+    """All drawn pictures."""
 
-    numbered: tuple[Figure, ...]
-    further: tuple[Picture, ...]
+    overview: tuple[Picture, ...]
+    questions: Mapping[str, tuple[Picture, ...]]  #: the pictures by question, first those of the paper's figures
 
     def all(self) -> Iterator[Picture]:
-        for figure in self.numbered:
-            yield from figure.pictures
-        yield from self.further
+        yield from self.overview
+        for found in self.questions.values():
+            yield from found
+
+    @property
+    def first(self) -> dict[int, str]:
+        """The stem of the first picture of each figure of the paper that is drawn."""
+        found: dict[int, str] = {}
+        for picture in self.all():
+            if picture.number:
+                found.setdefault(picture.number, picture.stem)
+        return dict(sorted(found.items()))
 
 
 def collect(folder: Path) -> Pictures:
@@ -103,20 +144,24 @@ def collect(folder: Path) -> Pictures:
 
     Raises ValueError if a file of captions is none.
     """
-    numbered: dict[int, list[Picture]] = {number: [] for number in range(1, captions.NUMBER_OF_FIGURES + 1)}
-    further = []
     said = _said(folder)
     paths = sorted(folder.glob("*/*.png"), key=lambda path: (path.stem, path.parent.name))
     with threads.using(threads.cores()), threads.mapping() as several:  # encoding is most of the time of a page
         embedded = several(embed, paths)
-    for plain in embedded:
-        caption, alternative = said.get((plain.group, plain.stem), ("", ""))
-        picture = replace(plain, caption=caption, alternative=alternative)
-        if picture.number is None:
-            further.append(picture)
-        else:
-            numbered[picture.number].append(picture)
-    return Pictures(tuple(Figure(n, tuple(found)) for n, found in numbered.items()), tuple(further))
+    shown = [
+        replace(plain, caption=caption, alternative=alternative)
+        for plain in embedded
+        for caption, alternative in [said.get((plain.group, plain.stem), ("", ""))]
+    ]
+    shown.sort(key=lambda picture: picture.number or captions.NUMBER_OF_FIGURES + 1)  # the others as they are
+    overview = [picture for picture in shown if picture.group == OVERVIEW]
+    overview.sort(key=lambda picture: picture.stem != OVERVIEW)
+    known = {group: question for question, groups in QUESTIONS.items() for group in groups}
+    by_question = {
+        question: tuple(p for p in shown if p.group != OVERVIEW and known.get(p.group, FURTHER) == question)
+        for question in (*QUESTIONS, FURTHER)
+    }
+    return Pictures(tuple(overview), {question: found for question, found in by_question.items() if found})
 
 
 def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
@@ -132,23 +177,31 @@ def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
 
 
 def embed(path: Path) -> Picture:
-    """A drawn picture as a data URI: every pixel as drawn, in lossless WebP, less than half as large as the PNG.
+    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG.
 
-    Where an animation of its name is beside it, that stands in its place.
+    Where a vector picture is beside it, the raster one is smaller, for readers without scripts; where an animation is,
+    that stands in its place.
     """
-    moving = path.with_suffix(".gif")
     with Image.open(path) as image:
         plain = image.convert("RGB")
     small = plain.copy()
     small.thumbnail(SMALL)
+    moving, beside = path.with_suffix(".gif"), path.with_suffix(captions.VECTOR)
+    vector = base64.b64encode(beside.read_bytes()).decode() if beside.exists() and not moving.exists() else ""
+    few = plain.copy()
+    if vector:
+        few.thumbnail((STAND_IN, plain.height))
+    few = few.quantize(STAND_IN_COLOURS if vector else 256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     return Picture(
         path.stem,
         path.parent.name,
-        _uri("gif", moving.read_bytes()) if moving.exists() else _webp(plain, lossless=True, quality=76),
+        _uri("gif", moving.read_bytes()) if moving.exists() else _webp(few.convert("RGB"), lossless=True, quality=76),
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
         round(SHOWN * plain.width),
+        bool(np.asarray(small).mean() > PAPER),
+        vector,
     )
 
 

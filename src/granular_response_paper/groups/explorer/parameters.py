@@ -23,7 +23,7 @@ class Disordered(Description):
 
     polydispersity: Annotated[Fraction, Field(gt=0)]
     friction: Ratio
-    largest_force: Positive = Field(description="Last of the forces; the packing collapses not far beyond.")
+    largest_force: Positive = Field(description="Last of the forces, if the packing does not collapse before.")
 
 
 class Parameters(SceneGroup):

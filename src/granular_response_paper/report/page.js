@@ -1,0 +1,60 @@
+(function () {
+  "use strict";
+  // a picture is enlarged by a click
+  const large = document.createElement("dialog");
+  large.className = "large";
+  large.setAttribute("aria-label", "Enlarged picture");
+  const close = document.createElement("button");
+  close.textContent = "Close";
+  const shown = document.createElement("img");
+  large.append(close, shown);
+  document.body.append(large);
+  large.addEventListener("click", function () { large.close(); });
+
+  document.querySelectorAll(".picture img").forEach(function (picture) {
+    const open = function () {
+      shown.src = picture.src;
+      shown.alt = picture.alt;
+      shown.className = picture.className;
+      large.showModal();
+    };
+    picture.tabIndex = 0;
+    picture.setAttribute("role", "button");
+    picture.setAttribute("aria-label", picture.alt + " Enlarge.");
+    picture.addEventListener("click", open);
+    picture.addEventListener("keydown", function (event) {
+      if (event.key === "Enter" || event.key === " ") { event.preventDefault(); open(); }
+    });
+  });
+
+  // line plots are vectors, sharp at every size
+  document.querySelectorAll("img[data-vector]").forEach(async function (picture) {
+    try {
+      const zipped = Uint8Array.from(atob(picture.dataset.vector), function (c) { return c.charCodeAt(0); });
+      const drawn = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip"));
+      picture.src = "data:image/svg+xml," + encodeURIComponent(await new Response(drawn).text());
+    } catch (error) { return; }  // an old browser keeps the raster picture
+    picture.removeAttribute("data-vector");
+  });
+
+  // a link into something folded unfolds it
+  function unfold(hash) {
+    const target = document.getElementById(decodeURIComponent(hash.slice(1)));
+    const folded = target && target.closest("details:not([open])");
+    if (folded) { folded.open = true; target.scrollIntoView(); }
+  }
+  document.addEventListener("click", function (event) {
+    const link = event.target.closest("a[href^='#']");
+    if (link) { unfold(link.hash); }
+  });
+  window.addEventListener("hashchange", function () { unfold(window.location.hash); });
+  unfold(window.location.hash);
+
+  // printed are all figures
+  let folded = [];
+  window.addEventListener("beforeprint", function () {
+    folded = Array.from(document.querySelectorAll("details.full:not([open])"));
+    folded.forEach(function (one) { one.open = true; });
+  });
+  window.addEventListener("afterprint", function () { folded.forEach(function (one) { one.open = false; }); });
+})();
