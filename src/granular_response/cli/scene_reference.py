@@ -31,6 +31,8 @@ UNITS = {
     "stiffness_ratio": "",
     "friction": "",
     "damping_ratio": "",
+    "rolling_friction": "",
+    "rolling_stiffness_ratio": "",
     "force": "disk weight",
     "displacement": "mean radius",
     "torque": "disk weight × mean radius",
