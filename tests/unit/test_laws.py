@@ -128,8 +128,8 @@ def test_a_disk_hangs_on_the_floor_by_cohesion():
     result = gr.solve(base)
     state = result.loaded[-1]
     floor = state.walls.second == 0
-    assert state.walls.normal_force[floor] == pytest.approx(-0.2, abs=1e-6)
-    assert state.walls.overlap[floor] == pytest.approx(0.1 / 6000.0, abs=1e-9)
+    assert state.walls.normal_force[floor] == pytest.approx(-0.2, abs=1e-4)
+    assert state.walls.overlap[floor] == pytest.approx(0.1 / 6000.0, abs=1e-7)
     assert "lets go at once" in result.to_dataset().attrs["method_reason"]
     with pytest.raises(gr.GranularError):  # beyond the pull the load carries it off
         gr.solve(gr.Scene.from_dict(base).updated({"loads.0.force": [0.0, 1.4]}))
