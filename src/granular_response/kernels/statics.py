@@ -81,7 +81,8 @@ class RollingResponse(NamedTuple):
     @classmethod
     def empty(cls, size: int) -> RollingResponse:
         """Room for ``size`` contacts."""
-        return cls(*np.zeros((2, size)), np.zeros(size, np.int8))
+        force, spring = np.zeros((2, size))
+        return cls(force, spring, np.zeros(size, np.int8))
 
 
 @kernel
@@ -187,7 +188,7 @@ def _rub(
     form = _shape_at(shape, c)
     fn = elastic_force(law, xi, form)
     share = 1.0 if overlap0[c] >= 0.0 or xi <= 0.0 else xi / (xi - overlap0[c])
-    limit = law.friction * abs(fn) if limits is None else limits[c]
+    limit = law.friction * fn if limits is None else limits[c]
     if fixed is None:
         ft, s, sense = return_map(spring0[c] + share * slip, limit, law)
     else:
@@ -197,8 +198,6 @@ def _rub(
         k = stiffness(law, xi, form)
         if sense != 0.0:
             slides = sense * law.friction if limits is None else 0.0
-            if fn < 0.0:  # a law that pulls: its limit falls as it is pressed
-                slides = -slides
             _fill_tangent(tangent[c], nx, nz, fn, ft, inverse, k, 0.0, 0.0, 0.0, slides)
         else:
             stiff = law.tangential_stiffness * share
@@ -307,7 +306,7 @@ def _roll(c, i, j, nx, nz, xi, k, q, q0, n, arm, rolling, known, overlap0, sprin
         turned -= q[b] - q0[b]
     share = 1.0 if overlap0[c] >= 0.0 or xi <= 0.0 else xi / (xi - overlap0[c])
     spring = spring0[c] + share * arm[c] * turned
-    limit = rolling.friction * abs(known.normal[c]) if limits is None else limits[c]
+    limit = rolling.friction * known.normal[c] if limits is None else limits[c]
     if fixed is None:
         found, new, sense = rolling_return(spring, limit, rolling)
     elif abs(fixed[c]) == SLIDING:

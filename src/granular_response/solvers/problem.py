@@ -236,8 +236,8 @@ class Problem:
 
     def without_friction(self) -> Problem:
         """The same packing with smooth disks and walls."""
-        laws = {"pair_law": self.pair_law.without_friction(), "wall_law": self.wall_law.without_friction()}
-        return replace(self, **laws, pair_rolling=None, wall_rolling=None)
+        pair, wall = self.pair_law.without_friction(), self.wall_law.without_friction()
+        return replace(self, pair_law=pair, wall_law=wall, pair_rolling=None, wall_rolling=None)
 
     @property
     def load_size(self) -> float:
