@@ -6,8 +6,11 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
+from pydantic import Field
+
 from granular_response.kernels.integrators import Integrator
 from granular_response.scene import Scene
+from granular_response.scene.base import Description, NonNegative
 from granular_response.solvers.problem import Problem
 
 
@@ -50,6 +53,59 @@ class Cubic(NamedTuple):
 
     def softened(self, part):
         return self._replace(factor=part**4 * self.factor)
+
+    def without_friction(self):
+        return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)
+
+
+class Cohesion(Description):
+    """Parameters of the law below."""
+
+    strength: NonNegative = Field(
+        default=0.1, description="Pull of a contact while it is closed.", json_schema_extra={"unit": "disk weight"}
+    )
+
+
+class Cohesive(NamedTuple):
+    """Linear springs, and a constant pull while in contact."""
+
+    normal_stiffness: float
+    normal_damping: float
+    tangential_stiffness: float
+    tangential_damping: float
+    friction: float
+    least_force: float
+    strength: float
+
+    only_motion = "a contact that pulls lets go at once, which statics does not follow"
+
+    @classmethod
+    def of(
+        cls, normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction, least_force,
+        reduced_radius, strength,
+    ):  # fmt: skip
+        return cls(
+            normal_stiffness, normal_damping, tangential_stiffness, tangential_damping, friction,
+            least_force - strength, strength,
+        )  # fmt: skip
+
+    def elastic_force(self, overlap, shape):
+        return self.normal_stiffness * overlap - self.strength
+
+    def stiffness(self, overlap, shape):
+        return self.normal_stiffness
+
+    def energy(self, overlap, shape):
+        return (0.5 * self.normal_stiffness * overlap - self.strength) * overlap
+
+    def shapes(self, first, second):
+        return None
+
+    def stiffest(self, force):
+        return self.normal_stiffness
+
+    def softened(self, part):
+        return self._replace(normal_stiffness=part**2 * self.normal_stiffness)
 
     def without_friction(self):
         return self._replace(tangential_stiffness=0.0, tangential_damping=0.0, friction=0.0)

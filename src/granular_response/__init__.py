@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .errors import SolveError as SolveError
     from .scene import Scene as Scene
     from .scene import SceneError as SceneError
+    from .solvers.laws import register_law as register_law
     from .state import Event as Event
     from .store.files import StoreError as StoreError
     from .store.result import ResultError as ResultError
@@ -51,6 +52,7 @@ _HOME = {
     "find_event": "api.event",
     "open_result": "api.result",
     "plot": "",
+    "register_law": "solvers.laws",
     "solve": "api.result",
     "sweep": "api.sweep",
 }

@@ -68,7 +68,7 @@ def test_a_result_has_its_events_in_order_and_by_kind(result):
     assert len(events.of("slides", "sticks")) == len(slides) + len(events.of("sticks"))
     assert events[0] == events[:1][0] == next(iter(events)) and isinstance(events[0], gr.Event)
     assert len(events.lost) == 0 and len(with_lost(result).events.lost) == 1
-    with pytest.raises(ValueError, match=r"^kind = 'open': must be opens or .* or bifurcation, did you mean opens\?$"):
+    with pytest.raises(ValueError, match=r"^kind = 'open': must be opens or .* or rolls back, did you mean opens\?$"):
         events.of("open")
 
 
@@ -131,7 +131,7 @@ def test_chosen_states_keep_the_events_that_lead_to_them(result):
 
 DAMAGE = {
     "half of them": (lambda d: d.drop_vars("event_until"), "variable event_until is missing"),
-    "no such kind": (lambda d: spoil(d, "event_kind", 8), "variable event_kind: holds 8, must be from 0 to 7"),
+    "no such kind": (lambda d: spoil(d, "event_kind", 11), "variable event_kind: holds 11, must be from 0 to 10"),
     "no such disk": (lambda d: spoil(d, "event_first", 99), "variable event_first: holds 99, must be from -1 to 33"),
     "no such partner": (lambda d: spoil(d, "event_second", -2), "variable event_second: holds -2, must be from -1"),
     "no such wall": (

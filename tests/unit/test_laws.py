@@ -5,16 +5,30 @@ import math
 import numba as nb
 import numpy as np
 import pytest
+from demonstration import Cohesion, Cohesive, Cubic
 
+import granular_response as gr
+from granular_response.cli import scene_reference
 from granular_response.contact import LAWS
 from granular_response.contact.law import elastic_force, energy, stiffness
 from granular_response.scene import Scene, SceneError
-from granular_response.scene.material import Contact
+from granular_response.scene.material import LAW_PARAMETERS
 from granular_response.solvers.problem import Problem
+
+#: Those of the package, and one that lives outside.
+NAMES = [*LAWS, "cohesive"]
+
+
+@pytest.fixture(autouse=True)
+def _cohesive():
+    gr.register_law("cohesive", Cohesive, Cohesion)
+    yield
+    del LAWS["cohesive"], LAW_PARAMETERS["cohesive"]
 
 
 def law(name, reduced_radius=0.5, friction=0.2):
-    return LAWS[name].of(3000.0, 54.0, 2400.0, 49.0, friction, -math.inf, reduced_radius)
+    own = LAW_PARAMETERS[name]().model_dump()
+    return LAWS[name].of(3000.0, 54.0, 2400.0, 49.0, friction, -math.inf, reduced_radius, **own)
 
 
 @nb.njit(error_model="numpy")
@@ -28,15 +42,15 @@ def shape_of(law, first=1.0, second=1.0):
 
 
 def test_a_scene_can_name_every_law():
-    assert set(Contact.model_fields["law"].annotation.__args__) == set(LAWS)
+    assert set(LAW_PARAMETERS) == set(LAWS)
     for name in LAWS:
         problem = Problem.from_scene(Scene().updated({"contact.law": name}))
         assert type(problem.pair_law) is type(problem.wall_law) is LAWS[name]
-    with pytest.raises(SceneError, match=r"contact\.law = .*must be linear or hertz"):
+    with pytest.raises(SceneError, match=r"contact\.law = .*must be linear or hertz or cohesive"):
         Scene().updated({"contact.law": "hertzian"})
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("overlap", [1e-5, 1e-3, 0.1])
 def test_stiffness_is_the_derivative_of_the_force_and_force_that_of_the_energy(name, overlap):
     one = law(name)
@@ -47,7 +61,7 @@ def test_stiffness_is_the_derivative_of_the_force_and_force_that_of_the_energy(n
     assert (up[2] - down[2]) / (2.0 * h) == pytest.approx(force, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize(("reduced_radius", "second"), [(0.5, 1.0), (1.0, None)], ids=["disks", "wall"])
 def test_the_stiffness_is_that_at_one_disk_weight(name, reduced_radius, second):
     one = law(name, reduced_radius)
@@ -71,7 +85,7 @@ def test_hertz_by_hand():
     assert asked(one, 4e-4, wall)[0] == pytest.approx(2.0 * force)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_stiffest_contact_of_a_force(name):
     one = law(name)
     xi = 0.01
@@ -79,8 +93,61 @@ def test_the_stiffest_contact_of_a_force(name):
     assert one.stiffest(force) == pytest.approx(stiff)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", NAMES)
 def test_without_friction_nothing_acts_along_the_tangent(name):
     smooth = law(name).without_friction()
     assert (smooth.friction, smooth.tangential_stiffness, smooth.tangential_damping) == (0.0, 0.0, 0.0)
     assert asked(smooth, 0.01, shape_of(smooth)) == asked(law(name), 0.01, shape_of(smooth))
+
+
+def test_parameters_of_a_law_are_validated_stored_and_listed():
+    scene = Scene().updated({"contact.law": "cohesive"})
+    assert scene.contact.parameters == Cohesion(strength=0.1) == scene.resolved_wall.parameters
+    strong = scene.updated({"contact.parameters.strength": 0.5})
+    assert Scene.from_text(strong.to_yaml()) == strong != scene and "strength: 0.5" in strong.to_yaml()
+    assert Problem.from_scene(strong).pair_law.strength == Problem.from_scene(strong).wall_law.strength == 0.5
+    for wrong, said in (
+        ({"contact.parameters": {"strength": -1.0}}, r"contact\.parameters\.strength = -1\.0: must be a number, 0 or"),
+        (
+            {"contact.parameters": {"strenth": 1.0}},
+            r"contact\.parameters\.strenth = 1\.0: unknown key, did you mean stre",
+        ),
+    ):
+        with pytest.raises(SceneError, match=said):
+            scene.updated(wrong)
+    with pytest.raises(SceneError, match=r"contact\.parameters\.strength = 0\.5: unknown key \(allowed: none\)"):
+        Scene().updated({"contact.parameters": {"strength": 0.5}})
+    (key,) = (one for one in scene_reference.every() if one.path == "contact.parameters.strength")
+    assert (key.default, key.unit) == ("0.1", "disk weight") and key.meaning.startswith("Pull")
+
+
+def test_a_disk_hangs_on_the_floor_by_cohesion():
+    """It bears its weight less the load, down to the pull of the contact; statics is not asked, and says why."""
+    base = {"packing": {"kind": "arrays", "x": [1.0], "z": [1.0], "radius": [1.0], "width": 2.5}}
+    base |= {"contact": {"law": "cohesive", "parameters": {"strength": 0.3}}, "loads": [{"disk": 0, "force": [0, 1.2]}]}
+    result = gr.solve(base)
+    state = result.loaded[-1]
+    floor = state.walls.second == 0
+    assert state.walls.normal_force[floor] == pytest.approx(-0.2, abs=1e-4)
+    assert state.walls.overlap[floor] == pytest.approx(0.1 / 6000.0, abs=1e-7)
+    assert "lets go at once" in result.to_dataset().attrs["method_reason"]
+    with pytest.raises(gr.GranularError):  # beyond the pull the load carries it off
+        gr.solve(gr.Scene.from_dict(base).updated({"loads.0.force": [0.0, 1.4]}))
+    with pytest.raises(SceneError, match=r"protocol\.method = path: must be dynamics or auto, a contact that pulls"):
+        gr.solve(gr.Scene.from_dict(base).updated({"protocol.method": "path"}))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("linear", Cubic), "is the name of another law, Linear"),
+        (("two words", Cubic), "must be letters, digits and underscores"),
+        (("mine", Cohesion), "has no normal_stiffness, .* must be a named tuple"),
+        (("mine", Cubic, dict), "must be a subclass of"),
+        (("mine", Cohesive), "of.* missing 1 required positional argument: 'strength'"),
+    ],
+)
+def test_a_law_that_lacks_something_is_refused(arguments, said):
+    with pytest.raises(gr.GranularError, match=said):
+        gr.register_law(*arguments)
+    assert "mine" not in LAWS

@@ -134,7 +134,8 @@ class Result:
         ``first`` and ``second`` are the disks, ``second`` is -1 at a ``wall`` ("floor", "left_wall" or "right_wall", ""
         between disks); ``x``, ``z`` the point of contact from the left wall and the floor; ``status`` "sticking" or
         "sliding"; ``normal_force`` positive in compression; ``tangential_force`` on ``first``, along z × n.
-        ``attrs["units"]`` names the units of the columns.
+        Where rolling is resisted, ``rolling_force`` and ``rolling_status`` too. ``attrs["units"]`` names the units of
+        the columns.
 
         Parameters
         ----------

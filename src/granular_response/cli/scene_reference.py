@@ -13,6 +13,7 @@ from .. import scene
 from ..scene import text as yaml_text
 from ..scene.base import Description
 from ..scene.lattice import LatticePacking
+from ..scene.material import LAW_PARAMETERS
 from ..store import generated
 
 #: Name of the generated lines.
@@ -31,6 +32,8 @@ UNITS = {
     "stiffness_ratio": "",
     "friction": "",
     "damping_ratio": "",
+    "rolling_friction": "",
+    "rolling_stiffness_ratio": "",
     "force": "disk weight",
     "displacement": "mean radius",
     "torque": "disk weight × mean radius",
@@ -80,13 +83,19 @@ class Section:
             found.append(
                 Key(
                     path=f"{self.place}.{name}",
-                    default="" if required else _spelled(info.get_default(call_default_factory=True)),
+                    default="" if required else _spelled(_plain(info.get_default(call_default_factory=True))),
                     allowed=self._allowed(name),
-                    unit=UNITS[name] if _holds_float(info.annotation) else "",
+                    unit=self._unit(name, info),
                     meaning=info.description,
                 )
             )
         return found
+
+    def _unit(self, name: str, info: Any) -> str:
+        """That of a key with a number; a law says the units of its parameters itself (``json_schema_extra``)."""
+        if isinstance(info.json_schema_extra, dict) and "unit" in info.json_schema_extra:
+            return str(info.json_schema_extra["unit"])
+        return UNITS[name] if _holds_float(info.annotation) else ""
 
     def _allowed(self, name: str) -> str:
         """What the message about a wrong value says."""
@@ -120,9 +129,16 @@ SECTIONS = (
 )
 
 
+def sections() -> list[Section]:
+    """All sections, with those of laws that have parameters."""
+    laws = LAW_PARAMETERS.items()
+    own = [Section(f"Parameters of the law {name}", "contact.parameters", of) for name, of in laws if of.model_fields]
+    return [*SECTIONS, *own]
+
+
 def every() -> list[Key]:
     """All keys, section by section."""
-    return [key for section in SECTIONS for key in section.listed()]
+    return [key for section in sections() for key in section.listed()]
 
 
 def lines() -> str:
@@ -130,7 +146,7 @@ def lines() -> str:
     parts = [
         _table(("part", "meaning"), [(f"`{n}`", f.description or "") for n, f in scene.Scene.model_fields.items()])
     ]
-    for section in SECTIONS:
+    for section in sections():
         rows: list[tuple[str, ...]] = [
             (f"`{key.path}`", f"`{key.default}`" if key.default else "must be given", *key.words())
             for key in section.listed()
@@ -142,7 +158,7 @@ def lines() -> str:
 def plain(part: str = "") -> str:
     """The keys whose path begins with ``part``, for a terminal. Raises SceneError if there is none."""
     paragraphs = []
-    for section in SECTIONS:
+    for section in sections():
         chosen = [key for key in section.listed() if key.path.startswith(part)]
         if chosen:
             paragraphs.append(f"{section.title}:")
@@ -158,6 +174,10 @@ def plain(part: str = "") -> str:
 def renew(file: str | os.PathLike[str]) -> None:
     """Renew the tables in a page. Raises GeneratedError if it has no place for them."""
     generated.renew(file, BLOCK, lines())
+
+
+def _plain(value: Any) -> Any:
+    return value.model_dump() if isinstance(value, Description) else value
 
 
 def _spelled(value: Any) -> str:

@@ -36,12 +36,17 @@ class Law(Protocol):
     @property
     def least_force(self) -> float: ...
 
+    # A law that has a text ``only_motion`` is solved by dynamics to the end; the text says why.
+
     @classmethod
     def of(
         cls, normal_stiffness: float, normal_damping: float, tangential_stiffness: float, tangential_damping: float,
         friction: float, least_force: float, reduced_radius: float,
     ) -> Self:  # fmt: skip
-        """The law from its constants; ``reduced_radius`` is that of the contacts that have the stiffness."""
+        """The law from its constants; ``reduced_radius`` is that of the contacts that have the stiffness.
+
+        A law with parameters of its own takes them by name after these.
+        """
         ...
 
     def elastic_force(self, overlap, shape): ...

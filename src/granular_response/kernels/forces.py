@@ -13,7 +13,11 @@ the force of the pair it is first in before that of the pair it is second in, al
 
 from __future__ import annotations
 
+import math
+
+from ..contact.law import normal_force
 from ..contact.pair import frictional, frictional_pair, frictionless, frictionless_pair
+from ..contact.rolling import rolling_force
 from ..machine.lanes import WIDTH, gather, put, spread, take
 from ..machine.machine_code import kernel
 
@@ -194,9 +198,55 @@ def add_wall_forces(q, v, rim, f, n, spring, shape, walls, rule, dt):
 
 
 @kernel
+def _add_couple(c, overlap, fn, v, f, n, rolls, dt):
+    """Add the couple of listed contact ``c`` with the normal force ``fn``; one that is open forgets its spring."""
+    if not overlap > 0.0:
+        rolls.spring[c] = 0.0
+        return
+    i, j, arm = 2 * n + rolls.first[c], 2 * n + rolls.second[c], rolls.arm[c]
+    spin = v[i] - v[j] if i != j else v[i]
+    force, rolls.spring[c] = rolling_force(rolls.spring[c], arm * spin, fn, rolls.rolling, dt)
+    f[i] += arm * force
+    if i != j:
+        f[j] -= arm * force
+
+
+@kernel
+def add_pair_couples(q, v, f, n, shape, rolls, pairs, dt):
+    """Add the couples of disks that roll on one another to ``f``; ``rolls`` : ``model.Rolls``."""
+    for c in range(rolls.first.size):
+        i, j, s = rolls.first[c], rolls.second[c], rolls.slot[c]
+        dx = pairs.dx[s] + (q[i] - q[j])
+        dz = pairs.dz[s] + (q[n + i] - q[n + j])
+        distance = math.sqrt(dx * dx + dz * dz)
+        apart = ((v[i] - v[j]) * dx + (v[n + i] - v[n + j]) * dz) / distance
+        overlap = pairs.reach[s] - distance
+        _add_couple(c, overlap, normal_force(overlap, _shape_at(shape, s, 0.0), apart, pairs.law), v, f, n, rolls, dt)
+
+
+@kernel
+def add_wall_couples(q, v, f, n, shape, rolls, walls, dt):
+    """As :func:`add_pair_couples` for disks that roll on walls."""
+    for c in range(rolls.first.size):
+        i, nx, nz = rolls.first[c], walls.normal[c, 0], walls.normal[c, 1]
+        overlap = -(walls.gap[c] + q[i] * nx + q[n + i] * nz)
+        fn = normal_force(overlap, _shape_at(shape, c, 0.0), v[i] * nx + v[n + i] * nz, walls.law)
+        _add_couple(c, overlap, fn, v, f, n, rolls, dt)
+
+
+@kernel
 def forces(q, v, f, gravity, load_factor, dt, model):
     """Fill ``f`` with all forces and torques at ``(q, v)``; springs advance by ``dt``."""
     _fill(q, v, f, gravity, load_factor, dt, model.rim, model.pairs, model.walls, model)
+    _add_couples(q, v, f, dt, model.pair_rolls, model.wall_rolls, model)
+
+
+@kernel
+def _add_couples(q, v, f, dt, pair_rolls, wall_rolls, model):
+    if pair_rolls is not None:
+        add_pair_couples(q, v, f, model.n, model.pairs.shape, pair_rolls, model.pairs, dt)
+    if wall_rolls is not None:
+        add_wall_couples(q, v, f, model.n, model.walls.shape, wall_rolls, model.walls, dt)
 
 
 @kernel

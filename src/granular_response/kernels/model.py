@@ -13,6 +13,17 @@ from numpy.typing import NDArray
 Floats = NDArray[Any]
 
 
+class Rolls(NamedTuple):
+    """What rolling resistance needs of listed contacts of one kind, in their order."""
+
+    first: NDArray[Any]  #: (m,) disks
+    second: NDArray[Any]  #: (m,) other disks; the same at walls
+    slot: NDArray[Any]  #: (m,) where the other arrays have them
+    arm: Floats  #: (m,) reduced radii
+    spring: Floats  #: (m,) updated in place
+    rolling: Any  #: contact.rolling.Rolling
+
+
 class Pairs(NamedTuple):
     """Candidate contacts between disks, in slots (see :mod:`.forces`)."""
 
@@ -50,6 +61,8 @@ class Model(NamedTuple):
     pairs: Pairs
     walls: Walls
     rule: int  #: how the Coulomb limit acts (contact.RULES)
+    pair_rolls: Rolls | None = None  #: None without rolling resistance
+    wall_rolls: Rolls | None = None
 
 
 class Schedule(NamedTuple):

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ..contact.coulomb import return_map
 from ..contact.law import elastic_force, energy, stiffness
+from ..contact.rolling import rolling_return
 from ..machine.machine_code import kernel
 from ..state.status import OPEN, SLIDING, STICKING
 
@@ -68,6 +69,20 @@ class Response(NamedTuple):
         """Room for ``size`` contacts."""
         overlap, normal, tangential, spring = np.zeros((4, size))
         return cls(overlap, normal, tangential, spring, np.zeros(size, np.int8))
+
+
+class RollingResponse(NamedTuple):
+    """Rolling resistance at a trial configuration, to be filled."""
+
+    force: Floats  #: (m,)
+    spring: Floats
+    status: NDArray[Any]
+
+    @classmethod
+    def empty(cls, size: int) -> RollingResponse:
+        """Room for ``size`` contacts."""
+        force, spring = np.zeros((2, size))
+        return cls(force, spring, np.zeros(size, np.int8))
 
 
 @kernel
@@ -309,6 +324,79 @@ def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, fixe
         force[n + i] += fn * nz + ft * nx
 
 
+@kernel(forceinline=True)
+def _roll(c, i, j, nx, nz, xi, k, q, q0, n, arm, rolling, known, overlap0, spring0, limits, fixed, out, tangent, force):
+    """Rolling resistance of a closed contact of disk ``i`` and disk ``j``, or a wall where ``j`` is ``i`` too."""
+    a, b = 2 * n + i, 2 * n + j
+    turned = q[a] - q0[a]
+    if i != j:
+        turned -= q[b] - q0[b]
+    share = 1.0 if overlap0[c] >= 0.0 or xi <= 0.0 else xi / (xi - overlap0[c])
+    spring = spring0[c] + share * arm[c] * turned
+    limit = rolling.friction * known.normal[c] if limits is None else limits[c]
+    if fixed is None:
+        found, new, sense = rolling_return(spring, limit, rolling)
+    elif abs(fixed[c]) == SLIDING:
+        sense = 1.0 if fixed[c] > 0 else -1.0
+        found, new = sense * limit, -sense * limit / rolling.stiffness
+    else:
+        found, new, sense = -rolling.stiffness * spring, spring, 0.0
+    out.force[c], out.spring[c] = found, new
+    out.status[c] = SLIDING if sense != 0.0 else STICKING
+    force[a] += arm[c] * found
+    if i != j:
+        force[b] -= arm[c] * found
+    if tangent is not None:
+        slides = sense * rolling.friction * k * arm[c] if limits is None else 0.0
+        tangent[c, 0] = -slides * nx
+        tangent[c, 1] = -slides * nz
+        tangent[c, 2] = 0.0 if sense != 0.0 else -arm[c] * arm[c] * rolling.stiffness * share
+
+
+@kernel
+def pair_rolling(q, q0, n, arm, rolling, pairs, shape, known, overlap0, spring0, limits, fixed, out, tangent, force):
+    """Rolling resistance of disk-disk contacts of which :func:`pair_statics` has made the rest.
+
+    ``arm`` (m,) : reduced radii; ``rolling`` : ``contact.rolling.Rolling``; ``known`` : the :class:`Response` there;
+    ``spring0``, ``limits``, ``fixed`` (m,) : as there, along the rolling; ``out`` : :class:`RollingResponse`, filled;
+    ``tangent`` (m, 3), if not None : derivative of the couple on the first disk by relative displacement and rotation.
+    """
+    for c in range(pairs.first.size):
+        if known.status[c] == OPEN:
+            continue
+        i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
+        k = stiffness(pairs.law, xi, _shape_at(shape, c))
+        _roll(
+            c, i, j, dx / d, dz / d, xi, k, q, q0, n, arm, rolling, known, overlap0, spring0, limits, fixed, out,
+            tangent, force,
+        )  # fmt: skip
+
+
+@kernel
+def wall_rolling(q, q0, n, arm, rolling, walls, shape, known, overlap0, spring0, limits, fixed, out, tangent, force):
+    """As :func:`pair_rolling` for disk-wall contacts."""
+    for c in range(walls.disk.size):
+        if known.status[c] == OPEN:
+            continue
+        i, nx, nz, xi = _wall_at(q, n, walls, c)
+        k = stiffness(walls.law, xi, _shape_at(shape, c))
+        _roll(
+            c, i, i, nx, nz, xi, k, q, q0, n, arm, rolling, known, overlap0, spring0, limits, fixed, out, tangent, force
+        )
+
+
+@kernel
+def rolling_spring_forces(spring, status, normal, rolling, out):
+    """Fill ``out`` (:class:`RollingResponse`) from springs (m,) as they are, where ``status`` (m,) is not OPEN."""
+    for c in range(spring.size):
+        if status[c] == OPEN:
+            continue
+        out.spring[c] = spring[c]
+        out.force[c] = -rolling.stiffness * spring[c]
+        within = abs(out.force[c]) < rolling.friction * abs(normal[c]) * (1 - 1e-9)
+        out.status[c] = STICKING if within else SLIDING
+
+
 @kernel
 def spring_forces(overlap, spring, shape, law, out):
     """Fill ``out`` (:class:`Response`) with forces from overlaps and springs (m,) as they are.
@@ -328,7 +416,7 @@ def spring_forces(overlap, spring, shape, law, out):
         if rubs:
             out.spring[c] = spring[c]
             out.tangential[c] = -law.tangential_stiffness * spring[c]
-            if abs(out.tangential[c]) >= law.friction * fn * (1 - 1e-9):
+            if abs(out.tangential[c]) >= law.friction * abs(fn) * (1 - 1e-9):
                 out.status[c] = SLIDING
 
 
@@ -374,3 +462,21 @@ def assemble(data, freedoms, first, second, radius, g, base, stride, wall_disk, 
     for c in range(wall_disk.size):
         ri = radius[wall_disk[c]]
         _add_block(data, wall_base[c], wall_stride[c], wall_g[c], 1.0, ri, 1.0, ri, freedoms)
+
+
+@kernel
+def _add_couple_block(data, base, stride, g, sign):
+    """Add what the couple of a contact adds to the row of a rotation in the block at ``data[base]``."""
+    for b in range(3):
+        data[base + b * stride + 2] -= sign * g[b]
+
+
+@kernel
+def assemble_rolling(data, g, base, stride, wall_g, wall_base, wall_stride):
+    """Add rolling resistance to what :func:`assemble` has made; ``g`` (m, 3), ``wall_g`` (w, 3) : local tangents."""
+    for c in range(g.shape[0]):
+        for block in range(4):
+            sign = 1.0 if block == 0 or block == 3 else -1.0
+            _add_couple_block(data, base[c, block], stride[c, block], g[c], sign)
+    for c in range(wall_g.shape[0]):
+        _add_couple_block(data, wall_base[c], wall_stride[c], wall_g[c], 1.0)

@@ -108,6 +108,9 @@ def _spread(
     if np.unique(at).size != at.size:
         raise ValueError(f"{kind}: a contact is listed twice")
 
+    # the couple on the first disk is the opposite of that on the second
+    turned = np.where(contacts.first > contacts.second, -1.0, 1.0) if kind == "pairs" else 1.0
+
     def place(values: NDArray, default: NDArray) -> NDArray:
         default[at] = values
         return default
@@ -120,4 +123,7 @@ def _spread(
         tangential_force=place(contacts.tangential_force, np.zeros(union.size)),
         spring=place(contacts.spring, np.zeros(union.size)),
         status=place(contacts.status, np.full(union.size, OPEN, dtype=contacts.status.dtype)),
+        rolling_force=place(turned * contacts.rolling_force, np.zeros(union.size)),
+        rolling_spring=place(turned * contacts.rolling_spring, np.zeros(union.size)),
+        rolling_status=place(contacts.rolling_status, np.full(union.size, OPEN, dtype=np.int8)),
     )

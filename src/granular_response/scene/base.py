@@ -37,13 +37,13 @@ class Description(BaseModel):
             return data
         keys = ", ".join(cls.model_fields)
         if not isinstance(data, Mapping):
-            raise Problem(f"must be a mapping with keys among {keys}")
+            raise Problem(f"must be a mapping with keys among {keys}" if keys else "must be {}")
         for key, value in data.items():
             if isinstance(key, str) and key in cls.replaced:
                 raise Problem(cls.replaced[key], key=(key,), value=value)
             if key not in cls.model_fields:
                 raise Problem(
-                    f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys})",
+                    f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys or 'none'})",
                     key=(key if isinstance(key, str) else str(key),),
                     value=value,
                 )

@@ -3,22 +3,65 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializeAsAny,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    field_validator,
+    model_serializer,
+)
 
 from .base import Description, Ratio, Stiffness
+from .errors import Problem, suggestion
 
 
-class Contact(Description):
-    """Spring and dashpot along the normal, spring and dashpot with a Coulomb limit along the tangent.
+class NoParameters(Description):
+    """A contact law without parameters of its own."""
+
+
+#: By the name of a contact law, the description of the parameters that it brings.
+LAW_PARAMETERS: dict[str, type[Description]] = {"linear": NoParameters, "hertz": NoParameters}
+
+
+def _check_law(value: Any) -> Any:
+    if not isinstance(value, str) or value not in LAW_PARAMETERS:
+        raise Problem(f"must be {' or '.join(LAW_PARAMETERS)}{suggestion(value, LAW_PARAMETERS)}")
+    return value
+
+
+def law_parameters(law: str, values: Any) -> Description:
+    """The parameters of a law from a mapping, with its defaults; raises ``ValidationError`` for what it has not."""
+    data = values.model_dump() if isinstance(values, Description) else values
+    return LAW_PARAMETERS.get(law, NoParameters).model_validate(data)
+
+
+class Sparse(Description):
+    """A description of which some keys are written only where they are not the default.
+
+    So a scene that does not have this physics is written as if it did not exist.
+    """
+
+    sparse: ClassVar[tuple[str, ...]] = ("rolling_friction", "rolling_stiffness_ratio", "parameters")
+
+    @model_serializer(mode="wrap")
+    def _written(self, written: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data: dict[str, Any] = written(self)
+        return {key: value for key, value in data.items() if key not in self.sparse or value not in (0.0, None, {})}
+
+
+class Contact(Sparse):
+    """Spring and dashpot along the normal, spring and dashpot with a limit along the tangent and along the rolling.
 
     Sec. III.A and III.B of the paper, with its values as defaults. Reduced units: stiffness in mean disk
     weights per mean radius. The damping coefficients are absolute: they do not depend on the masses of
     the two bodies, and ``damping_ratio`` 0.5 gives the paper's ``sqrt(k)``.
     """
 
-    law: Literal["linear", "hertz"] = Field(
+    law: Annotated[str, BeforeValidator(_check_law)] = Field(
         default="linear",
         description="linear: normal force in proportion to the overlap, as in the paper; hertz: normal force by the "
         "power 3/2 of the overlap, with normal_stiffness as its stiffness at a normal force of one mean disk weight "
@@ -39,6 +82,39 @@ class Contact(Description):
         description="Damping over critical damping 2 sqrt(k) of one contact, for both dashpots, "
         "each with the stiffness of its own spring.",
     )
+    rolling_friction: Ratio = Field(
+        default=0.0,
+        description="Coefficient of rolling friction: the limit of the rolling force over the normal force; 0 is no "
+        "rolling resistance. It needs friction, and a rolling_stiffness_ratio.",
+    )
+    rolling_stiffness_ratio: Ratio = Field(
+        default=0.0, description="k_R / k_N, stiffness of the rolling spring over that of the normal one."
+    )
+    parameters: SerializeAsAny[Description] = Field(
+        default=NoParameters(),
+        validate_default=True,
+        description="Parameters that the law brings, by their names; {} where it has none.",
+    )
+
+    @field_validator("parameters", mode="plain")
+    @classmethod
+    def _check_parameters(cls, value: Any, info: ValidationInfo) -> Description:
+        return law_parameters(info.data.get("law", "linear"), value)
+
+    @property
+    def rolls(self) -> bool:
+        """Whether there is a rolling resistance."""
+        return self.rolling_friction > 0
+
+    @property
+    def rolling_stiffness(self) -> float:
+        """k_R."""
+        return self.rolling_stiffness_ratio * self.normal_stiffness
+
+    @property
+    def rolling_damping(self) -> float:
+        """Coefficient nu_R of the rolling dashpot."""
+        return 2.0 * self.damping_ratio * math.sqrt(self.rolling_stiffness)
 
     @property
     def rubs(self) -> bool:
@@ -61,7 +137,7 @@ class Contact(Description):
         return 2.0 * self.damping_ratio * math.sqrt(self.tangential_stiffness)
 
 
-class Wall(Description):
+class Wall(Sparse):
     """The contact law at the floor and the side walls; what is null follows the contacts between disks."""
 
     normal_stiffness: Stiffness | None = Field(
@@ -76,6 +152,12 @@ class Wall(Description):
     damping_ratio: Ratio | None = Field(
         default=None, description="Damping over critical damping; null means contact.damping_ratio."
     )
+    rolling_friction: Ratio = Field(
+        default=0.0, description="Coefficient of rolling friction between a disk and the floor or a side wall."
+    )
+    rolling_stiffness_ratio: Ratio | None = Field(
+        default=None, description="Rolling over normal stiffness; null means contact.rolling_stiffness_ratio."
+    )
 
     def resolved(self, contact: Contact) -> Contact:
         """The parameters of disk-wall contacts beside disk-disk contacts with ``contact``."""
@@ -89,4 +171,7 @@ class Wall(Description):
             stiffness_ratio=either(self.stiffness_ratio, contact.stiffness_ratio),
             friction=self.friction,
             damping_ratio=either(self.damping_ratio, contact.damping_ratio),
+            rolling_friction=self.rolling_friction,
+            rolling_stiffness_ratio=either(self.rolling_stiffness_ratio, contact.rolling_stiffness_ratio),
+            parameters=contact.parameters,
         )

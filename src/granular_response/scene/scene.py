@@ -79,6 +79,17 @@ class Scene(Description):
         return self
 
     @model_validator(mode="after")
+    def _check_rolling(self) -> Scene:
+        for name, contact in (("contact", self.contact), ("wall", self.resolved_wall)):
+            if contact.rolls and not (contact.rubs and contact.rolling_stiffness_ratio > 0):
+                raise Problem(
+                    f"must be 0 unless {name}.friction, stiffness_ratio and rolling_stiffness_ratio are greater than 0",
+                    key=(name, "rolling_friction"),
+                    value=contact.rolling_friction,
+                )
+        return self
+
+    @model_validator(mode="after")
     def _check_torques(self) -> Scene:
         if not self.contact.rubs and not self.resolved_wall.rubs:
             for place, load in enumerate(self.loads):

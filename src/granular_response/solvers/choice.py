@@ -45,8 +45,9 @@ def plan(problem: Problem) -> Plan:
         When the scene asks for a method that it does not have.
     """
     protocol = problem.scene.protocol
-    of_motion = f"protocol.friction_law {protocol.friction_law} is a law of motion that statics does not have"
-    only_motion = of_motion if problem.rotations and problem.rule != CUT else ""
+    only_motion = getattr(problem.pair_law, "only_motion", "")
+    if problem.rotations and problem.rule != CUT:
+        only_motion = f"protocol.friction_law {protocol.friction_law} is a law of motion that statics does not have"
     static = protocol.static_finish and not only_motion
     load = _load(problem, only_motion) if problem.scene.loads else Choice("none", "loads is empty")
     return Plan(_rest(problem, only_motion), load, static, _stop_energy(problem, static))

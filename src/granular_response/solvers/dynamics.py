@@ -27,7 +27,7 @@ from scipy.sparse.csgraph import connected_components
 from ..errors import SolveError
 from ..kernels.forces import SCRATCH, accelerations
 from ..kernels.integrators import INTEGRATORS, LOOK_EVERY, Memory, advance
-from ..kernels.model import Model, Pairs, Schedule, Walls
+from ..kernels.model import Model, Pairs, Rolls, Schedule, Walls
 from ..kernels.neighbours import count_closed, mark_closed, rolling
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..state import FLOOR, FloatArray, Reached, State, wall_normals
@@ -123,9 +123,18 @@ class Dynamics:
         self.spring = self.wall_spring = None
         if problem.pair_friction:
             self.spring = aligned_zeros(c.slots)
-            self.spring[c.slot] = carry_springs(problem.n, state.pairs, c.first, c.second)
+            self.spring[c.slot], roll = carry_springs(problem.n, state.pairs, c.first, c.second)
         if problem.wall_friction:
-            self.wall_spring = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
+            self.wall_spring, wall_roll = carry_springs(problem.n, state.walls, c.wall_disk, c.wall)
+        self.pair_rolls = self.wall_rolls = None
+        if problem.pair_rolling is not None:
+            first, second = c.first.astype(np.int64), c.second.astype(np.int64)
+            self.pair_rolls = Rolls(first, second, c.slot, problem.pair_arms(first, second), roll, problem.pair_rolling)
+        if problem.wall_rolling is not None:
+            disk = c.wall_disk
+            self.wall_rolls = Rolls(
+                disk, disk, np.arange(len(disk)), problem.wall_arms(disk), wall_roll, problem.wall_rolling
+            )
         self.wall_normal = wall_normals(c.wall)
         self.model = Model(
             problem.n, problem.weight, self._inverse_mass, problem.packing.radius, self.rim,
@@ -135,7 +144,7 @@ class Dynamics:
                 problem.pair_law,
             ),
             Walls(c.wall_disk, self.wall_normal, c.wall_gap, c.wall_shape, self.wall_spring, problem.wall_law),
-            problem.rule,
+            problem.rule, self.pair_rolls, self.wall_rolls,
         )  # fmt: skip
 
     def _fill_history(self) -> None:
@@ -249,13 +258,16 @@ class Dynamics:
         problem, c, n = self.problem, self.candidates, self.problem.n
         spring = None if self.spring is None else self.spring[c.slot]
         wall_spring = None if self.wall_spring is None else self.wall_spring.copy()
+        roll, wall_roll = (
+            None if rolls is None else rolls.spring.copy() for rolls in (self.pair_rolls, self.wall_rolls)
+        )
         bare = State(
             position=self.position,
             angle=self.angle.copy(),
             velocity=self.v[: 2 * n].reshape(2, n).T.copy(),
             angular_velocity=self.v[2 * n :].copy() if problem.rotations else np.zeros(n),
-            pairs=spring_contacts(c.first, c.second, spring),
-            walls=spring_contacts(c.wall_disk, c.wall, wall_spring),
+            pairs=spring_contacts(c.first, c.second, spring, roll),
+            walls=spring_contacts(c.wall_disk, c.wall, wall_spring, wall_roll),
             box=problem.packing.box,
             load_factor=self._now(self.load),
             reached=Reached(

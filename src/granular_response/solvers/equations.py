@@ -23,6 +23,7 @@ from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .close_pairs import close_pairs
 from .pattern import pattern
 from .problem import Problem
+from .rolling import Rolls
 
 #: Part of a distance by which rounding may part two disks that touch.
 TOUCHING = 1e-12
@@ -38,6 +39,16 @@ class Configuration:
     q: FloatArray  #: (dof,)
     spring: FloatArray  #: (m + w,)
     overlap: FloatArray  #: (m + w,)
+    roll: FloatArray | None = None  #: (m + w,) rolling springs; None without rolling resistance
+
+
+@dataclass(frozen=True)
+class Rolled:
+    """Rolling resistance at a trial configuration."""
+
+    force: FloatArray  #: (m + w,)
+    status: np.ndarray  #: (m + w,)
+    tangent: FloatArray  #: (m + w, 3) derivative of the couple on the first body; (0, 3) where it was not asked for
 
 
 @dataclass(frozen=True)
@@ -50,11 +61,20 @@ class Trial:
     tangential: FloatArray  #: (m + w,)
     status: np.ndarray  #: (m + w,)
     tangent: FloatArray  #: (m + w, 3, 3); (0, 3, 3) where it was not asked for
+    rolled: Rolled | None = None
 
     @cached_property
     def sense(self) -> np.ndarray:
-        """(m + w,) statuses, negative for contacts that slide against the tangent."""
-        return signed_status(self.status, self.tangential)
+        """(m + w,) statuses, negative for contacts that slide against the tangent; twice as many with rolling."""
+        sense = signed_status(self.status, self.tangential)
+        if self.rolled is None:
+            return sense
+        return np.concatenate([sense, signed_status(self.rolled.status, self.rolled.force)])
+
+    @property
+    def borne(self) -> FloatArray:
+        """Normal force beside each status of :attr:`sense`."""
+        return self.normal if self.rolled is None else np.concatenate([self.normal, self.normal])
 
 
 def signed_status(status: np.ndarray, tangential: FloatArray) -> np.ndarray:
@@ -88,6 +108,7 @@ class Equations:
         self.walls = statics.Walls(
             self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law
         )
+        self.rolls = Rolls(self) if problem.rolls else None
         self.held = problem.held.unknowns(problem.n)
         # one order of elimination for all states of a large lattice
         as_built = problem.n > REMEMBERED and problem.packing.ordered
@@ -110,6 +131,20 @@ class Equations:
         laws = self.problem.pair_law.friction, self.problem.wall_law.friction
         return np.repeat(laws, [len(self.first), len(self.wall_disk)])
 
+    def limits(self, trial: Trial) -> FloatArray:
+        """Coulomb limits of a trial, and those of rolling after them where there is any."""
+        sliding = self.friction * trial.normal
+        return sliding if self.rolls is None else np.concatenate([sliding, self.rolls.friction * trial.normal])
+
+    def coupled(self, sense: np.ndarray) -> np.ndarray:
+        """Signed statuses of which those along the rolling, if any, are open where the contact is."""
+        return sense if self.rolls is None else self.rolls.coupled(sense)
+
+    def status_keys(self) -> NDArray[np.int64]:
+        """One number for what each status belongs to."""
+        keys = self.keys()
+        return keys if self.rolls is None else np.concatenate([keys, -1 - keys])
+
     def keys(self) -> NDArray[np.int64]:
         """(m + w,) one number for the two bodies of each candidate."""
         n = self.problem.n
@@ -120,15 +155,23 @@ class Equations:
         shift = (state.position - self.reference).T.ravel()
         q = np.concatenate([shift, state.angle - self.angle0])[: self.dof]
         springs = np.concatenate([state.pairs.spring, state.walls.spring])
-        bare = Configuration(q, springs, np.zeros(len(springs)))
-        return replace(self.trial(bare, q).configuration, spring=springs)
+        roll = None
+        if self.rolls is not None:
+            roll = np.concatenate([state.pairs.rolling_spring, state.walls.rolling_spring])
+        bare = Configuration(q, springs, np.zeros(len(springs)), roll)
+        return replace(self.trial(bare, q).configuration, spring=springs, roll=roll)
 
     def at(self, state: State) -> Trial:
         """The state itself, with the statuses that it says its contacts have."""
         known = self.start(state)
         status = np.concatenate([state.pairs.status, state.walls.status])
         tangential = np.concatenate([state.pairs.tangential_force, state.walls.tangential_force])
-        return self.trial(known, known.q, fixed=signed_status(status, tangential))
+        sense = signed_status(status, tangential)
+        if self.rolls is not None:
+            status = np.concatenate([state.pairs.rolling_status, state.walls.rolling_status])
+            rolling = np.concatenate([state.pairs.rolling_force, state.walls.rolling_force])
+            sense = self.coupled(np.concatenate([sense, signed_status(status, rolling)]))
+        return self.trial(known, known.q, fixed=sense)
 
     def displaced(self, q: FloatArray, load_factor: float) -> FloatArray:
         """``q`` (dof,) with held coordinates where the load factor has them; ``q`` itself where nothing is held."""
@@ -158,7 +201,8 @@ class Equations:
         """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
         ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map. ``tangent`` : whether local tangents are asked for.
+        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any. ``tangent``
+        : whether local tangents are asked for.
         """
         problem = self.problem
         m, count = len(self.first), len(self.first) + len(self.wall_disk)
@@ -177,9 +221,36 @@ class Equations:
                 None if fixed is None else fixed[part], statics.Response(*(array[part] for array in out)),
                 None if local is None else local[part], force,
             )  # fmt: skip
+        roll, rolled = self._rolled(known, q, limits, fixed, tangent, out, force)
         force[self.held] = 0.0
         tangents = np.empty((0, 3, 3)) if local is None else local
-        return Trial(Configuration(q, spring, overlap), force, normal, tangential, out.status, tangents)
+        return Trial(Configuration(q, spring, overlap, roll), force, normal, tangential, out.status, tangents, rolled)
+
+    def _rolled(
+        self, known: Configuration, q: FloatArray, limits, fixed, tangent: bool, out: statics.Response,
+        force: FloatArray,
+    ) -> tuple[FloatArray | None, Rolled | None]:  # fmt: skip
+        """Rolling springs and resistance of a trial, whose couples are added to ``force``; None without."""
+        problem, rolls = self.problem, self.rolls
+        if rolls is None or known.roll is None:
+            return None, None
+        m, count = len(self.first), rolls.count
+        found = statics.RollingResponse.empty(count)
+        local = np.zeros((count, 3)) if tangent else None
+        ways: tuple[tuple[slice, Any, Any, Callable], ...] = (
+            (slice(None, m), self.pairs, problem.pair_rolling, statics.pair_rolling),
+            (slice(m, None), self.walls, problem.wall_rolling, statics.wall_rolling),
+        )
+        for part, contacts, rolling, add in ways:
+            if rolling is not None:
+                add(
+                    q, known.q, problem.n, rolls.arm[part], rolling, contacts, contacts.shape,
+                    statics.Response(*(array[part] for array in out)), known.overlap[part], known.roll[part],
+                    None if limits is None else limits[count:][part], None if fixed is None else fixed[count:][part],
+                    statics.RollingResponse(*(array[part] for array in found)),
+                    None if local is None else local[part], force,
+                )  # fmt: skip
+        return found.spring, Rolled(found.force, found.status, np.empty((0, 3)) if local is None else local)
 
     def along(self, known: Configuration, q: FloatArray, ahead: FloatArray, sense: np.ndarray) -> Configuration:
         """``known`` with what its springs collect on the curved way to ``q`` beside what :meth:`trial` counts.
@@ -205,6 +276,11 @@ class Equations:
             trial.tangent[: len(self.first)], places.base, places.stride,
             self.wall_disk, trial.tangent[len(self.first) :], places.wall_base, places.wall_stride,
         )  # fmt: skip
+        if trial.rolled is not None:
+            statics.assemble_rolling(
+                data, trial.rolled.tangent[: len(self.first)], places.base, places.stride,
+                trial.rolled.tangent[len(self.first) :], places.wall_base, places.wall_stride,
+            )  # fmt: skip
         if self.held.size:
             data[places.held_entries] = 0.0
             data[places.held_diagonal] = self.problem.stiffness
@@ -248,7 +324,9 @@ class Equations:
         q = trial.configuration.q
         angle = self.angle0 + q[2 * n :] if self.problem.rotations else self.angle0
         c = trial.configuration
-        values = (c.overlap, trial.normal, trial.tangential, c.spring, trial.status)
+        values = [c.overlap, trial.normal, trial.tangential, c.spring, trial.status]
+        if trial.rolled is not None and c.roll is not None:
+            values += [trial.rolled.force, c.roll, trial.rolled.status]
         parts = zip(*map(self.split, values), strict=True)
         first, second, disk = (index.astype(np.int32) for index in (self.first, self.second, self.wall_disk))
         places = (first, second), (disk, self.wall)
@@ -278,6 +356,10 @@ class Equations:
             total[axis] = np.bincount(i, pair[axis], n) - np.bincount(j, pair[axis], n) + np.bincount(k, wall[axis], n)
         turning = np.bincount(i, pair[2], n) + np.bincount(j, pair[2], n) + np.bincount(k, wall[2], n)
         total[2] = -radius * turning
+        if self.rolls is not None and trial.rolled is not None:
+            couple = np.einsum("cb,bc->c", trial.rolled.tangent, self.rolls.relative(velocity))
+            on_pairs, on_walls = self.split(couple)
+            total[2] += np.bincount(i, on_pairs, n) - np.bincount(j, on_pairs, n) + np.bincount(k, on_walls, n)
         return total[: self.problem.freedoms].ravel()
 
     def without_prestress(self, trial: Trial) -> Trial:

@@ -163,6 +163,12 @@ def unbalanced(problem: Problem, state: State) -> tuple[FloatArray, FloatArray]:
         (state.walls.first, state.walls.tangential_force),
     ):
         np.add.at(torque, index, -radius[index] * tangential)
+    if problem.rolls:
+        pairs, walls = state.pairs, state.walls
+        couple = problem.pair_arms(pairs.first, pairs.second) * pairs.rolling_force
+        np.add.at(torque, pairs.first, couple)
+        np.add.at(torque, pairs.second, -couple)
+        np.add.at(torque, walls.first, problem.wall_arms(walls.first) * walls.rolling_force)
     return force, torque
 
 
@@ -187,10 +193,15 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
     normal = np.concatenate([state.pairs.normal_force, state.walls.normal_force])
     excess = np.concatenate(
         [
-            np.abs(state.pairs.tangential_force) - problem.pair_law.friction * state.pairs.normal_force,
-            np.abs(state.walls.tangential_force) - problem.wall_law.friction * state.walls.normal_force,
+            np.abs(state.pairs.tangential_force) - problem.pair_law.friction * np.abs(state.pairs.normal_force),
+            np.abs(state.walls.tangential_force) - problem.wall_law.friction * np.abs(state.walls.normal_force),
         ]
     )
+    beyond = 0.0
+    for contacts, rolling in ((state.pairs, problem.pair_rolling), (state.walls, problem.wall_rolling)):
+        if rolling is not None:
+            over = np.abs(contacts.rolling_force) - rolling.friction * np.abs(contacts.normal_force)
+            beyond = max(beyond, float(over[contacts.touching].max(initial=0.0)))
     closed = np.concatenate([state.pairs.status, state.walls.status]) != OPEN
     bears = problem.weight.copy()
     for disks, forces in (
@@ -210,6 +221,7 @@ def certify(problem: Problem, state: State, *, modes: int | None = None) -> Cert
         negative_modes=modes,
         loose_disks=int((state.contact_count() < 2).sum()),
         unbalanced_part=float((np.abs(force).max(axis=1) / bears).max()),
+        rolling_excess=beyond,
     )
 
 

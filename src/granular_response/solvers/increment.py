@@ -74,7 +74,7 @@ def solve_increment(
         return trial
     if not system.problem.rotations:
         return None
-    limits = system.friction * system.trial(known, known.q).normal
+    limits = system.limits(system.trial(known, known.q))
     q = system.held_as_in(guess, known.q)
     before_rounds = work.factorisations
     for done in range(1, OPTIONS.rounds + 1):
@@ -85,7 +85,7 @@ def solve_increment(
         if held is None:
             return None
         q = held.configuration.q
-        before, limits = limits, system.friction * held.normal
+        before, limits = limits, system.limits(held)
         change = float(np.abs(limits - before).max(initial=0.0))
         if done >= OPTIONS.settled_by and change > OPTIONS.slow:
             return None

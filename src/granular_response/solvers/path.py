@@ -32,7 +32,7 @@ from scipy.optimize import brentq
 from ..errors import SolveError
 from ..kernels import events
 from ..linalg.updated import Updated
-from ..state import OPEN, SLIDING, STICKING, Event, FloatArray, Reached, State
+from ..state import OPEN, ROLLING_EVENTS, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
 from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
 from .increment import Work, solve_increment
@@ -88,6 +88,9 @@ class PathOptions:
 
 #: As measured in docs/benchmarks.md.
 OPTIONS = PathOptions()
+
+#: What an event along the tangent is called along the rolling.
+ROLLING = dict(zip(("slides", "sticks", "reverses"), ROLLING_EVENTS, strict=True))
 
 
 class PathError(SolveError, RuntimeError):
@@ -379,7 +382,7 @@ class _Path:
             due = then.due(self.event)
             if not again:  # what the rates of the start say of contacts that bear nothing is the turn on the way
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
-            return Point(factor, trial, rates.sense, changed(rates.sense, due, then.what))
+            return Point(factor, trial, rates.sense, self.system.coupled(changed(rates.sense, due, then.what)))
         return None
 
     def _bent(self, point: Point, rates: Rates, factor: float, trial: Trial) -> float:
@@ -500,9 +503,9 @@ class _Path:
         if moved <= self.options.listed_again:
             return point
         self._count()
-        keys = self.system.keys()
+        keys = self.system.status_keys()
         new = self._at(self.problem.relisted(self.system.state(point.trial, point.factor)))
-        sense, due = (carried(keys, self.system.keys(), status) for status in (point.sense, point.due))
+        sense, due = (carried(keys, self.system.status_keys(), status) for status in (point.sense, point.due))
         trial = self.system.trial(new.known, new.known.q, fixed=sense)
         return Point(point.factor, trial, sense, due)
 
@@ -551,7 +554,9 @@ class _Path:
         trial = point.trial
         # what is within rounding of opening or closing is as its overlap says
         overlap = trial.configuration.overlap
-        sense = np.where(overlap <= 0.0, OPEN, np.where(trial.sense == OPEN, STICKING, trial.sense))
+        along = trial.sense[: len(overlap)]
+        along = np.where(overlap <= 0.0, OPEN, np.where(along == OPEN, STICKING, along))
+        sense = self.system.coupled(np.concatenate([along, trial.sense[len(overlap) :]]))
         trial = self.system.trial(point.known, point.known.q, fixed=sense)
         state = self.system.state(trial, point.factor)
         modes = negative_modes(self.system, trial)
@@ -569,10 +574,14 @@ class _Path:
 
     def _record(self, point: Point, after: np.ndarray) -> None:
         """The events in which contacts get the signed statuses ``after`` (m + w,)."""
-        contacts = np.flatnonzero(point.sense != after)
-        if not len(contacts):
-            return
+        changes = np.flatnonzero(point.sense != after)
         system, n, m = self.system, self.problem.n, len(self.system.first)
+        count = m + len(system.wall_disk)
+        # a contact that opens or closes does so along the rolling too
+        changes = changes[(changes < count) | ((point.sense[changes] != OPEN) & (after[changes] != OPEN))]
+        if not len(changes):
+            return
+        contacts = changes % count
         position = system.reference + point.known.q[: 2 * n].reshape(2, n).T
         at_wall = contacts >= m
         pair, wall = contacts[~at_wall], contacts[at_wall] - m
@@ -581,7 +590,11 @@ class _Path:
         apart = self.problem.packing.box.separation(position[system.second[pair]], position[system.first[pair]])
         towards = np.concatenate([apart, -system.wall_normals[wall]])
         place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
-        kinds = map(_kinds, point.sense[contacts].tolist(), after[contacts].tolist())
+        kinds = (
+            kinds if c < count else tuple(map(ROLLING.__getitem__, kinds))
+            for c in changes.tolist()
+            for kinds in [_kinds(int(point.sense[c]), int(after[c]))]
+        )
         rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
         self.record.events += [
             Event(point.factor, kind, i, j, wall_contact, x, z, point.factor)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact import LAWS, RULES, Law
+from ..contact.rolling import Rolling, arms
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
 from ..scene import Contact, Packing, Scene, SceneError, resolve_disk
@@ -108,11 +109,18 @@ def _laws(scene: Scene) -> tuple[Law, Law]:
     def law(m: Contact, reduced_radius: float) -> Law:
         whole = LAWS[scene.contact.law].of(
             m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping,
-            m.friction, least, reduced_radius,
+            m.friction, least, reduced_radius, **m.parameters.model_dump(),
         )  # fmt: skip
         return whole if m.rubs else whole.without_friction()
 
     return law(scene.contact, DISKS), law(scene.resolved_wall, AT_WALL)
+
+
+def _rolling(contact: Contact) -> Rolling | None:
+    """The rolling resistance of one kind of contact; None without."""
+    if not contact.rolls:
+        return None
+    return Rolling(contact.rolling_stiffness, contact.rolling_damping, contact.rolling_friction)
 
 
 @dataclass(frozen=True, repr=False)
@@ -131,6 +139,8 @@ class Problem:
     load_disk: NDArray[np.int64]
     load: FloatArray
     held: Held = NOTHING
+    pair_rolling: Rolling | None = None
+    wall_rolling: Rolling | None = None
 
     @classmethod
     def from_scene(cls, scene: Scene, packing: Packing | None = None) -> Problem:
@@ -151,6 +161,8 @@ class Problem:
             rule=RULES[scene.protocol.friction_law],
             load_disk=np.zeros(0, np.int64),
             load=np.zeros((0, 3)),
+            pair_rolling=_rolling(scene.contact),
+            wall_rolling=_rolling(scene.resolved_wall),
         )
 
     @property
@@ -172,6 +184,11 @@ class Problem:
     @property
     def wall_friction(self) -> bool:
         return self.wall_law.friction > 0.0
+
+    @property
+    def rolls(self) -> bool:
+        """Whether some contact resists rolling."""
+        return self.pair_rolling is not None or self.wall_rolling is not None
 
     @property
     def rotations(self) -> bool:
@@ -219,7 +236,8 @@ class Problem:
 
     def without_friction(self) -> Problem:
         """The same packing with smooth disks and walls."""
-        return replace(self, pair_law=self.pair_law.without_friction(), wall_law=self.wall_law.without_friction())
+        pair, wall = self.pair_law.without_friction(), self.wall_law.without_friction()
+        return replace(self, pair_law=pair, wall_law=wall, pair_rolling=None, wall_rolling=None)
 
     @property
     def load_size(self) -> float:
@@ -303,6 +321,15 @@ class Problem:
         """(w,) what the contact law needs of the radii of disks at walls."""
         return self.wall_law.shapes(self.packing.radius[disk], None)
 
+    def pair_arms(self, first, second) -> FloatArray:
+        """(m,) reduced radii of pairs."""
+        radius = self.packing.radius
+        return arms(radius[first], radius[second])
+
+    def wall_arms(self, disk) -> FloatArray:
+        """(w,) arms at which disks roll on walls: their radii."""
+        return arms(self.packing.radius[disk])
+
     def bare_state(self) -> State:
         """The unloaded initial packing: no displacement, no motion, no springs."""
         position = np.array(self.packing.position, float)
@@ -322,8 +349,8 @@ class Problem:
             When a contact that carries a spring is not among the new candidates.
         """
         c = self.list_candidates(state.position)
-        pairs = spring_contacts(c.first, c.second, carry_springs(self.n, state.pairs, c.first, c.second))
-        walls = spring_contacts(c.wall_disk, c.wall, carry_springs(self.n, state.walls, c.wall_disk, c.wall))
+        pairs = spring_contacts(c.first, c.second, *carry_springs(self.n, state.pairs, c.first, c.second))
+        walls = spring_contacts(c.wall_disk, c.wall, *carry_springs(self.n, state.walls, c.wall_disk, c.wall))
         return self.with_static_forces(replace(state, pairs=pairs, walls=walls))
 
     def with_static_forces(self, state: State) -> State:
@@ -336,14 +363,18 @@ class Problem:
         return replace(
             state,
             pairs=static_contacts(
-                i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_shapes(i, j), self.pair_law
+                i, j, radius[i] + radius[j] - distance, state.pairs.spring, self.pair_shapes(i, j), self.pair_law,
+                self.pair_rolling, state.pairs.rolling_spring,
             ),
-            walls=static_contacts(k, state.walls.second, -gap, state.walls.spring, self.wall_shapes(k), self.wall_law),
-        )
+            walls=static_contacts(
+                k, state.walls.second, -gap, state.walls.spring, self.wall_shapes(k), self.wall_law,
+                self.wall_rolling, state.walls.rolling_spring,
+            ),
+        )  # fmt: skip
 
 
-def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
-    """Springs of ``contacts`` in the order of another list ``(first, second)`` of the same kind.
+def carry_springs(n: int, contacts: Contacts, first, second) -> tuple[FloatArray, FloatArray]:
+    """Tangential and rolling springs of ``contacts`` in the order of another list ``(first, second)`` of the same kind.
 
     Raises
     ------
@@ -351,8 +382,8 @@ def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
         When a contact that carries a spring is not in the other list.
     """
     if np.array_equal(contacts.first, first) and np.array_equal(contacts.second, second):
-        return contacts.spring.copy()
-    held = np.flatnonzero(contacts.spring)
+        return contacts.spring.copy(), contacts.rolling_spring.copy()
+    held = np.flatnonzero((contacts.spring != 0.0) | (contacts.rolling_spring != 0.0))
     key = np.asarray(first, np.int64) + n * np.asarray(second, np.int64)
     by = np.argsort(key)
     wanted = contacts.first[held].astype(np.int64) + n * contacts.second[held].astype(np.int64)
@@ -361,25 +392,35 @@ def carry_springs(n: int, contacts: Contacts, first, second) -> FloatArray:
     if lost.any():
         k = held[np.flatnonzero(lost)[0]]
         raise ValueError(f"contact {contacts.first[k]}-{contacts.second[k]} carries a spring but is not listed")
-    springs = np.zeros(len(key))
+    springs, rolling = np.zeros((2, len(key)))
     springs[by[place]] = contacts.spring[held]
-    return springs
+    rolling[by[place]] = contacts.rolling_spring[held]
+    return springs, rolling
 
 
-def static_contacts(first, second, overlap, spring, shape, law: Law) -> Contacts:
+def static_contacts(
+    first, second, overlap, spring, shape, law: Law, rolling: Rolling | None = None, rolling_spring=None
+) -> Contacts:
     """Contacts with the spring parts of their forces (Sec. III.A without velocities)."""
     out = statics.Response.empty(len(overlap))
     statics.spring_forces(overlap, spring, shape, law, out)
+    rolls = None
+    if rolling is not None:
+        rolls = statics.RollingResponse.empty(len(overlap))
+        statics.rolling_spring_forces(rolling_spring, out.status, out.normal, rolling, rolls)
     return Contacts(
         np.asarray(first, np.int32), np.asarray(second, np.int32),
-        overlap, out.normal, out.tangential, out.spring, out.status,
+        overlap, out.normal, out.tangential, out.spring, out.status, *(rolls or ()),
     )  # fmt: skip
 
 
-def spring_contacts(first, second, spring: FloatArray | None = None) -> Contacts:
+def spring_contacts(
+    first, second, spring: FloatArray | None = None, rolling_spring: FloatArray | None = None
+) -> Contacts:
     """Contacts of which no more is known than their springs, or not even these; zero stands for it."""
     zero = np.zeros(len(first))
     return Contacts(
         np.asarray(first, np.int32), np.asarray(second, np.int32),
         zero, zero, zero, zero if spring is None else spring, zero.astype(np.int8),
+        rolling_spring=zero if rolling_spring is None else rolling_spring,
     )  # fmt: skip

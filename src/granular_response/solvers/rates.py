@@ -41,7 +41,10 @@ LOADED = 4
 
 @dataclass(frozen=True)
 class Changes:
-    """What each of m + w contacts does next; see :mod:`granular_response.kernels.events`."""
+    """What each of m + w contacts does next; see :mod:`granular_response.kernels.events`.
+
+    Where there is rolling resistance, what they do along the rolling comes after that.
+    """
 
     what: np.ndarray
     left: FloatArray  #: force until then (mean weights)
@@ -63,16 +66,25 @@ def next_changes(
 
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
-    count, c, n = len(sense), trial.configuration, system.problem.n
+    rolls, c, n = system.rolls, trial.configuration, system.problem.n
+    count = len(trial.status)
     found = Changes(np.zeros(count, np.int8), np.empty(count), np.empty(count))
     ties = np.zeros((2, n), np.int64)
     ties[0, system.problem.load_disk] = LOADED
+    if rolls is not None:
+        ties[0] += rolls.ties(sense)
     events.next_changes(
         c.q, velocity, n, system.problem.packing.radius, system.pairs,
         system.walls, sense, trial.normal, trial.tangential, c.overlap, force, negligible,
         ties, found.what, found.left, found.rate,
     )  # fmt: skip
-    return found
+    if rolls is None or trial.rolled is None:
+        return found
+    rattles = (ties[0] <= system.problem.freedoms) & (ties[1] <= 1)
+    idle = (trial.normal <= force) & (rattles[rolls.first] | (rattles[rolls.second] & rolls.pair))
+    more = rolls.next_changes(c.q, velocity, sense, trial.normal, trial.rolled.force, idle, negligible)
+    along = (found.what, found.left, found.rate)
+    return Changes(*(np.concatenate(both) for both in zip(along, more, strict=True)))
 
 
 def changed(sense: np.ndarray, contacts: np.ndarray, what: np.ndarray) -> np.ndarray:
@@ -132,6 +144,10 @@ class RateProblem:
 
     def left(self, trial: Trial, c: int, what: int) -> float:
         """Force that is left (mean weights) until contact ``c`` does ``what``."""
+        rolls = self.system.rolls
+        if rolls is not None and trial.rolled is not None and c >= rolls.count:
+            c -= rolls.count
+            return float(rolls.friction[c] * trial.normal[c] - np.sign(what) * trial.rolled.force[c])
         law = self.system.problem.pair_law if c < len(self.system.first) else self.system.problem.wall_law
         if what in (events.OPENS, events.CLOSES):
             overlap = law.normal_stiffness * float(trial.configuration.overlap[c])
@@ -141,6 +157,8 @@ class RateProblem:
     def fall(self, q: FloatArray, c: int, what: int, displacement: FloatArray) -> float:
         """By how much a displacement (dof,) lowers that force."""
         system = self.system
+        if system.rolls is not None and c >= system.rolls.count:
+            return system.rolls.fall(c - system.rolls.count, what, q, displacement)
         n, radius = system.problem.n, system.problem.packing.radius
         return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls)
 
@@ -152,7 +170,8 @@ class RateProblem:
         """
         known = trial.configuration
         # one that bears nothing has no slip to go on with
-        sense = np.where((np.abs(sense) == SLIDING) & (trial.normal <= self.force), STICKING, sense).astype(sense.dtype)
+        idle = (np.abs(sense) == SLIDING) & (trial.borne <= self.force)
+        sense = np.where(idle, STICKING, sense).astype(sense.dtype)
         ways = (OPTIONS.all, False, False), (OPTIONS.worst, True, False), (OPTIONS.worst, True, True)
         for rounds, worst, anew in ways:  # whether the worst alone change, and whether each tangent is factorised anew
             now, tried = sense, {sense.tobytes()}
@@ -174,12 +193,13 @@ class RateProblem:
                     rates = found.rate[due]
                     due = due[rates >= OPTIONS.as_bad * rates.max()]
                 now = changed(now, due, found.what)
-                touches = (self.system.friction > 0.0) & np.isin(found.what, (events.OPENS, events.CLOSES))
-                for c in due[touches[due]].tolist():
+                touching = due[np.isin(found.what[due], (events.OPENS, events.CLOSES))]
+                for c in touching[self.system.friction[touching] > 0.0].tolist():
                     # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
                     had.setdefault(c, {int(sense[c])})
                     now[c] = next((way for way in (now[c], SLIDING, -SLIDING) if int(way) not in had[c]), now[c])
                     had[c].add(int(now[c]))
+                now = self.system.coupled(now)
                 if now.tobytes() in tried:
                     break
                 tried.add(now.tobytes())

@@ -21,10 +21,15 @@ AT_LIMIT = 1e-9
 
 
 def at_limit(problem: Problem, state: State) -> int:
-    """How many closed contacts are at the Coulomb limit: what they answer depends on the direction of a load."""
+    """How many closed contacts are at a limit of friction: what they answer depends on the direction of a load."""
     pairs = state.pairs.near_limit(problem.pair_law.friction if problem.pair_friction else 0.0, AT_LIMIT)
     walls = state.walls.near_limit(problem.wall_law.friction if problem.wall_friction else 0.0, AT_LIMIT)
-    return int(pairs.sum() + walls.sum())
+    rolling = 0
+    for contacts, one in ((state.pairs, problem.pair_rolling), (state.walls, problem.wall_rolling)):
+        if one is not None:
+            limit = (1.0 - AT_LIMIT) * one.friction * contacts.normal_force
+            rolling += int((contacts.touching & (np.abs(contacts.rolling_force) >= limit)).sum())
+    return int(pairs.sum() + walls.sum()) + rolling
 
 
 def influence(problem: Problem, state: State, disks: np.ndarray, *, sliding: str = "refuse") -> FloatArray:
@@ -118,5 +123,5 @@ def sticking(problem: Problem, state: State, sliding: str) -> tuple[StaticSystem
         )
     system = StaticSystem(problem, state)
     known = system.start(state)
-    never = np.full(len(known.spring), np.inf)
+    never = np.full_like(system.limits(system.trial(known, known.q, tangent=False)), np.inf)
     return system, system.trial(known, known.q, limits=never)

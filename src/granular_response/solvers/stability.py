@@ -86,7 +86,7 @@ def negative_modes(system: StaticSystem, trial: Trial) -> int | None:
     modes = system.storage.negative_eigenvalues(system.pattern.symmetric_part(matrix))
     if modes == 0:
         return None if _too_light(system, trial) else 0
-    if SLIDING not in trial.status:
+    if not _slides(trial):
         return modes
     if system.dof <= OPTIONS.dense:
         return int((np.linalg.eigvals(matrix.toarray()).real < 0).sum())
@@ -114,9 +114,9 @@ def unstable_direction(system: StaticSystem, trial: Trial) -> FloatArray:
     symmetric = system.pattern.symmetric_part(matrix)
     start = np.random.default_rng(0).standard_normal(system.dof)
     if system.dof <= OPTIONS.dense:
-        values, every = np.linalg.eig((matrix if SLIDING in trial.status else symmetric).toarray())
+        values, every = np.linalg.eig((matrix if _slides(trial) else symmetric).toarray())
         vector = every[:, np.argmin(values.real)].real
-    elif SLIDING in trial.status:
+    elif _slides(trial):
         vector = _nearest_to(system, _left_of_all(system, matrix), matrix)(1)[1][:, 0].real
     else:
         k = system.problem.stiffness
@@ -156,7 +156,7 @@ def _divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
     if not negative_modes(system, trial):
         return None
     lowest = unstable_direction(system, trial)
-    sliding = np.flatnonzero(trial.status == SLIDING)
+    sliding = np.flatnonzero(np.abs(trial.sense) == SLIDING)
     if not len(sliding):
         return lowest
     slides = trial.sense[sliding]
@@ -178,6 +178,11 @@ def _divergence(system: StaticSystem, trial: Trial) -> FloatArray | None:
         else:
             return direction
     return None
+
+
+def _slides(trial: Trial) -> bool:
+    """Whether a contact is at a limit, along the tangent or the rolling."""
+    return bool((np.abs(trial.sense) == SLIDING).any())
 
 
 def _masses(system: StaticSystem) -> FloatArray:

@@ -101,10 +101,16 @@ class StaticSystem(Equations):
 
             def change(c: int) -> tuple[np.ndarray, FloatArray, FloatArray]:
                 places, left, right = np.zeros((2, 6), np.int64), np.zeros((2, 6)), np.zeros((2, 6))
-                count = events.changed_stiffness(
-                    c, made[c], sense[c], known.q, self.problem.n, self.problem.packing.radius, self.problem.freedoms,
-                    self.pairs, self.walls, self.pattern.place, places, left, right,
-                )  # fmt: skip
+                if self.rolls is not None and c >= self.rolls.count:
+                    places, left, right = self.rolls.changed_stiffness(
+                        c - self.rolls.count, int(made[c]), int(sense[c]), known.q, self.pattern.place
+                    )
+                    count = len(places)
+                else:
+                    count = events.changed_stiffness(
+                        c, made[c], sense[c], known.q, self.problem.n, self.problem.packing.radius,
+                        self.problem.freedoms, self.pairs, self.walls, self.pattern.place, places, left, right,
+                    )  # fmt: skip
                 if self.held.size:
                     held = np.isin(self.pattern.interleaved[places], self.held)
                     left[held], right[held] = 0.0, 0.0

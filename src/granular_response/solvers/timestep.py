@@ -15,6 +15,10 @@ moment of inertia 1/2 (radius 1), so that a tangential spring of stiffness k_T t
   square root of the moment of inertia;
 * *the smallest disk* alone among heavier ones of radius 1, as many as fit around it.
 
+Rolling resistance turns two equal disks with a quarter of its stiffness where they spin the opposite ways, tangential
+springs where they spin the same way; so the larger of ``k_T`` and ``k_R / 4`` counts at each contact between disks, and
+``k_R`` adds to ``k_T`` at a wall, whose arm is the radius.
+
 The study ``stability`` measures the limit of kicked packings against this one: they settle at 0.95 of it, and cycle
 or blow up between 1.05 and 1.7 times the limit.
 """
@@ -28,6 +32,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..contact import Law
+from ..contact.rolling import Rolling
 from ..errors import SolveError
 from ..kernels.integrators import INTEGRATORS, amplification
 from ..scene.protocol import PAPERS_TIME_STEP
@@ -77,13 +82,14 @@ MOMENT = 0.5
 Motion = tuple[float, float, float]
 
 
-#: Normal stiffness, normal damping, tangential stiffness, tangential damping.
-Constants = tuple[float, float, float, float]
+#: Normal stiffness, normal damping, tangential stiffness, tangential damping, rolling stiffness, rolling damping.
+Constants = tuple[float, float, float, float, float, float]
 
 
-def _constants(law: Law, force: float) -> Constants:
+def _constants(law: Law, rolling: Rolling | None, force: float) -> Constants:
     """Of a law at normal forces up to ``force``."""
-    return law.stiffest(force), law.normal_damping, law.tangential_stiffness, law.tangential_damping
+    rolls = (0.0, 0.0) if rolling is None else (rolling.stiffness, rolling.damping)
+    return law.stiffest(force), law.normal_damping, law.tangential_stiffness, law.tangential_damping, *rolls
 
 
 def largest_force(problem: Problem) -> float:
@@ -104,15 +110,21 @@ def largest_force(problem: Problem) -> float:
 
 def _at_wall(pair: Constants, wall: Constants, neighbours: float, walls: int) -> list[Motion]:
     """Stiffest motions of a disk at one wall or two: coordinates (x, z, rotation times sqrt(moment))."""
-    kn, nun, kt, nut = pair
+    kn, nun, kt, nut, kr, nur = pair
     rim = 1.0 / np.sqrt(MOMENT)
     along = np.array([[1.0, 0.0, -rim], [0.0, 1.0, -rim]])[:walls]
     inward = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])[:walls]
     around = np.diag([1.0, 1.0, 0.0]) * neighbours
-    turning = np.diag([1.0, 1.0, 2.0 / MOMENT]) * neighbours
+    turn = 2.0 / MOMENT
+    spinning, spin_damping = (
+        np.diag([tangential, tangential, turn * max(tangential, 0.25 * rolling)]) * neighbours
+        for tangential, rolling in ((kt, kr), (nut, nur))
+    )
     direct = kn * around + wall[0] * inward.T @ inward
-    tangential = kt * turning + wall[2] * along.T @ along
-    damping = nun * around + nut * turning + wall[1] * inward.T @ inward + wall[3] * along.T @ along
+    tangential = spinning + wall[2] * along.T @ along
+    damping = nun * around + spin_damping + wall[1] * inward.T @ inward + wall[3] * along.T @ along
+    tangential[2, 2] += walls * wall[4] / MOMENT
+    damping[2, 2] += walls * wall[5] / MOMENT
     motions: list[Motion] = []
     for matrix in (direct + tangential, damping):
         mode = np.linalg.eigh(matrix)[1][:, -1]
@@ -131,17 +143,24 @@ def stiffest_motions(problem: Problem, *, smallest: bool = False) -> list[Motion
     ``smallest`` : as if all disks had the smallest mass.
     """
     force = largest_force(problem)
-    pair, wall = _constants(problem.pair_law, force), _constants(problem.wall_law, force)
-    kn, nun, kt, nut = pair
+    pair = _constants(problem.pair_law, problem.pair_rolling, force)
+    wall = _constants(problem.wall_law, problem.wall_rolling, force)
+    kn, nun, kt, nut, kr, nur = pair
     small = float(problem.packing.radius.min())
     turn = 2.0 * NEIGHBOURS / MOMENT
     motions: list[Motion] = [(NEIGHBOURS * kn, NEIGHBOURS * kt, NEIGHBOURS * (nun + nut)), (0.0, turn * kt, turn * nut)]
+    if kr:
+        motions.append((0.0, 0.25 * turn * kr, 0.25 * turn * nur))
     motions += _at_wall(pair, wall, ON_FLOOR, 1) + _at_wall(pair, wall, IN_CORNER, 2)
     mass = float(problem.packing.mass.min())
     if smallest:
         return [(direct / mass, spring / mass, damping / mass) for direct, spring, damping in motions]
     half = 0.5 * _around(1.0, small) / mass
-    return [*motions, (half * kn, half * kt, half * (nun + nut)), (0.0, 4 * half * kt, 4 * half * nut)]
+    motions += [(half * kn, half * kt, half * (nun + nut)), (0.0, 4 * half * kt, 4 * half * nut)]
+    if kr:  # the arm of its rolling is small / (1 + small)
+        part = 4 * half / (1.0 + small) ** 2
+        motions.append((0.0, part * kr, part * nur))
+    return motions
 
 
 def stability_limit(problem: Problem, integrator: str | None = None, *, smallest: bool = False) -> float:

@@ -22,15 +22,18 @@ def stored(problem: Problem, state: State) -> float:
     """Energy of all springs, normal and tangential, and of the weights."""
     pairs, walls = state.pairs, state.walls
     total = float(problem.weight @ state.position[:, 1])
-    for contacts, law, shape in (
-        (pairs, problem.pair_law, problem.pair_shapes(pairs.first.astype(np.int64), pairs.second.astype(np.int64))),
-        (walls, problem.wall_law, problem.wall_shapes(walls.first.astype(np.int64))),
+    shapes = problem.pair_shapes(pairs.first.astype(np.int64), pairs.second.astype(np.int64))
+    for contacts, law, shape, rolling in (
+        (pairs, problem.pair_law, shapes, problem.pair_rolling),
+        (walls, problem.wall_law, problem.wall_shapes(walls.first.astype(np.int64)), problem.wall_rolling),
     ):
         energies = np.zeros(len(contacts.overlap))
         statics.elastic_energies(contacts.overlap, shape, law, energies)
         total += float(energies.sum())
         if law.friction > 0.0:
             total += 0.5 * law.tangential_stiffness * float(contacts.spring @ contacts.spring)
+        if rolling is not None:
+            total += 0.5 * rolling.stiffness * float(contacts.rolling_spring @ contacts.rolling_spring)
     return total
 
 
@@ -52,7 +55,10 @@ def work(problem: Problem, before: State, after: State) -> float:
 
 @dataclass(frozen=True)
 class Slid:
-    """Energy that sliding took between two states, contact by contact, in the order of the states' candidates."""
+    """Energy that sliding, and rolling at its limit, took between two states.
+
+    Contact by contact, in the order of the states' candidates.
+    """
 
     pairs: FloatArray  #: (m,)
     walls: FloatArray  #: (w,)
@@ -78,17 +84,24 @@ def slid(problem: Problem, before: State, after: State) -> Slid:
     i, j, k = before.pairs.first, before.pairs.second, before.walls.first
     normal = wall_normals(before.walls.second)
     along = moved[k, 1] * normal[:, 0] - moved[k, 0] * normal[:, 1]
-    return Slid(
-        _lost(before.pairs, after.pairs, distance * turn - radius[i] * turned[i] - radius[j] * turned[j]),
-        _lost(before.walls, after.walls, along - radius[k] * turned[k]),
-    )
+    pairs = _lost(before.pairs, after.pairs, distance * turn - radius[i] * turned[i] - radius[j] * turned[j])
+    walls = _lost(before.walls, after.walls, along - radius[k] * turned[k])
+    if problem.pair_rolling is not None:
+        pairs += _lost(before.pairs, after.pairs, problem.pair_arms(i, j) * (turned[i] - turned[j]), "rolling_")
+    if problem.wall_rolling is not None:
+        walls += _lost(before.walls, after.walls, problem.wall_arms(k) * turned[k], "rolling_")
+    return Slid(pairs, walls)
 
 
-def _lost(before: Contacts, after: Contacts, slip: FloatArray) -> FloatArray:
-    """(m,) mean tangential force times the part of ``slip`` (m,) that the springs have not taken up."""
+def _lost(before: Contacts, after: Contacts, slip: FloatArray, way: str = "") -> FloatArray:
+    """(m,) mean tangential force times the part of ``slip`` (m,) that the springs have not taken up.
+
+    ``way`` : "rolling_" for what is lost along the rolling.
+    """
     closed = np.where(before.touching & after.touching, 1.0, 0.0)
     for one, other in ((before, after), (after, before)):
         half = one.touching & ~other.touching
         closed[half] = one.overlap[half] / (one.overlap[half] - other.overlap[half])
-    force = 0.5 * (before.tangential_force + after.tangential_force)
-    return -force * (closed * slip - (after.spring - before.spring))
+    force, spring = (f"{way}force" if way else "tangential_force"), f"{way}spring"
+    mean = 0.5 * (getattr(before, force) + getattr(after, force))
+    return -mean * (closed * slip - (getattr(after, spring) - getattr(before, spring)))

@@ -1,7 +1,7 @@
 """What a packing is at one moment: its state, its contacts and their status, its box."""
 
 from .box import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, Box, FloatArray, foot_points, wall_normals
-from .events import CONTACT_EVENTS, LOST_EVENTS, Event
+from .events import CONTACT_EVENTS, LOST_EVENTS, ROLLING_EVENTS, Event
 from .reached import Certificate, Reached
 from .state import Contacts, State, contact_force
 from .status import OPEN, SLIDING, STICKING
@@ -13,6 +13,7 @@ __all__ = [
     "LOST_EVENTS",
     "OPEN",
     "RIGHT_WALL",
+    "ROLLING_EVENTS",
     "SLIDING",
     "STICKING",
     "WALL_NORMAL",

@@ -8,6 +8,8 @@ from .box import WALL_MEANINGS
 
 #: What a contact does at an event.
 CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
+#: What it does along the rolling.
+ROLLING_EVENTS = ("rolls", "stops rolling", "rolls back")
 #: What happens to an equilibrium that ends: the motion of the disks leads to the next one, or one of several branches
 #: is taken. The first kind stands in files of earlier versions alone: an increment with fixed friction bounds led on.
 LOST_EVENTS = ("stepped over", "jump", "bifurcation")
@@ -18,7 +20,8 @@ class Event:
     """One change on a load path: a contact changes its status, or an equilibrium is lost.
 
     ``kind`` is, for a contact, ``"opens"``, ``"closes"``, ``"slides"`` (reaches Coulomb's limit), ``"sticks"`` (leaves
-    it) or ``"reverses"`` (slides the other way). Where an equilibrium is lost it is ``"jump"`` (the motion of the disks
+    it) or ``"reverses"`` (slides the other way); where it resists rolling also ``"rolls"`` (reaches the limit of that),
+    ``"stops rolling"`` or ``"rolls back"``. Where an equilibrium is lost it is ``"jump"`` (the motion of the disks
     leads to the next one) or ``"bifurcation"`` (it is unstable, and the motion leads to one of the branches). Lengths
     are in mean disk radii.
 

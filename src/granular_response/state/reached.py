@@ -19,6 +19,7 @@ class Certificate:
     disk. ``negative_modes``: unstable directions of the tangent with the recorded statuses (None: not determined).
     ``loose_disks``: disks with fewer than two contacts. ``unbalanced_part``: largest unbalanced force on a disk as a
     part of what it bears, its weight or its largest contact force (nan: not measured, in files from before).
+    ``rolling_excess``: largest rolling force beyond its limit.
     """
 
     force_residual: float
@@ -29,6 +30,7 @@ class Certificate:
     negative_modes: int | None
     loose_disks: int
     unbalanced_part: float = float("nan")
+    rolling_excess: float = 0.0
 
     @property
     def balanced(self) -> bool:

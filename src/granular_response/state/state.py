@@ -22,7 +22,10 @@ class Contacts:
 
     ``overlap`` is positive in touch; ``normal_force`` is positive in compression; ``spring`` is the
     elongation of the tangential spring (Sec. III.A); ``status`` is OPEN, STICKING or SLIDING.
-    Without friction ``tangential_force`` and ``spring`` are zero and a touching contact is STICKING.
+    Without friction ``tangential_force`` and ``spring`` are zero and a touching contact is STICKING. Where it rolls
+    against a resistance, ``rolling_force`` times the reduced radius is the couple on the first body, ``rolling_spring``
+    the elongation of its spring, and ``rolling_status`` STICKING within its limit and SLIDING at it; else they are
+    zero and OPEN, as they are by default.
     """
 
     first: NDArray[np.int32]  #: (m,) index of the disk the force acts on
@@ -32,6 +35,14 @@ class Contacts:
     tangential_force: FloatArray
     spring: FloatArray
     status: NDArray[np.int8]
+    rolling_force: FloatArray = None  # type: ignore[assignment]
+    rolling_spring: FloatArray = None  # type: ignore[assignment]
+    rolling_status: NDArray[np.int8] = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        for name, kind in (("rolling_force", float), ("rolling_spring", float), ("rolling_status", np.int8)):
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, np.zeros(len(self.first), kind))
 
     @property
     def touching(self) -> NDArray[np.bool_]:
@@ -42,6 +53,11 @@ class Contacts:
     def sliding(self) -> NDArray[np.bool_]:
         """(m,) whether the contact is at the Coulomb limit."""
         return self.status == SLIDING
+
+    @property
+    def rolling(self) -> bool:
+        """Whether some contact rolls against a resistance."""
+        return bool((self.rolling_status != OPEN).any())
 
     def near_limit(self, friction: float, margin: float) -> NDArray[np.bool_]:
         """(m,) whether the contact is closed with ``|f_t| >= (1 - margin) friction f_n``; none without friction."""

@@ -21,6 +21,7 @@ from . import files
 from .result import (
     ADDED_LATER,
     EVENT_KINDS,
+    ROLLING_VARIABLES,
     ResultError,
     described_events,
     described_forces,
@@ -55,6 +56,12 @@ _NEEDED: dict[str, tuple[tuple[str, ...], str]] = {
         for prefix, dimension in _CONTACTS.items()
         for name in ("overlap", "normal_force", "tangential_force", "spring", "status")
     },
+}
+#: Variables of contacts that resist rolling.
+_ROLLING = {
+    f"{prefix}_{name}": (("state", dimension), _WHOLE if name == "rolling_status" else _REAL)
+    for prefix, dimension in (("contact", "contact"), ("wall", "wall_contact"))
+    for name in ROLLING_VARIABLES
 }
 #: Names whose values are indices of disks.
 _DISKS = ("contact_disk", "contact_partner", "wall_disk", "loaded_disk", "floor_disk")
@@ -138,6 +145,11 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
         _check_variable(dataset, name, (*several, "floor_disk"), _REAL, finite=False)
     if states > 1:
         _check_variable(dataset, "total_force", several, _REAL)
+    for name, (dimensions, kinds) in _ROLLING.items():
+        if name in dataset:
+            _check_variable(dataset, name, dimensions, kinds)
+            if name.endswith("status"):
+                _check_range(dataset, name, len(status.MEANINGS))
     if "reaction" in dataset:
         _check_variable(dataset, "reaction", (*several, "load_point", "axis"), _REAL)
     if several and dataset.sizes["load"] != states - 1:

@@ -25,7 +25,19 @@ from ..scene.protocol import without_replaced
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
-from ..state import CONTACT_EVENTS, LOST_EVENTS, Box, Certificate, Contacts, Event, Reached, State, box, status
+from ..state import (
+    CONTACT_EVENTS,
+    LOST_EVENTS,
+    ROLLING_EVENTS,
+    Box,
+    Certificate,
+    Contacts,
+    Event,
+    Reached,
+    State,
+    box,
+    status,
+)
 
 LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
 
@@ -41,6 +53,12 @@ _CONTACT_VARIABLES = {
     "tangential_force": f"tangential contact force {FORCE}, along z cross n",
     "spring": f"elongation of the tangential spring {LENGTH}",
     "status": "contact status",
+}
+#: Stored of contacts that resist rolling.
+ROLLING_VARIABLES = {
+    "rolling_force": f"rolling force {FORCE}; times the reduced radius it is the couple on the first disk",
+    "rolling_spring": f"elongation of the rolling spring {LENGTH}",
+    "rolling_status": "status along the rolling: sliding is at the limit of the rolling force",
 }
 #: The system of units of everything stored.
 UNITS = "reduced: mean disk radius, mean disk mass, g"
@@ -59,7 +77,7 @@ _KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
 #: Number of unstable directions in files where it was not determined.
 NOT_DETERMINED = -1
 #: Parts of a certificate that older files do not have.
-ADDED_LATER = frozenset({"certificate_unbalanced_part"})
+ADDED_LATER = frozenset({"certificate_unbalanced_part", "certificate_rolling_excess"})
 
 
 class ResultError(GranularError, ValueError):
@@ -111,9 +129,10 @@ def _states(states: Sequence[State], dimension: str) -> dict[str, xr.Variable]:
             data[f"{prefix}_{second}"] = variable(dim, contacts[0].second, "other disk")
         else:
             data["wall_index"] = variable(dim, contacts[0].second, "wall", **_WALL_FLAGS)
-        for name, long_name in _CONTACT_VARIABLES.items():
+        rolling = ROLLING_VARIABLES if any(one.rolling for one in contacts) else {}
+        for name, long_name in {**_CONTACT_VARIABLES, **rolling}.items():
             values = np.stack([getattr(c, name) for c in contacts])
-            coded = STATUSES if name == "status" else {}
+            coded = STATUSES if name.endswith("status") else {}
             data[f"{prefix}_{name}"] = variable((dimension, dim), values, long_name, **coded)
     data["load_factor"] = variable(dimension, [s.load_factor for s in states], "multiplier of the scene's loads")
     return {**data, "axis": variable("axis", ["x", "z"], "axis labels")}
@@ -135,6 +154,8 @@ def _certificates(states: Sequence[State], dimension: str) -> dict[str, xr.Varia
         "loose_disks": "disks with fewer than two contacts",
         "unbalanced_part": "largest unbalanced force on a disk, as a part of what it bears",
     }
+    if any(contacts.rolling for state in states for contacts in (state.pairs, state.walls)):
+        names["rolling_excess"] = f"largest excess of a rolling force over its limit {FORCE}"
     certificates: list[Certificate] = [s.certificate for s in states]
 
     def number(value: float | None) -> float:
@@ -159,7 +180,7 @@ EVENTS = {
     "displacement": f"largest displacement of a disk from a lost equilibrium to the next {LENGTH}",
     "reason": "why an equilibrium is lost",
 }
-EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS
+EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS + ROLLING_EVENTS
 
 
 def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variable]:
@@ -171,8 +192,9 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variabl
         values: Any = [getattr(event, name) for _, event in found]
         attributes: dict[str, Any] = {}
         if name == "kind":
-            values = np.array([EVENT_KINDS.index(kind) for kind in values], np.int8)
-            attributes = flags([kind.replace(" ", "_") for kind in EVENT_KINDS])
+            known = EVENT_KINDS if set(ROLLING_EVENTS) & set(values) else CONTACT_EVENTS + LOST_EVENTS
+            values = np.array([known.index(kind) for kind in values], np.int8)
+            attributes = flags([kind.replace(" ", "_") for kind in known])
         elif name == "at_wall":
             values, attributes = np.array(values, np.int8), flags(("no", "yes"))
         elif name == "reason":
@@ -488,7 +510,11 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
 
     def contacts(prefix: str, partner: str) -> Contacts:
         values = [one[f"{prefix}_{name}"].values for name in _CONTACT_VARIABLES]
-        return Contacts(one[f"{prefix}_disk"].values.astype(np.int32), one[partner].values.astype(np.int32), *values)
+        rolling = {
+            name: one[f"{prefix}_{name}"].values for name in ROLLING_VARIABLES if f"{prefix}_{name}" in one.variables
+        }
+        first, second = (one[name].values.astype(np.int32) for name in (f"{prefix}_disk", partner))
+        return Contacts(first, second, *values, **rolling)
 
     return State(
         position=one["position"].values.astype(float),

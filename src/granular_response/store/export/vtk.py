@@ -59,7 +59,9 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
         ends.append(np.column_stack([near, far]))
         names = ("normal_force", "tangential_force", "overlap", "status")
         values = [state[f"{prefix}_{name}"].values[touching] for name in names]
-        forces.append(np.column_stack([*values, np.full(len(touching), prefix == "wall")]))
+        rolling = f"{prefix}_rolling_force"
+        rolls = state[rolling].values[touching] if rolling in state else np.zeros(len(touching))
+        forces.append(np.column_stack([*values, np.full(len(touching), prefix == "wall"), rolls]))
     lines, table = np.concatenate(ends), np.concatenate(forces)
     centres = in_plane(np.concatenate(points))
     feet = len(centres) - n
@@ -85,6 +87,8 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
         "status": on_lines(3, np.int32),
         "wall": on_lines(4, np.int32),
     }
+    if any(f"{prefix}_rolling_force" in state for prefix in PREFIXES):
+        on_cells["rolling_force"] = on_lines(5)
     on_points: dict[str, np.ndarray] = {
         "radius": on_disks(state["radius"].values),
         "angle": on_disks(state["angle"].values),

@@ -1,0 +1,65 @@
+"""Contact laws from outside the package."""
+
+from __future__ import annotations
+
+import math
+
+from ..contact import LAWS, Law
+from ..errors import GranularError
+from ..scene import SceneError
+from ..scene.base import Description
+from ..scene.material import LAW_PARAMETERS, NoParameters
+
+#: What a law must have; see :class:`granular_response.contact.law.Law`.
+FIELDS = (
+    "normal_stiffness", "normal_damping", "tangential_stiffness", "tangential_damping", "friction", "least_force",
+)  # fmt: skip
+METHODS = ("of", "elastic_force", "stiffness", "energy", "shapes", "stiffest", "softened", "without_friction")
+
+
+class LawError(GranularError, ValueError):
+    """A contact law that cannot be registered. The message is one line."""
+
+
+def register_law(name: str, law: type[Law], parameters: type[Description] = NoParameters) -> None:
+    """Let scenes name a contact law of one's own: ``contact.law: NAME``, with ``contact.parameters`` of its own.
+
+    Registered where its module is imported, it is known wherever scenes with its parameters are unpickled, in the
+    processes of a sweep too.
+
+    Parameters
+    ----------
+    name : what scene files call it.
+    law : a named tuple in a module that can be imported, with the fields and methods of ``contact.law.Law``. Its ``of``
+        takes its parameters by name after the constants that all laws have. A law with a text ``only_motion`` is
+        solved by dynamics to the end, for that reason.
+    parameters : a description of its parameters, each with a default and a meaning; unit and what is allowed are those
+        of the fields. ``granular-response keys`` lists them.
+
+    Raises
+    ------
+    LawError
+        When another law has the name, or the law lacks something.
+
+    Examples
+    --------
+    >>> gr.register_law("cohesive", Cohesive, Cohesion)  # doctest: +SKIP
+    >>> gr.Scene().updated({"contact.law": "cohesive", "contact.parameters": {"strength": 0.2}})  # doctest: +SKIP
+    """
+    if not isinstance(name, str) or not name.isidentifier():
+        raise LawError(f"name = {name!r}: must be letters, digits and underscores")
+    if LAWS.get(name, law) is not law:
+        raise LawError(f"name = {name!r}: is the name of another law, {LAWS[name].__qualname__}")
+    lacks = [part for part in FIELDS if part not in getattr(law, "_fields", ())]
+    lacks += [part for part in METHODS if not callable(getattr(law, part, None))]
+    if lacks:
+        raise LawError(f"law = {law!r}: has no {', '.join(lacks)}; must be a named tuple with the parts of a law")
+    if not (isinstance(parameters, type) and issubclass(parameters, Description)):
+        raise LawError(f"parameters = {parameters!r}: must be a subclass of granular_response.scene.base.Description")
+    try:
+        law.of(1.0, 1.0, 1.0, 1.0, 0.0, -math.inf, 0.5, **parameters().model_dump())
+    except (SceneError, TypeError) as error:
+        raise LawError(
+            f"law = {law.__qualname__}: {error}; parameters must have defaults, and of() take them"
+        ) from None
+    LAWS[name], LAW_PARAMETERS[name] = law, parameters
