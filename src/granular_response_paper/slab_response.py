@@ -344,12 +344,24 @@ class Event:
     definition: str = column("what counts as the event")
 
 
-def first_change(values: Sequence[float] | FloatArray, happened: Sequence[bool]) -> tuple[float, float]:
+def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool]) -> tuple[float, float]:
     """The last of ``values`` before the first True and its own; see :class:`Event` for the ends."""
     for k, yes in enumerate(happened):
         if yes:
             return (float(values[k - 1]) if k else 0.0), float(values[k])
     return float(values[-1]), float("nan")
+
+
+def linear_end(force: FloatArray, response: FloatArray, tolerance: float) -> tuple[float, float]:
+    """Forces (k,) between which ``response`` (k,) first leaves the neighbourhood of its first value.
+
+    The part of it that is ``tolerance``. Last force before and first force after; the latter is nan if it never leaves.
+    Responses may be nan from some force on.
+    """
+    known = np.isfinite(response)
+    if not known.any():
+        return float("nan"), float("nan")
+    return first_change(force[known], np.abs(response[known] / response[0] - 1.0) > tolerance)
 
 
 def locate(name: str, path: LoadPath, forces: Sequence[float], what: Happening, width: float = NARROW) -> Event:

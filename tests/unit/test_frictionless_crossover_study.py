@@ -33,17 +33,15 @@ BASE = study.Parameters(**PARAMETERS).base
 
 
 def test_each_slab_is_one_task_with_all_its_forces() -> None:
-    tasks = study.tasks(study.Parameters(**PARAMETERS))
-    forces = {task.slab: task.forces for task in tasks}
-    assert len(forces) == len(tasks) == 7
+    tasks = {slab: task.args for slab, task in study.tasks(study.Parameters(**PARAMETERS)).items()}
+    forces = {slab: given[1] for slab, given in tasks.items()}
+    assert len(tasks) == 7
     assert forces[Slab(5, 11, 3000.0)] == (0.5, 0.75, 1.0, 1.5, 2.0)
     assert forces[Slab(5, 11, 1e5)] == (0.75, 1.0, 1.5, 2.0)
     assert forces[Slab(5, 11, 1000.0)] == (0.75,)
     assert forces[Slab(6, 12, 1e5)] == (1.0, 2.0)
-    assert [task.slab for task in tasks if task.keep_states] == [Slab(5, 11, 3000.0)]
-    assert {task.slab: task.tolerance for task in tasks}[Slab(5, 15, 3000.0)] == 0.05
-    sizes = [task.slab.layers * task.slab.disks_per_row for task in tasks]
-    assert sizes == sorted(sizes, reverse=True)
+    assert [slab for slab, (*_, keep_states) in tasks.items() if keep_states] == [Slab(5, 11, 3000.0)]
+    assert tasks[Slab(5, 15, 3000.0)][2] == 0.05
 
 
 @pytest.mark.parametrize(

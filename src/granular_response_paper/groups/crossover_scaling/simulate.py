@@ -12,7 +12,7 @@ Forces grow by one factor until the response has two peaks and the region of ope
 are then those of the path, or narrowed between two of them. Without friction every state is a minimum of the energy,
 and what happens is narrowed by bisection.
 
-The deepest slabs are simulated by the survey (:mod:`granular_response_paper.survey.larger`), as the others are.
+The deepest slabs are simulated by the survey (:mod:`granular_response_paper.survey.simulate`), as the others are.
 """
 
 from __future__ import annotations
