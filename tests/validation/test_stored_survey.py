@@ -1,7 +1,6 @@
 """The stored survey: a few of its realizations simulated again, and that it holds what its parameters and notes say."""
 
 from dataclasses import astuple, replace
-from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import yaml
 from granular_response.observe.floor import smoothed_response
 from granular_response.store import files as store
 from granular_response_paper.ensembles import AT_REST, NOT_REACHED
-from granular_response_paper.pipeline import simulation
+from granular_response_paper.pipeline import group_member, simulation
 from granular_response_paper.records import columns
 from granular_response_paper.survey import packings
 from granular_response_paper.survey import simulate as survey
@@ -82,9 +81,9 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
 
 def of_survey(group):
     """The tasks that a group leaves to the survey, and what is stored of them, by what tells packings apart."""
-    simulate = import_module(f"granular_response_paper.groups.{group}.simulate")
-    tasks = simulate.survey(OF_GROUPS[group])
-    return tasks, packings.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), simulate.Outcome)
+    tasks = survey.tasks_of(group, OF_GROUPS[group])
+    outcome = group_member(group, "simulate", "Outcome")
+    return tasks, packings.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), outcome)
 
 
 @pytest.mark.parametrize(

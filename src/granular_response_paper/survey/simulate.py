@@ -1,8 +1,8 @@
 """Simulates a block of the survey and stores it: an ensemble, or packings that a figure group leaves to it.
 
 An ensemble is a block of the survey's own parameter file. Packings of a group are those that the pipeline has no time
-for, higher ones and more realizations: the group says which in its section of ``params.yaml``, and ``survey`` of its
-``simulate.py`` has their tasks by what tells them apart, so they are made as those of the pipeline are.
+for, higher ones and more realizations: the group says which in its section of ``params.yaml``, and ``packings`` and
+``task`` of its ``simulate.py`` make them as those of the pipeline.
 
 Every finished task is kept, under a name made from the sources that its outcome depends on and from the task itself.
 So a run that was stopped goes on where it was, a block with more realizations computes the new ones alone, and a change
@@ -154,7 +154,7 @@ def packings_of(group: str, parameter_file: Path) -> Block:
     Raises what ``simulation.parameters`` raises.
     """
     given, parameters = simulation.parameters(group, parameter_file)
-    tasks: dict[Any, partial[Any]] = group_member(group, "simulate", "survey")(parameters)
+    tasks = tasks_of(group, parameters)
 
     def datasets(found: dict[Any, Timed[Any]]) -> dict[str, xr.Dataset]:
         each = {key: found[key] for key in tasks}
@@ -165,6 +165,12 @@ def packings_of(group: str, parameter_file: Path) -> Block:
     order = sorted(tasks, key=lambda key: tasks[key].args[0].packing.disk_count)
     scene = parameters.base  # type: ignore[attr-defined]
     return Block(group, {key: tasks[key] for key in order}, datasets, scene, given, sources_of(group), parameter_file)
+
+
+def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:
+    """The tasks of the packings that a group leaves to the survey, by what tells these apart."""
+    packings, task = (group_member(group, "simulate", name) for name in ("packings", "task"))
+    return {key: task(parameters, key) for key in packings(parameters, surveyed=True).values()}
 
 
 def sources_of(group: str) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ their rows (``new_neighbours``); the rest state then depends on the fall and is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -90,8 +90,8 @@ class Outcome:
 
     forces: tuple[float, ...]
     measured: xr.Dataset
-    events: tuple[Event, ...]  #: of EVENTS
-    crossovers: tuple[Event, ...]  #: by the dips of the task
+    events: list[Event]  #: of EVENTS
+    crossovers: list[Event]  #: by the dips of the task
     at_rest: Rest
     problem: Problem
     rest: State
@@ -115,20 +115,15 @@ def solve(
         measures.double_peaked,
         lambda state: measures.region(state).reaches_floor,
     )
-
-    def dips_by(dip: float) -> Happening:
-        return Happening(lambda state: measures.dip(state) > dip, f"a dip of more than {dip:g} at x = 0")
-
-    asked = [(name, Happening(has, text)) for has, (name, text) in zip(happened, EVENTS.items(), strict=True)]
-    asked += [("crossover", dips_by(dip)) for dip in dips]
-    found = tuple(slab_response.locate(name, path, forces, what, tolerance) for name, what in asked)
+    asked = {name: Happening(has, text) for has, (name, text) in zip(happened, EVENTS.items(), strict=True)}
+    of_dips = {f"dip {dip:g}": Happening(_exceeds(measures, dip), "a dip at x = 0") for dip in dips}
     packing = path.problem.packing
     rest, *kept = common_candidates([path.rest, *(states if keep_states else ())], packing.radius)
     return Outcome(
         forces=forces,
         measured=slab_response.measured(measures, states),
-        events=found[: len(EVENTS)],
-        crossovers=found[len(EVENTS) :],
+        events=slab_response.locate(path, forces, asked, tolerance),
+        crossovers=slab_response.locate(path, forces, of_dips, tolerance),
         at_rest=Rest(
             rest_asymmetry(packing.position, path.rest, packing.width), new_neighbours(packing.position, path.rest)
         ),
@@ -137,6 +132,10 @@ def solve(
         states=tuple(kept),
         regions=np.stack([measures.region(s).contacts for s in states]) if keep_states else None,
     )
+
+
+def _exceeds(measures: slab_response.Measures, dip: float) -> Callable[[State], bool]:
+    return lambda state: measures.dip(state) > dip
 
 
 def settle(scene: Scene) -> State:
