@@ -84,8 +84,7 @@ broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of 
 	"$(BIN)/python" tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
 
 scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (hours)
-	"$(BIN)/python" -W ignore -m granular_response_paper.trials.random_scenes $(SCENES) \
-	  --output tests/data/random_scenes.json
+	"$(BIN)/python" -W ignore tests/unlike_scenes.py $(SCENES) --output tests/data/random_scenes.json
 
 coverage: setup ## Unit tests with compilation off, so that kernels count too
 	NUMBA_DISABLE_JIT=1 "$(BIN)/coverage" run -m pytest tests/unit

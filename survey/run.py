@@ -27,17 +27,23 @@ def main() -> None:
     from granular_response.store.files import StoreError
     from granular_response.sweeps.errors import SweepError
     from granular_response_paper.pipeline import GroupError
-    from granular_response_paper.survey import larger
-    from granular_response_paper.survey.simulate import SurveyError, read_parameters, run
+    from granular_response_paper.survey.simulate import (
+        GROUPS,
+        SurveyError,
+        ensemble,
+        packings_of,
+        read_parameters,
+        run,
+    )
 
+    own = HERE / "params.yaml"
     try:
-        for block in given.blocks or [*read_parameters(HERE / "params.yaml").blocks, *larger.GROUPS]:
-            if block in larger.GROUPS:
-                path = larger.run(block, HERE.parent / "params.yaml", HERE, workers=given.workers, progress=progress)
+        for name in given.blocks or [*read_parameters(own).blocks, *GROUPS]:
+            if name in GROUPS:
+                block = packings_of(name, HERE.parent / "params.yaml")
             else:
-                parameters, most = HERE / "params.yaml", given.realizations
-                path = run(block, parameters, realizations=most, workers=given.workers, progress=progress)
-            print(f"\n{path}")
+                block = ensemble(name, own, given.realizations)
+            print(f"\n{run(block, HERE, workers=given.workers, progress=progress)}")
     except (GroupError, SceneError, StoreError, SurveyError, SweepError) as error:
         sys.exit(f"error: {error}")
 

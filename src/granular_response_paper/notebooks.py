@@ -112,7 +112,7 @@ file = Path("{folder}") / "params.yaml"
 file.parent.mkdir(exist_ok=True)
 file.write_text(text.write({_literal(section)}))
 for block in survey.read_parameters(file).blocks:
-    survey.run(block, file, workers=1)"""
+    survey.run(survey.ensemble(block, file), file.parent, workers=1)"""
 
 
 def _literal(section: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ the force, and is looked for in that piece alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.observe import events, network, peaks
-from granular_response.observe.floor import floor_disks, floor_response, interior_mask
+from granular_response.observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
 from granular_response.observe.teardrop import OpenRegion, teardrop
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.path import follow
@@ -240,8 +240,10 @@ class Measures:
         """(floor_disk,) floor response per applied force."""
         return floor_response(self.rest, state, self.disks, abs(state.load_factor))
 
-    def centre(self, state: State) -> float:
-        """Response at x = 0."""
+    def centre(self, state: State, width: float = 0.0) -> float:
+        """Response at x = 0; that of a disordered packing is smoothed, with a Gaussian of ``width``."""
+        if width:
+            return float(smoothed_response([0.0], self.x, self.response(state), width)[0])
         return float(np.interp(0.0, self.x, self.response(state)))
 
     def dip(self, state: State) -> float:
@@ -344,7 +346,7 @@ class Event:
     definition: str = column("what counts as the event")
 
 
-def first_change(values: Sequence[float] | FloatArray, happened: Sequence[bool]) -> tuple[float, float]:
+def first_change(values: Sequence[float] | FloatArray, happened: Iterable[bool]) -> tuple[float, float]:
     """The last of ``values`` before the first True and its own; see :class:`Event` for the ends."""
     for k, yes in enumerate(happened):
         if yes:
@@ -352,9 +354,24 @@ def first_change(values: Sequence[float] | FloatArray, happened: Sequence[bool])
     return float(values[-1]), float("nan")
 
 
-def locate(name: str, path: LoadPath, forces: Sequence[float], what: Happening, width: float = NARROW) -> Event:
-    """Where on a path something happens first; see :meth:`LoadPath.first`."""
-    return Event(name, path.scene.contact.friction, *path.first(forces, what, width), what.definition)
+def linear_end(force: FloatArray, response: FloatArray, tolerance: float) -> tuple[float, float]:
+    """Forces (k,) between which ``response`` (k,) first leaves the neighbourhood of its first value.
+
+    The part of it that is ``tolerance``. Last force before and first force after; the latter is nan if it never leaves.
+    Responses may be nan from some force on.
+    """
+    known = np.isfinite(response)
+    if not known.any():
+        return float("nan"), float("nan")
+    return first_change(force[known], np.abs(response[known] / response[0] - 1.0) > tolerance)
+
+
+def locate(
+    path: LoadPath, forces: Sequence[float], asked: Mapping[str, Happening], width: float = NARROW
+) -> list[Event]:
+    """Where on a path each of what is ``asked`` happens first, by its name; see :meth:`LoadPath.first`."""
+    friction = path.scene.contact.friction
+    return [Event(name, friction, *path.first(forces, what, width), what.definition) for name, what in asked.items()]
 
 
 def first_opening(measures: Measures) -> Happening:

@@ -1,7 +1,5 @@
 """Figs. 2 and 19 to 21 on slabs of 5 layers, from parameters through a file to figures."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import reduced
@@ -84,14 +82,13 @@ def test_collapse_and_failure_are_reported() -> None:
     parameters = study.Parameters(**PARAMETERS)
     case = study.Case(0.25, 0.2, "touching-largest", (5.0, 60.0, 80.0), 1)
     # so shallow that every load collapses the packing, but the one that moves nothing
-    task = replace(realizations.ensemble_task(parameters, case, 0), forces=(0.01, 5.0, 10.0), collapse_depth=1e-3)
-    found = realizations.realize(task)
+    scene = realizations.ensemble_scene(parameters, case, 0)
+    found = realizations.realize(scene, (0.01, 5.0, 10.0), 1e-3)
     assert found.outcome.tolist() == [AT_REST, COLLAPSED, NOT_REACHED]
-    assert np.isfinite(found.response[0]).all()
-    assert np.isnan(found.response[1:]).all()
+    assert np.isfinite(found.floor_response[0]).all()
+    assert np.isnan(found.floor_response[1:]).all()
 
-    scene = task.scene.updated({"protocol.maximum_steps": 100})
-    failed = realizations.realize(replace(task, scene=scene, forces=(1.0, 2.0)))
+    failed = realizations.realize(scene.updated({"protocol.maximum_steps": 100}), (1.0, 2.0), 1e-3)
     assert failed.outcome.tolist() == [FAILED, NOT_REACHED]
     assert failed.message.startswith("gravity: ")
 

@@ -5,16 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from small_scenes import scene
+from unlike_scenes import MASS_RATIO, RADIUS_RATIO, unlike_heap
 
+from granular_response.observe.audit import ContactRule, audit
 from granular_response.scene import Scene
 from granular_response.solvers.path import PathError
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import OPEN, SLIDING, Contacts, Reached
-from granular_response_paper.trials.audit import ContactRule, audit
 from granular_response_paper.trials.random_scenes import (
-    MASS_RATIO,
-    RADIUS_RATIO,
     anachronism,
     check,
     contradiction,
@@ -245,7 +244,7 @@ def test_a_disk_that_bears_next_to_nothing_is_judged_by_what_it_bears(tmp_path):
 def test_heaps_of_unlike_disks_are_as_unlike_as_they_are_said_to_be():
     ratios = []
     for seed in range(60):
-        description, table = draw(np.random.default_rng(seed), 1000, unlike=True)
+        description, table = draw(np.random.default_rng(seed), 1000, heap=unlike_heap)
         assert description["packing"]["kind"] == "file" and table is not None and table.shape[1] == 4
         ratios.append(table[:, 2:].max(axis=0) / table[:, 2:].min(axis=0))
     radius, mass = np.array(ratios).max(axis=0)

@@ -11,10 +11,10 @@ from granular_response.plot import style
 from granular_response.store import files as store
 from granular_response_paper.claims import table, words
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, NOT_REACHED
-from granular_response_paper.ensembles.averages import linear_end
 from granular_response_paper.groups.phase_diagram import draw as figures
 from granular_response_paper.groups.phase_diagram.parameters import Parameters
 from granular_response_paper.groups.phase_diagram.simulate import read_ensemble, simulate
+from granular_response_paper.slab_response import linear_end
 from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import (
     ABOVE,
@@ -184,10 +184,10 @@ def test_crossing_counts_draws_beyond_the_path() -> None:
     whole = make_ensemble(3.0, 12)
     ensemble = Ensemble(whole.force[:2], whole.response[:, :2])
     found = cross(ensemble, X, 6.0, numbers=(5,), draws=200, seed=0)
-    np.testing.assert_allclose(found.kinds.sum(), 1.0)
-    assert 0.0 < found.kinds[ABOVE] < 1.0
+    np.testing.assert_allclose(found.draw_part.sum(), 1.0)
+    assert 0.0 < found.draw_part[ABOVE] < 1.0
     assert found.interval[-1] == np.inf
-    assert np.all(np.diff(found.spread, axis=1) >= 0.0)
+    assert np.all(np.diff(found.shape_interval, axis=1) >= 0.0)
 
 
 def test_read_ensemble_smooths_both_sides() -> None:
@@ -289,15 +289,15 @@ def test_single_realizations_and_their_mean() -> None:
     response = np.array([[single, side], [single, side[::-1]], [single, np.full(side.size, np.nan)]])
     found = singles(Ensemble(np.array([1.0, 4.0]), response, 2), X, 6.0, draws=50, seed=0)
     assert found.kind.tolist() == [FOUND, FOUND, ABOVE]
-    assert found.force[2] == 1.0
-    assert found.median == pytest.approx(found.force[0])
-    np.testing.assert_allclose(found.leans[:, 0], 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.leans[:2, 1], 0.5, atol=0.02)
+    assert found.crossover[2] == 1.0
+    assert found.median == pytest.approx(found.crossover[0])
+    np.testing.assert_allclose(found.asymmetry[:, 0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(found.asymmetry[:2, 1], 0.5, atol=0.02)
     # the mean's two bumps are three quarters as high as the larger one of a realization
-    np.testing.assert_allclose(found.differences[:2, 1], 1.0 / 3.0, atol=0.05)
-    assert np.isnan(found.differences[2, 1])
+    np.testing.assert_allclose(found.difference[:2, 1], 1.0 / 3.0, atol=0.05)
+    assert np.isnan(found.difference[2, 1])
     means = shape(X, folded(response[:2].mean(axis=0)), 6.0)
-    np.testing.assert_allclose(found.step, means[1] - means[0])
+    np.testing.assert_allclose(found.largest_step, means[1] - means[0])
     np.testing.assert_allclose(found.spread[0], 0.0, atol=1e-8)
     assert found.spread[1] > 0.05
 

@@ -143,7 +143,7 @@ def test_events_among_minima_of_the_energy_are_bisected(path, threshold, low, hi
     path = LoadPath(path.scene, path.problem, path.rest)
     forces = [0.1, 0.2, 0.5]
     path.through(forces)
-    event = locate("event", path, forces, Happening(lambda s: s.load_factor > threshold, "made up"), 0.04)
+    (event,) = locate(path, forces, {"event": Happening(lambda s: s.load_factor > threshold, "made up")}, 0.04)
     assert low <= event.low < threshold <= event.high <= high
     assert event.high - event.low <= 0.02
     assert event.friction == 0.0 and event.definition == "made up"
@@ -161,7 +161,7 @@ def test_what_contacts_decide_happens_at_an_event_of_the_path_and_costs_no_state
     asked = happenings(measures, rough.known[0.5], 0.2)
     known = dict(rough.known)
     for name in ("first_opening", "reaches_floor"):
-        event = locate(name, rough, [0.5, 3.0, 6.0], asked[name])
+        (event,) = locate(rough, [0.5, 3.0, 6.0], {name: asked[name]})
         (at,) = {
             e.load_factor for s in known.values() for e in s.reached.events if event.low < e.load_factor < event.high
         }
@@ -177,7 +177,8 @@ def test_what_forces_decide_is_narrowed_within_one_piece(rough):
     measures = Measures(path)
     half = 0.5 * (measures.centre(states[1]) + measures.centre(states[2]))
     side = measures.centre(states[1]) > half
-    event = locate("half way", path, [3.0, 6.0], Happening(lambda s: (measures.centre(s) > half) != side, "made up"))
+    half_way = Happening(lambda s: (measures.centre(s) > half) != side, "made up")
+    (event,) = locate(path, [3.0, 6.0], {"half way": half_way})
     assert 3.0 < event.low < event.high < 6.0
     assert event.high - event.low <= NARROW * event.high
     passed = [e.load_factor for e in states[2].reached.events]
@@ -197,7 +198,7 @@ def test_an_event_in_a_lost_equilibrium_has_the_bracket_of_the_loss(rough):
     states[1] = path.known[6.0]
     for of_contacts in (False, True):
         what = Happening(lambda state: state.load_factor > 4.2, "made up", of_contacts)
-        event = locate("event", path, [3.0, 6.0], what)
+        (event,) = locate(path, [3.0, 6.0], {"event": what})
         assert (event.low, event.high) == (4.0, 4.5)
     assert lost(states) == [jump] and [by_motion(state) for state in states] == [False, True]
     found = table([Lost.of(0.2, jump)], "lost")

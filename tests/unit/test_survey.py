@@ -14,7 +14,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import AT_REST
 from granular_response_paper.pipeline import group_member
 from granular_response_paper.records import column, record
-from granular_response_paper.survey import larger, packings
+from granular_response_paper.survey import packings
 from granular_response_paper.survey import simulate as survey
 
 ROOT = Path(__file__).parents[2]
@@ -55,26 +55,25 @@ def test_the_cases_of_a_block_are_all_combinations():
     ]
 
 
-def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file, monkeypatch):
-    done = []
-    real = survey.realize
-    monkeypatch.setattr(survey, "realize", lambda task: done.append(task) or real(task))
-    survey.run("small", file, realizations=2, workers=1)
-    assert len(done) == 5
-    path = survey.run("small", file, workers=1)
-    assert len(done) == 7  # the third ones alone
-    assert [task.scene.packing.realization for task in done[5:]] == [2, 2]
+def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file):
+    begun = []
+    survey.run(survey.ensemble("small", file, 2), file.parent, workers=1, progress=lambda *call: begun.append(call))
+    assert begun[0][:2] == (0, 5)
+    begun.clear()
+    block = survey.ensemble("small", file)
+    path = survey.run(block, file.parent, workers=1, progress=lambda *call: begun.append(call))
+    assert begun[0][:2] == (5, 7)  # the third ones alone
 
     found = store.read(path)
     one = found["ensembles"].isel(case=1, realization=2)
-    again = real(done[6])
+    again = block.tasks[1, 2]()
     assert (one["outcome"].values[:2] == AT_REST).all()
-    np.testing.assert_allclose(one["floor_response"].values[:2], again.response, atol=2.0**-18, rtol=1e-7)
+    np.testing.assert_allclose(one["floor_response"].values[:2], again.floor_response, atol=2.0**-18, rtol=1e-7)
     np.testing.assert_allclose(one["x"].values, again.x, atol=2.0**-13, rtol=1e-7)
     assert one["wall_friction"] == 0.0
     packing = found["packings"].isel(case=1, realization=2)
     for name in survey.PACKINGS:
-        np.testing.assert_equal(packing[name].values, np.float32(again.packing[name]))
+        np.testing.assert_equal(packing[name].values, np.float32(getattr(again.packing, name)))
     assert packing["processor_time"] > 0.0
     marks = store.read_attributes(path)
     assert marks["block"] == "small" and marks["seed"] == "0" and "collapse_depth" in marks["parameters"]
@@ -83,7 +82,7 @@ def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file, monkeypatch)
 
 def test_mistakes_are_one_line_each(file, tmp_path):
     with pytest.raises(survey.SurveyError, match=r"^block large: there is none of this name, must be one of small$"):
-        survey.run("large", file)
+        survey.ensemble("large", file)
     with pytest.raises(survey.SurveyError, match=r"none\.yaml: cannot be read"):
         survey.read_parameters(tmp_path / "none.yaml")
     file.write_text(yaml.safe_dump({**SMALL, "realizations": 0}))
@@ -106,8 +105,8 @@ def test_its_pipeline_names_a_stage_and_the_sources_of_every_block():
     assert stage["foreach"] == "${blocks}"
     stage = yaml.safe_load((ROOT / "survey" / "dvc.yaml").read_text())["stages"]["packings"]
     declared = {path.removeprefix("../src/").removeprefix("granular_response/") for path in stage["do"]["deps"]}
-    assert {*larger.sources_of("${item}"), "granular_response_paper/survey"} <= declared
-    assert stage["foreach"] == list(larger.GROUPS)
+    assert {*survey.sources_of("${item}"), "granular_response_paper/survey"} <= declared
+    assert stage["foreach"] == list(survey.GROUPS)
 
 
 @record
@@ -200,7 +199,7 @@ def simulate(group, section):
         return group_member(group, "simulate", "simulate")(parameters)
 
 
-@pytest.mark.parametrize("group", larger.GROUPS)
+@pytest.mark.parametrize("group", survey.GROUPS)
 def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_path):
     """The same datasets, within single precision, whoever simulates the last packings."""
     section = reduced.parameters(group)
@@ -209,7 +208,7 @@ def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_p
     file = tmp_path / "params.yaml"
     given = section | {key: [own[1]], "survey_file": str(tmp_path / "data" / f"{group}.nc")}
     file.write_text(yaml.safe_dump({"common": {"method": "auto"}, group: given}))
-    path = larger.run(group, file, tmp_path, workers=1)
+    path = survey.run(survey.packings_of(group, file), tmp_path, workers=1)
     assert str(path) == given["survey_file"]
     stored = simulate(group, given)
     for name, data in direct.items():
@@ -224,5 +223,5 @@ def test_packings_of_the_survey_are_those_that_the_group_would_make(group, tmp_p
     assert (
         marks["block"] == group
         and marks["seed"] == "0"
-        and survey.sources(*larger.sources_of(group)) in marks["sources"]
+        and survey.sources(*survey.sources_of(group)) in marks["sources"]
     )

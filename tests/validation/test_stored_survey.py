@@ -1,7 +1,6 @@
 """The stored survey: a few of its realizations simulated again, and that it holds what its parameters and notes say."""
 
 from dataclasses import astuple, replace
-from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
@@ -12,16 +11,16 @@ import yaml
 from granular_response.observe.floor import smoothed_response
 from granular_response.store import files as store
 from granular_response_paper.ensembles import AT_REST, NOT_REACHED
-from granular_response_paper.pipeline import simulation
+from granular_response_paper.pipeline import group_member, simulation
 from granular_response_paper.records import columns
-from granular_response_paper.survey import larger, packings
+from granular_response_paper.survey import packings
 from granular_response_paper.survey import simulate as survey
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "survey"
 PARAMETERS = survey.read_parameters(FOLDER / "params.yaml")
 BLOCKS = list(PARAMETERS.blocks)
-OF_GROUPS = {group: simulation.parameters(group, ROOT / "params.yaml")[1] for group in larger.GROUPS}
+OF_GROUPS = {group: simulation.parameters(group, ROOT / "params.yaml")[1] for group in survey.GROUPS}
 
 #: Largest difference of a response, smoothed with w = 3, that other sources or another machine may make, per largest
 #: response: a rearrangement a little earlier or later.
@@ -46,18 +45,18 @@ def stored():
 def test_a_realization_is_found_again(stored, block, polydispersity, friction, start, realization):
     cases = PARAMETERS.cases(block)
     at = [(c.polydispersity, c.friction, c.lattice_constant) for c in cases].index((polydispersity, friction, start))
-    task = survey.ensemble_task(PARAMETERS, cases[at], realization)
-    again = survey.realize(replace(task, forces=task.forces[:3]))
+    case = replace(cases[at], forces=cases[at].forces[:3])
+    again = survey.ensemble_task(PARAMETERS, case, realization)()
     one = {name: data.isel(case=at, realization=realization) for name, data in stored[block].items()}
     assert (again.outcome == AT_REST).all() and (one["ensembles"]["outcome"].values[:3] == AT_REST).all()
     np.testing.assert_allclose(one["ensembles"]["x"].values[: again.x.size], again.x, atol=5e-3)
-    assert one["packings"]["coordination_number"] == pytest.approx(again.packing["coordination_number"], abs=0.01)
+    assert one["packings"]["coordination_number"] == pytest.approx(again.packing.coordination_number, abs=0.01)
     x = np.arange(-30.0, 30.5, 1.0)
-    kept_on = np.cumsum(again.loaded["lost"]) == 0  # where an equilibrium is lost a last digit may lead elsewhere
+    kept_on = np.cumsum(again.loaded.lost) == 0  # where an equilibrium is lost a last digit may lead elsewhere
     assert kept_on[0]
     for k in np.flatnonzero(kept_on):
         response = one["ensembles"]["floor_response"].values[k, : again.x.size]
-        kept, new = (smoothed_response(x, again.x, values, 3.0) for values in (response, again.response[k]))
+        kept, new = (smoothed_response(x, again.x, values, 3.0) for values in (response, again.floor_response[k]))
         np.testing.assert_allclose(kept, new, atol=SAME * np.abs(new).max())
 
 
@@ -82,9 +81,9 @@ def test_what_is_stored_is_what_the_parameters_name(stored, block):
 
 def of_survey(group):
     """The tasks that a group leaves to the survey, and what is stored of them, by what tells packings apart."""
-    simulate = import_module(f"granular_response_paper.groups.{group}.simulate")
-    tasks = simulate.survey(OF_GROUPS[group])
-    return tasks, packings.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), simulate.Outcome)
+    tasks = survey.tasks_of(group, OF_GROUPS[group])
+    outcome = group_member(group, "simulate", "Outcome")
+    return tasks, packings.read(FOLDER / "data" / f"{group}.nc", type(next(iter(tasks))), outcome)
 
 
 @pytest.mark.parametrize(
@@ -118,7 +117,7 @@ def test_a_packing_of_a_figure_group_is_found_again(group, key):
             np.testing.assert_allclose(before, values, atol=near, err_msg=name)
 
 
-@pytest.mark.parametrize("group", larger.GROUPS)
+@pytest.mark.parametrize("group", survey.GROUPS)
 def test_the_packings_of_a_figure_group_are_those_that_its_parameters_leave_to_the_survey(group):
     path = FOLDER / "data" / f"{group}.nc"
     tasks, stored = of_survey(group)

@@ -9,4 +9,5 @@
 ``stress``      coarse-grained stress and its balance
 ``profile``     contact force against horizontal position at a depth
 ``widths``      how wide a response is, and the power of depth with which that grows
+``audit``       a state checked from its positions alone, with none of the solvers' code
 """

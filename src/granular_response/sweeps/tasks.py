@@ -17,7 +17,7 @@ import os
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from ..machine import threads
 from .cluster import over_dask
@@ -110,21 +110,6 @@ def map_tasks(
             if progress:
                 progress(done, len(items), what)
     return results
-
-
-class Task(Protocol):
-    """What can be done on its own: a frozen record of what it needs, with ``run``."""
-
-    def run(self) -> Any: ...
-
-
-def run_tasks(tasks: Iterable[Task], *, what: str = "tasks") -> list[Any]:
-    """What each task hands back, as :func:`map_tasks` has it."""
-    return map_tasks(_run, tasks, what=what)
-
-
-def _run(task: Task) -> Any:
-    return task.run()
 
 
 @dataclass(frozen=True)

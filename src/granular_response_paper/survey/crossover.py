@@ -30,13 +30,15 @@ the mean hangs on a few and leaves out the weakest.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
-FloatArray = NDArray[np.float64]
+from granular_response.state import FloatArray
+from granular_response.store.result import FORCE, flags
+from granular_response_paper.records import column, record
 
 #: What a crossover is known to be.
 FOUND, BELOW, ABOVE = 0, 1, 2
@@ -211,28 +213,34 @@ def censored_medians(values: FloatArray, censored: NDArray[np.bool_], weights: F
     return np.where(reached.any(axis=1), values[np.argmax(reached, axis=1)], np.inf)
 
 
-@dataclass(frozen=True)
-class Crossing:
+_DRAWN = f"bootstrapped crossover forces {FORCE}, alike in cases of as many realizations; infinite beyond bounds"
+_KIND = "whether the crossover was found or is a bound"
+
+
+@record
+class Crossover:
+    """Where the mean of one case has two peaks from on, by one tolerance."""
+
+    force: float = column(f"crossover force of the mean response, or its bound {FORCE}")
+    kind: np.int8 = column(_KIND, attributes=flags(KINDS))
+    interval: FloatArray = column(
+        f"quantiles of the bootstrapped crossover force {FORCE}; infinite beyond bounds", "level"
+    )
+    draws: FloatArray = column(_DRAWN, "draw")  #: in their order
+
+
+@record
+class Crossing(Crossover):
     """The crossover of one case with its statistics; arrays along the k forces of the case."""
 
-    force: float
-    kind: int
-    limits: tuple[float, float]  #: smallest and largest force with a mean
-    draws: FloatArray  #: (draws,) of the bootstrap, in their order, infinite beyond bounds
-    shapes: FloatArray  #: (k,)
-    spread: FloatArray  #: (k, levels)
-    two_peaked: FloatArray  #: (k, numbers) part of the means of so many realizations that have two peaks
-    others: tuple[tuple[float, int, FloatArray], ...] = field(default=())  #: force, kind, draws for other tolerances
-
-    @property
-    def interval(self) -> FloatArray:
-        """(levels,) quantiles of the draws."""
-        return quantiles(self.draws)
-
-    @property
-    def kinds(self) -> FloatArray:
-        """(kinds,) part of the draws that are FOUND, BELOW, ABOVE."""
-        return np.array([np.isfinite(self.draws).mean(), (self.draws == -np.inf).mean(), (self.draws == np.inf).mean()])
+    draw_part: FloatArray = column("part of the bootstrap draws of each kind", "kind_of_draw")
+    limits: tuple[float, float] = column(f"smallest and largest force with a mean {FORCE}", "end")
+    shape: FloatArray = column("shape of the mean response: positive with two peaks", "step")
+    shape_interval: FloatArray = column("quantiles of the bootstrapped shape", "step", "level")
+    two_peaked_means: FloatArray = column(
+        "part of the means of so many realizations, drawn at random, that have two peaks", "step", "number"
+    )
+    others: tuple[Crossover, ...]  #: by other tolerances
 
 
 def quantiles(draws: FloatArray) -> FloatArray:
@@ -256,42 +264,57 @@ def cross(
     drawn = shape(x, ensemble.means(weights(len(ensemble.response), draws, seed)), width)
     fits = grown(drawn)
 
-    def at(limit: float) -> tuple[float, int, FloatArray]:
-        return *crossover(ensemble.force, shapes, limit), ranked(*passed(ensemble.force, fits, limit))
+    def at(limit: float) -> Crossover:
+        found = ranked(*passed(ensemble.force, fits, limit))
+        force, kind = crossover(ensemble.force, shapes, limit)
+        return Crossover(force, np.int8(kind), quantiles(found), found)
 
-    force, kind, found = at(tolerance)
+    usual = at(tolerance)
+    found = usual.draws
     used = ensemble.force[np.isfinite(shapes)]
-    limits = (float(used[0]), float(used[-1])) if used.size else (float("nan"), float("nan"))
-
     spread = np.full((len(shapes), len(LEVELS)), np.nan)
     known = np.isfinite(drawn).all(axis=0)
     spread[known] = np.quantile(drawn[:, known], LEVELS, axis=0).T
     parts = [two_peaked_means(ensemble, x, width, n, draws=draws, seed=seed, tolerance=tolerance) for n in numbers]
     return Crossing(
-        force, kind, limits, found, shapes, spread, np.stack(parts, axis=-1), tuple(at(limit) for limit in others)
+        **vars(usual),
+        draw_part=np.array([np.isfinite(found).mean(), (found == -np.inf).mean(), (found == np.inf).mean()]),
+        limits=(float(used[0]), float(used[-1])) if used.size else (float("nan"), float("nan")),
+        shape=shapes,
+        shape_interval=spread,
+        two_peaked_means=np.stack(parts, axis=-1),
+        others=tuple(at(limit) for limit in others),
     )
 
 
-@dataclass(frozen=True)
+@record
 class Singles:
     """Single realizations of one case beside their mean; arrays along r realizations and k forces."""
 
-    shapes: FloatArray  #: (r, k)
-    leans: FloatArray  #: (r, k) asymmetry
-    differences: FloatArray  #: (r, k) root mean square difference from the mean, per that of the mean
-    spread: FloatArray  #: (k,) standard deviation over realizations, mean over x
-    spread_interval: FloatArray  #: (k, levels)
-    step: float  #: largest change of shape or asymmetry of the mean between neighbouring forces
-    step_interval: FloatArray  #: (levels,)
-    force: FloatArray  #: (r,) crossovers, or their bounds
-    kind: NDArray[np.int8]  #: (r,)
-    median: float
+    spread: FloatArray = column(
+        "standard deviation of the response over realizations in 1/mean radius, mean over x", "step"
+    )
+    spread_interval: FloatArray = column("quantiles of the bootstrapped standard deviation", "step", "level")
+    largest_step: float = column("largest change of shape or asymmetry of the mean between neighbouring forces")
+    largest_step_interval: FloatArray = column("quantiles of the bootstrapped largest change", "level")
+    shape: FloatArray = column(
+        "shape of each response, by the lower of the largest values on both sides", "realization", "step"
+    )
+    asymmetry: FloatArray = column(
+        "largest difference of a point and its mirror image, per largest response", "realization", "step"
+    )
+    difference: FloatArray = column(
+        "root mean square difference from the mean response, per root mean square of the mean", "realization", "step"
+    )
+    crossover: FloatArray = column(f"crossover force, or its bound {FORCE}", "realization")
+    kind: NDArray[np.int8] = column(
+        f"{_KIND}; -1 where there is no realization", "realization", attributes=flags(KINDS)
+    )
+    median: float = column(
+        f"median crossover force of the realizations {FORCE}, what lies beyond a path or a collapse censored"
+    )
+    median_interval: FloatArray = column("quantiles of the bootstrapped median", "level")
     median_draws: FloatArray  #: (draws,) infinite beyond bounds
-
-    @property
-    def median_interval(self) -> FloatArray:
-        """(levels,) quantiles of the draws."""
-        return quantiles(self.median_draws)
 
 
 def singles(
@@ -311,19 +334,20 @@ def singles(
     value = np.where(kind == BELOW, -np.inf, force)
     usable = np.isfinite(value) | (kind == BELOW)
     value, censored = np.where(usable, value, ensemble.force[0]), kind == ABOVE
-    everybody = np.ones((1, len(value)))
+    medians = censored_medians(value, censored, drawn)
     return Singles(
-        shapes,
-        lean(ensemble.response),
-        off,
-        deviation(square.mean(), mean),
-        quantiles(deviation(square.means(drawn), means)).T,
-        float(largest_step(shape(x, folded(mean), width), lean(mean))),
-        quantiles(largest_step(shape(x, folded(means), width), lean(means))),
-        force,
-        kind,
-        float(censored_medians(value, censored, everybody)[0]),
-        censored_medians(value, censored, drawn),
+        spread=deviation(square.mean(), mean),
+        spread_interval=quantiles(deviation(square.means(drawn), means)).T,
+        largest_step=float(largest_step(shape(x, folded(mean), width), lean(mean))),
+        largest_step_interval=quantiles(largest_step(shape(x, folded(means), width), lean(means))),
+        shape=shapes,
+        asymmetry=lean(ensemble.response),
+        difference=off,
+        crossover=force,
+        kind=kind,
+        median=float(censored_medians(value, censored, np.ones((1, len(value))))[0]),
+        median_interval=quantiles(medians),
+        median_draws=medians,
     )
 
 

@@ -7,7 +7,7 @@ stored ones alike.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,13 +18,16 @@ from numpy.typing import NDArray
 
 from granular_response.store import files as store
 from granular_response.store.result import variable
+from granular_response_paper.parameters import SurveyedGroup
 from granular_response_paper.records import columns, table
+from granular_response_paper.tasks import computed
 
 Outcome = TypeVar("Outcome")
 #: A record of what tells packings of a group apart.
 Key = TypeVar("Key", bound=Hashable)
 #: What a group calls a packing by.
 Place = TypeVar("Place", bound=Hashable)
+Group = TypeVar("Group", bound=SurveyedGroup)
 #: Name of the dataset in its file, and of its dimension.
 DATASET, ALONG = "packings", "packing"
 #: Dimension that may be shorter in some packings; nan fills it up.
@@ -68,6 +71,25 @@ def _own(value: NDArray[np.float32], dims: tuple[str, ...]) -> Any:
     if dims[0] == RAGGED:
         value = value[np.isfinite(value).reshape(len(value), -1).any(axis=1)]
     return value.astype(float)
+
+
+def measured(
+    group: Group,
+    what: str,
+    packings: Callable[..., Mapping[Place, Any]],
+    task: Callable[[Group, Any], Callable[[], Outcome]],
+    kind: type[Outcome],
+    *,
+    work: Callable[[Place], Any] | None = None,
+) -> dict[Place, Outcome]:
+    """The outcomes of a group by their places: computed, or as the survey has stored them.
+
+    ``packings(group, surveyed=...)`` are what tells them apart, of the survey or all others; ``task`` simulates one.
+
+    Raises what :func:`chosen` and ``computed`` raise.
+    """
+    own = {place: task(group, key) for place, key in packings(group, surveyed=False).items()}
+    return computed(own, what, work=work) | chosen(group.survey_file, kind, packings(group, surveyed=True))
 
 
 def chosen(path: str | None, kind: type[Outcome], keys: Mapping[Place, Any]) -> dict[Place, Outcome]:

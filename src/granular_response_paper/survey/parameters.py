@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field
 
 from granular_response.scene.base import Count, Description, Ratio
 from granular_response.scene.lattice import LatticeConstant
-from granular_response_paper.groups.polydisperse_averages.parameters import Case, EnsembleGroup, Spreads
+from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
 from granular_response_paper.parameters import Coefficients, Growing, some
 
 

@@ -1,9 +1,13 @@
-"""Runs a block of the survey and stores it.
+"""Simulates a block of the survey and stores it: an ensemble, or packings that a figure group leaves to it.
 
-Every finished realization is kept, under a name made from the sources of the mechanics and from its own task. So a run
-that was stopped goes on where it was, a block with more realizations computes the new ones alone, and a change of what
-is measured on stored responses costs nothing. Tasks run in this process, over all cores or over a Dask cluster, as
-those of every sweep.
+An ensemble is a block of the survey's own parameter file. Packings of a group are those that the pipeline has no time
+for, higher ones and more realizations: the group says which in its section of ``params.yaml``, and ``packings`` and
+``task`` of its ``simulate.py`` make them as those of the pipeline.
+
+Every finished task is kept, under a name made from the sources that its outcome depends on and from the task itself.
+So a run that was stopped goes on where it was, a block with more realizations computes the new ones alone, and a change
+of what is measured on stored responses costs nothing. Tasks run in this process, over all cores or over a Dask cluster,
+as those of every sweep.
 """
 
 from __future__ import annotations
@@ -11,12 +15,12 @@ from __future__ import annotations
 import json
 import platform
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -30,20 +34,21 @@ from granular_response.sweeps.resources import using
 from granular_response.sweeps.tasks import Progress, map_tasks
 from granular_response_paper import PACKAGE
 from granular_response_paper.datasets import labelled
-from granular_response_paper.ensembles.datasets import ensembles_dataset, packings_dataset
-from granular_response_paper.ensembles.realizations import (
-    Realization,
-    Task,
-    ensemble_task,
-    realize,
-)
-from granular_response_paper.groups.polydisperse_averages.parameters import Case
+from granular_response_paper.ensembles.datasets import Place, ensembles_dataset, packings_dataset, places
+from granular_response_paper.ensembles.parameters import Case
+from granular_response_paper.ensembles.realizations import Realization, ensemble_task
+from granular_response_paper.pipeline import group_member, simulation
+from granular_response_paper.records import stacked
+from granular_response_paper.survey import packings
 from granular_response_paper.survey.parameters import Parameters
 
 Found = TypeVar("Found")
 
-#: The sources that a realization depends on.
-SOURCES = (
+#: Groups with packings that are left to the survey.
+GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
+
+#: The sources that every outcome depends on, and those of a realization of an ensemble.
+MECHANICS = (
     "contact",
     "kernels",
     "linalg",
@@ -52,9 +57,9 @@ SOURCES = (
     "scene",
     "solvers",
     "state",
-    f"{PACKAGE}/ensembles",
     f"{PACKAGE}/slab_response.py",
 )
+SOURCES = (*MECHANICS, f"{PACKAGE}/ensembles")
 
 #: What is kept of the responses and of the packings.
 RESPONSES = ("force", "x", "floor_response", "outcome", "message", "lost", "by_motion")
@@ -93,9 +98,17 @@ def clocked(task: Callable[[], Found]) -> Timed[Found]:
     return Timed(found, time.process_time() - start)
 
 
-def timed(task: Task) -> Timed[Realization]:
-    """One realization; what fails is part of the result."""
-    return clocked(partial(realize, task))
+@dataclass(frozen=True)
+class Block:
+    """What one run makes."""
+
+    name: str
+    tasks: Mapping[Any, partial[Any]]  #: by what tells them apart, in the order in which they are begun
+    datasets: Callable[[dict[Any, Timed[Any]]], dict[str, xr.Dataset]]  #: of what they find
+    scene: Scene  #: that those of the tasks are changes to
+    given: Mapping[str, Any]  #: the parameters
+    parts: tuple[str, ...]  #: the sources that an outcome depends on
+    parameter_file: Path
 
 
 def read_parameters(path: Path) -> Parameters:
@@ -116,53 +129,88 @@ def read_parameters(path: Path) -> Parameters:
         raise SurveyError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
+def ensemble(name: str, parameter_file: Path, realizations: int | None = None) -> Block:
+    """A block of the survey's parameter file.
+
+    ``realizations`` is the most that any case gets; None leaves the numbers of the parameters.
+
+    Raises what ``read_parameters`` raises, and SurveyError for a block that is not there.
+    """
+    parameters = read_parameters(parameter_file)
+    if name not in parameters.blocks:
+        raise SurveyError(f"block {name}: there is none of this name, must be one of {', '.join(parameters.blocks)}")
+    cases = [
+        replace(case, realizations=min(case.realizations, realizations or case.realizations))
+        for case in parameters.cases(name)
+    ]
+    tasks = {(c, r): ensemble_task(parameters, cases[c], r) for c, r in places(cases)}
+    given = parameters.model_dump(mode="json", exclude={"blocks", "scene"})
+    return Block(name, tasks, partial(block_datasets, cases), parameters.base, given, SOURCES, parameter_file)
+
+
+def packings_of(group: str, parameter_file: Path) -> Block:
+    """The packings that the section of a group leaves to the survey, the smallest first.
+
+    Raises what ``simulation.parameters`` raises.
+    """
+    given, parameters = simulation.parameters(group, parameter_file)
+    tasks = tasks_of(group, parameters)
+
+    def datasets(found: dict[Any, Timed[Any]]) -> dict[str, xr.Dataset]:
+        each = {key: found[key] for key in tasks}
+        outcomes, seconds = {key: one.found for key, one in each.items()}, [one.seconds for one in each.values()]
+        return {packings.DATASET: packings.dataset(outcomes, seconds)}
+
+    # the first argument of each is its scene
+    order = sorted(tasks, key=lambda key: tasks[key].args[0].packing.disk_count)
+    scene = parameters.base  # type: ignore[attr-defined]
+    return Block(group, {key: tasks[key] for key in order}, datasets, scene, given, sources_of(group), parameter_file)
+
+
+def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:
+    """The tasks of the packings that a group leaves to the survey, by what tells these apart."""
+    packings, task = (group_member(group, "simulate", name) for name in ("packings", "task"))
+    return {key: task(parameters, key) for key in packings(parameters, surveyed=True).values()}
+
+
+def sources_of(group: str) -> tuple[str, ...]:
+    """The sources that an outcome of a group's task depends on."""
+    return (*MECHANICS, "theory", f"{PACKAGE}/groups/{group}/simulate.py")
+
+
 def run(
-    block: str,
-    parameter_file: Path,
+    block: Block,
+    folder: Path,
     *,
-    realizations: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Simulate a block and store it beside the parameter file; returns the path.
+    """Simulate a block and store it below ``folder``, as ``data/NAME.nc``; returns the path.
 
-    ``realizations`` is the most that any case gets; None leaves the numbers of the parameters.
-
-    Raises what ``read_parameters`` raises, SurveyError for a block that is not there, SweepError and StoreError.
+    Raises SweepError and StoreError.
     """
-    parameters = read_parameters(parameter_file)
-    if block not in parameters.blocks:
-        raise SurveyError(f"block {block}: there is none of this name, must be one of {', '.join(parameters.blocks)}")
-    cases = [
-        replace(case, realizations=min(case.realizations, realizations or case.realizations))
-        for case in parameters.cases(block)
-    ]
-    output = parameter_file.parent / "data" / f"{block}.nc"
-    store.check_writable(output, [parameter_file])
+    output = folder / "data" / f"{block.name}.nc"
+    store.check_writable(output, [block.parameter_file])
     with using(packages=(PACKAGE,)):
         found = map_tasks(
-            timed,
-            [
-                ensemble_task(parameters, case, realization)
-                for case in cases
-                for realization in range(case.realizations)
-            ],
+            clocked,
+            block.tasks.values(),
             workers=workers,
             scheduler=scheduler,
             progress=progress,
-            checkpoint=parameter_file.parent / ".realizations.checkpoint",
-            parts=SOURCES,
-            what=f"realizations of {block}",
+            checkpoint=folder / ".realizations.checkpoint",
+            parts=block.parts,
+            what=f"tasks of {block.name}",
         )
-    datasets = block_datasets(cases, found)
-    store.write(output, labelled(datasets, parameters.base), provenance(parameters, block))
+    datasets = block.datasets(dict(zip(block.tasks, found, strict=True)))
+    store.write(output, labelled(datasets, block.scene), provenance(block))
     return output
 
 
-def block_datasets(cases: list[Case], found: list[Timed[Realization]]) -> dict[str, xr.Dataset]:
+def block_datasets(cases: list[Case], found: Mapping[Place, Timed[Realization]]) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles`` and ``packings`` of a block, in the layout of ``polydisperse_averages`` and small."""
-    realized = [one.found for one in found]
+    realized = {place: one.found for place, one in found.items()}
     walls = [case.friction if case.wall_friction is None else case.wall_friction for case in cases]
     wall_friction = variable(("case",), walls, "coefficient of friction of the walls")
     ensembles = ensembles_dataset(cases, realized)[list(RESPONSES)].assign_coords(wall_friction=wall_friction)
@@ -171,28 +219,18 @@ def block_datasets(cases: list[Case], found: list[Timed[Realization]]) -> dict[s
         ensembles[name] = ensembles[name].copy(data=(np.round(values * 2.0**digits) / 2.0**digits).astype(np.float32))
     packings = packings_dataset(cases, realized)[list(PACKINGS)].drop_vars("angle", errors="ignore")
     packings = packings.assign_coords(wall_friction=wall_friction)
-    seconds = np.full(packings["coordination_number"].shape, np.nan)
-    left = iter(found)
-    for c, case in enumerate(cases):
-        seconds[c, : case.realizations] = [next(left).seconds for _ in range(case.realizations)]
+    seconds = stacked({place: one.seconds for place, one in found.items()})
     packings["processor_time"] = variable(("case", "realization"), seconds, "processor time of the realization (s)")
     return {"ensembles": ensembles, "packings": packings.astype(np.float32)}
 
 
-def provenance(parameters: Parameters, block: str) -> dict[str, str]:
+def provenance(block: Block) -> dict[str, str]:
     """Attributes of the file: what it was made from, and by what."""
-    return {
-        "block": block,
-        "parameters": text.write(parameters.model_dump(mode="json", exclude={"blocks", "scene"})),
-        **origin(SOURCES, parameters.base),
-    }
-
-
-def origin(parts: Sequence[str], scene: Scene) -> dict[str, str]:
-    """Attributes of the file: the sources of ``parts``, versions, the seed of the packings."""
     versions = {name: metadata.version(name) for name in ("numba", "numpy", "scipy")}
     return {
-        "sources": f"{sources(*parts)} ({', '.join(parts)})",
+        "block": block.name,
+        "parameters": text.write(block.given),
+        "sources": f"{sources(*block.parts)} ({', '.join(block.parts)})",
         "versions": json.dumps({"python": platform.python_version(), **versions}),
-        "seed": str(scene.packing.model_dump()["seed"]),
+        "seed": str(block.scene.packing.model_dump()["seed"]),
     }

@@ -3,33 +3,25 @@
 A scene is drawn from the whole of what a scene file may say: packing, contact law, walls, loads, method and
 integrator. It has one of the outcomes of :data:`OUTCOMES`; ``wrong`` is a result that the audit contradicts or an
 error that a user would not understand, and must never happen. A sample is compared with its twins.
-
-``python -m granular_response_paper.trials.random_scenes 5000`` tries that many on all cores, every second one of disks
-whose masses differ by up to 1e9 and whose radii by up to 100, and counts the outcomes.
 """
 
 from __future__ import annotations
 
 import csv
-import sys
 import tempfile
-from collections import Counter
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from granular_response.errors import SolveError
+from granular_response.observe.audit import Audit, ContactRule, audit
 from granular_response.scene import Load, Scene, SceneError
 from granular_response.solvers.solution import Solution, solve_scene
 from granular_response.state import FLOOR, State
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost
-from granular_response_paper.trials import counts
-from granular_response_paper.trials.audit import Audit, ContactRule, audit
 
 #: Certified: in balance and stable. Uncertified: the scene asked for no static finish, and the certificate says what
 #: is left. The others are errors of one line: which, is stored beside.
@@ -38,8 +30,6 @@ OUTCOMES = ("certified", "uncertified", "not settled", "no equilibrium", "time s
 BALANCE, COULOMB = 1e-8, 1e-8
 #: Largest unbalanced force of a disk in a certified state, as a part of what this disk bears.
 RELATIVE = 1e-6
-#: Ratios of masses and of radii in heaps of disks that are anything but alike.
-MASS_RATIO, RADIUS_RATIO = 1e9, 100.0
 #: One scene in so many is compared with its twin, where both rest states agree within ``SAME_REST`` (mean disk weights)
 #: on the floor: responses are then the same within ``TWINS`` of the load.
 TWIN_EVERY, SAME_REST, TWINS = 4, 1e-6, 1e-4
@@ -50,6 +40,9 @@ METHODS = ("auto", "dynamics", "path", "minimise")
 _VECTORS = ("force", "displacement")
 #: Least time of a fall over that of the closed form.
 FALL_ROOM = 0.9
+
+#: Draws disks, (n, 3) or (n, 4) as :func:`write_table` has them, and the width of their box.
+Heap = Callable[[np.random.Generator], tuple[np.ndarray, float]]
 
 _ERRORS = {
     "NotSettled": "not settled",
@@ -81,19 +74,19 @@ class Trial:
 
 
 def draw(
-    generator: np.random.Generator, maximum_steps: int, *, unlike: bool = False
+    generator: np.random.Generator, maximum_steps: int, *, heap: Heap | None = None
 ) -> tuple[dict[str, Any], np.ndarray | None]:
     """A scene as nested dicts, and the table (n, 3) or, with masses, (n, 4) of its disks if these come from a file.
 
-    ``unlike`` : a heap of disks whose radii and masses differ by up to ``RADIUS_RATIO`` and ``MASS_RATIO``.
+    With a ``heap``, of what it draws, and always from a file.
     """
     g = generator
     packing: dict[str, Any]
     table = None
     kind = str(g.choice(["slab", "slab", "pile", "file"]))
-    if kind == "file" or unlike:
+    if kind == "file" or heap:
         kind = "file"
-        table, width = _unlike_heap(g) if unlike else _heap(g)
+        table, width = (heap or _heap)(g)
         packing = {"kind": "file", "path": "packing.csv", "width": width}
     else:
         packing = {"kind": kind, "layers": int(g.integers(1, 6 if kind == "slab" else 5))}
@@ -107,7 +100,7 @@ def draw(
         if kind == "slab":
             packing["disks_per_row"] = max(packing["disks_per_row"], 5)
     ratio = float(g.choice([0.0, 0.1, 0.5, 0.8, 1.0, 2.0]))
-    stiffness = _log_uniform(g, *STIFFNESS[int(g.choice(4, p=[0.1, 0.6, 0.2, 0.1]))])
+    stiffness = log_uniform(g, *STIFFNESS[int(g.choice(4, p=[0.1, 0.6, 0.2, 0.1]))])
     contact = {
         "law": "hertz" if g.random() < 0.2 else "linear",
         "normal_stiffness": stiffness,
@@ -117,7 +110,7 @@ def draw(
     }
     wall: dict[str, Any] = {"friction": _friction(g)}
     if g.random() < 0.3:
-        wall["normal_stiffness"] = stiffness * _log_uniform(g, 0.2, 5.0)
+        wall["normal_stiffness"] = stiffness * log_uniform(g, 0.2, 5.0)
     if table is None:
         walled = {key: value for key, value in packing.items() if key != "sides"}
         disks = Scene.from_dict({"packing": walled, "loads": []}).packing.build().n
@@ -129,7 +122,7 @@ def draw(
         "method": str(g.choice(METHODS, p=[0.5, 0.2, 0.25, 0.05])),
         "load_factors": _programme(g),
         "integrator": str(g.choice(["beeman", "verlet", "gear"])),
-        "time_step": ["auto", None, _log_uniform(g, 1e-7, 1e-2)][int(g.choice(3, p=[0.8, 0.1, 0.1]))],
+        "time_step": ["auto", None, log_uniform(g, 1e-7, 1e-2)][int(g.choice(3, p=[0.8, 0.1, 0.1]))],
         "ramp_time": float(g.choice([0.0, 1.0, 5.0])),
         "stop_kinetic_energy": float(g.choice([1e-9, 1e-11, 1e-13])),
         "stop_rule": str(g.choice(["instantaneous", "instantaneous", "envelope"])),
@@ -144,15 +137,15 @@ def draw(
         protocol["integrator"] = "leapfrog"
     if g.random() < 0.05:
         protocol["friction_law"] = "unloading"
-    if unlike and g.random() < 0.8:  # else light disks take steps so short that nothing settles
+    if heap and g.random() < 0.8:  # else light disks take steps so short that nothing settles
         protocol["time_step"] = "auto"
-        contact["normal_stiffness"] = _log_uniform(g, 10.0, 1e4)
+        contact["normal_stiffness"] = log_uniform(g, 10.0, 1e4)
         wall.pop("normal_stiffness", None)
     scene = {"packing": packing, "contact": contact, "wall": wall, "loads": loads, "preparation": preparation}
     return scene | {"protocol": protocol}, table
 
 
-def _log_uniform(g: np.random.Generator, low: float, high: float) -> float:
+def log_uniform(g: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(g.uniform(np.log(low), np.log(high))))
 
 
@@ -168,12 +161,12 @@ def _programme(g: np.random.Generator) -> list[float]:
 
 def _friction(g: np.random.Generator) -> float:
     """None, moderate, or anything up to 100."""
-    return [0.0, float(g.uniform(0.05, 1.0)), _log_uniform(g, 0.01, 100.0)][int(g.choice(3, p=[0.35, 0.45, 0.2]))]
+    return [0.0, float(g.uniform(0.05, 1.0)), log_uniform(g, 0.01, 100.0)][int(g.choice(3, p=[0.35, 0.45, 0.2]))]
 
 
 def _load(g: np.random.Generator, disks: int, turns: bool) -> dict[str, Any]:
     """A force of any direction, mostly downwards, and sometimes a torque, on any disk, mostly the middle of the top."""
-    size = _log_uniform(g, 0.01, 5.0) if g.random() < 0.8 else _log_uniform(g, 5.0, 50.0)
+    size = log_uniform(g, 0.01, 5.0) if g.random() < 0.8 else log_uniform(g, 5.0, 50.0)
     angle = float(g.normal(-0.5 * np.pi, 0.5)) if g.random() < 0.9 else float(g.uniform(0.0, 2.0 * np.pi))
     disk: Any = "top-centre" if g.random() < 0.7 else int(g.integers(disks))
     torque = 0.0 if g.random() < 0.7 or not turns else float(g.normal(0.0, 0.3 * size))
@@ -186,20 +179,10 @@ def _heap(g: np.random.Generator) -> tuple[np.ndarray, float]:
     n = int(g.integers(5, 35))
     spread = float(g.choice([0.0, 0.2, 0.5]))
     width = float(g.uniform(6.0, 20.0))
-    return _thrown(g, n, width, lambda: float(g.uniform(1.0 - spread, 1.0)) if spread else 1.0), width
+    return thrown(g, n, width, lambda: float(g.uniform(1.0 - spread, 1.0)) if spread else 1.0), width
 
 
-def _unlike_heap(g: np.random.Generator) -> tuple[np.ndarray, float]:
-    """The same of few disks, x, z, radius, mass: radii and masses over many decades, together or each by itself."""
-    n, width = int(g.integers(3, 15)), float(g.uniform(4.0, 10.0))
-    small = _log_uniform(g, 1.0 / RADIUS_RATIO, 1.0) if g.random() < 0.6 else 1.0
-    placed = _thrown(g, n, width, lambda: _log_uniform(g, small, 1.0))
-    light = _log_uniform(g, 1.0 / MASS_RATIO, 1.0)
-    mass = [_log_uniform(g, light, 1.0) for _ in range(n)] if g.random() < 0.7 else placed[:, 2] ** 2
-    return np.column_stack([placed, mass]), width
-
-
-def _thrown(g: np.random.Generator, n: int, width: float, radius: Callable[[], float]) -> np.ndarray:
+def thrown(g: np.random.Generator, n: int, width: float, radius: Callable[[], float]) -> np.ndarray:
     """(n, 3) disks, each as high as it must be to overlap none before it."""
     placed: list[tuple[float, float, float]] = []
     while len(placed) < n:
@@ -212,10 +195,10 @@ def _thrown(g: np.random.Generator, n: int, width: float, radius: Callable[[], f
     return np.array(placed)
 
 
-def run(maximum_steps: int, entropy: int, index: int, *, unlike: bool = False) -> Trial:
-    """Draw, solve and check scene ``index`` of the sequence that ``entropy`` seeds; ``unlike`` as in :func:`draw`."""
+def run(maximum_steps: int, entropy: int, index: int, *, heap: Heap | None = None) -> Trial:
+    """Draw, solve and check scene ``index`` of the sequence that ``entropy`` seeds; ``heap`` as in :func:`draw`."""
     generator = np.random.default_rng(np.random.SeedSequence(entropy, spawn_key=(index,)))
-    description, table = draw(generator, maximum_steps, unlike=unlike)
+    description, table = draw(generator, maximum_steps, heap=heap)
     with tempfile.TemporaryDirectory() as folder:
         if table is not None:
             write_table(Path(folder, "packing.csv"), table)
@@ -411,31 +394,3 @@ def contradiction(state: State, found: Audit, rounding: float) -> str:
     if certificate.stable and found.coulomb_excess > COULOMB + rounding:
         return f"certified with a friction force {found.coulomb_excess:.3g} beyond Coulomb's limit"
     return ""
-
-
-#: Steps of a scene of the command below, and what its scenes are in turn.
-_STEPS = 400_000
-KINDS = ("any scene", "unlike disks")
-
-
-def _either(index: int, entropy: int) -> Trial:
-    return run(_STEPS, entropy, index, unlike=index % 2 == 1)
-
-
-def main(number: int, seed: int, output: Path | None = None) -> int:
-    """Try ``number`` scenes; prints what is wrong with which and the counts of the outcomes. 1 if any is wrong."""
-    trials = map_tasks(partial(_either, entropy=seed), range(number), what="scenes")
-    for index, trial in enumerate(trials):
-        if trial.outcome == "wrong":
-            print(f"scene {index}: {trial.message}")
-    found = {kind: Counter(trial.outcome for trial in trials[k::2]) for k, kind in enumerate(KINDS)}
-    for kind, outcomes in found.items():
-        print(f"{kind}: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.most_common()))
-    if output is not None:
-        counts.write(output, number, seed, found)
-    return int(any(trial.outcome == "wrong" for trial in trials))
-
-
-if __name__ == "__main__":
-    given = counts.arguments("Solve and check random scenes.", 20260101)
-    sys.exit(main(given.number, given.seed, given.output))

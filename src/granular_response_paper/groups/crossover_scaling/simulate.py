@@ -12,7 +12,7 @@ Forces grow by one factor until the response has two peaks and the region of ope
 are then those of the path, or narrowed between two of them. Without friction every state is a minimum of the energy,
 and what happens is narrowed by bisection.
 
-The deepest slabs are simulated by the survey (:mod:`granular_response_paper.survey.larger`), as the others are.
+The deepest slabs are simulated by the survey (:mod:`granular_response_paper.survey.simulate`), as the others are.
 """
 
 from __future__ import annotations
@@ -45,8 +45,7 @@ from granular_response_paper.slab_response import (
     locate,
     reaches_floor,
 )
-from granular_response_paper.survey.packings import chosen
-from granular_response_paper.tasks import computed
+from granular_response_paper.survey.packings import measured
 
 #: Layers of the paper's slab, to which a confinement in proportion to the weight refers.
 PAPERS_LAYERS = 15
@@ -137,7 +136,7 @@ def compute(
         left = [what for what in left if not what.happened(state)]
     states = path.through(forces)
     width = NARROW if scene.contact.friction else tolerance
-    found = [locate(name, path, forces, what, width) for name, what in asked.items()]
+    found = locate(path, forces, asked, width)
     regions = [measures.region(state) for state in states]
     return Outcome(
         confinement,
@@ -233,9 +232,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         If a slab cannot be solved.
     """
     found = slabs(parameters)
-    stored = _surveyed(parameters)
-    own = {slab: _task(slab, parameters) for _, slab in found if slab not in stored}
-    done = computed(own, "slabs", work=_work) | chosen(parameters.survey_file, Outcome, {slab: slab for slab in stored})
+    stored = packings(parameters, surveyed=True)
+    done = measured(parameters, "slabs", packings, task, Outcome, work=_work)
     datasets = slab_and_path_tables(found, [done[slab] for _, slab in found], stored)
     datasets["slabs"].attrs.update(visible=parameters.visible, tolerance=parameters.tolerance)
     return labelled(datasets | {"powers": power_table(datasets["slabs"], parameters)}, parameters.base)
@@ -263,15 +261,12 @@ def slabs(parameters: Parameters) -> list[tuple[str, Slab]]:
     ]
 
 
-def _surveyed(parameters: Parameters) -> dict[Slab, None]:
-    """The slabs that are left to the survey."""
+def packings(parameters: Parameters, *, surveyed: bool) -> dict[Slab, Slab]:
+    """The slabs of the survey, or all others, each once."""
     deep = {series.name: series.surveyed for series in parameters.series}
-    return dict.fromkeys(slab for name, slab in slabs(parameters) if slab.layers in deep[name])
-
-
-def survey(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
-    """The tasks of these slabs."""
-    return {slab: _task(slab, parameters) for slab in _surveyed(parameters)}
+    found = slabs(parameters)
+    left = {slab for name, slab in found if slab.layers in deep[name]}
+    return {slab: slab for _, slab in found if (slab in left) == surveyed}
 
 
 def _odd(number: float) -> int:
@@ -284,7 +279,8 @@ def _work(slab: Slab) -> float:
     return slab.layers**2 * slab.disks_per_row * (20.0 if slab.friction else 1.0)
 
 
-def _task(slab: Slab, asked: Parameters) -> partial[Outcome]:
+def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
+    """One of these slabs."""
     return partial(
         compute,
         slab.scene(asked.base),

@@ -54,14 +54,12 @@ def follow(scene: Scene, forces: tuple[float, ...], asymmetry: float | None = No
     states = path.through(forces)
     measures = Measures(path)
     asked = slab.happenings(measures, states[0], asymmetry) if asymmetry else {}
+    if not keep:
+        asked = {name: what for name, what in asked.items() if name in ("first_opening", "linear_range")}
     return PathResult(
         forces,
         slab.measured(measures, states),
-        [
-            slab.locate(name, path, forces, what)
-            for name, what in asked.items()
-            if keep or name in ("first_opening", "linear_range")
-        ],
+        slab.locate(path, forces, asked),
         [slab.Lost.of(measures.friction, event) for event in slab.lost(states)],
         path.method,
         [path.rest, *states] if keep else [path.rest],

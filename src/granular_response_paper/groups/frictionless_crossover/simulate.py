@@ -15,9 +15,8 @@ their rows (``new_neighbours``); the rest state then depends on the fall and is 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -30,9 +29,11 @@ from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper import slab_response
 from granular_response_paper.groups.frictionless_crossover.parameters import Parameters
+from granular_response_paper.records import axes, column, record, stacked, table
+from granular_response_paper.slab_response import TWO_PEAKS, Event, Happening
+from granular_response_paper.tasks import computed
 
 #: What is not kept of the measurements: it is about friction.
 LEFT_OUT = ("third_peak", "third_peak_prominence", "sliding_contacts", "asymmetry_sign", "mobilised_contacts")
@@ -45,18 +46,23 @@ REGION = ("teardrop_depth", "teardrop_width", "reaches_floor", "layers", "normal
 
 EVENTS = {
     "first_opening": "a contact within five lattice constants of the loaded disk is open that touches at rest",
-    "crossover": "on each side of x = 0 the floor response has a peak that exceeds the response at x = 0",
+    "crossover": TWO_PEAKS,
     "teardrop_reaches_floor": "the connected region of opened contacts below the load includes the lowest row",
 }
 
 
-@dataclass(frozen=True)
+@record
 class Slab:
     """An ordered frictionless slab under a force on the middle disk of its top row."""
 
-    layers: int
-    disks_per_row: int
-    normal_stiffness: float
+    layers: int = column("number of rows of the slab")
+    disks_per_row: int = column("disks in the bottom row")
+    normal_stiffness: float = column("normal stiffness of contacts of disks in mean weights per mean radius")
+
+    @property
+    def disks(self) -> int:
+        """Nearly."""
+        return self.layers * self.disks_per_row
 
     def scene(self, base: Scene) -> Scene:
         """``base`` with this slab."""
@@ -68,81 +74,68 @@ class Slab:
         )
 
 
-@dataclass(frozen=True)
-class Task:
-    """A slab with everything asked of it."""
+@record
+class Rest:
+    """What tells how a slab rests."""
 
-    slab: Slab
-    scene: Scene
-    forces: tuple[float, ...]
-    tolerance: float  #: width of the brackets of events, per force at which they happen
-    keep_states: bool
-    dips: tuple[float, ...]  #: of which the crossover is looked for
+    rest_asymmetry: float = column(
+        f"largest horizontal distance of a disk at rest from its place in a symmetric state {LENGTH}"
+    )
+    new_neighbours: int = column("pairs touching at rest that are no lattice neighbours")
 
 
-@dataclass(frozen=True)
+@record
 class Outcome:
     """What a task leaves behind."""
 
-    slab: Slab
     forces: tuple[float, ...]
     measured: xr.Dataset
-    events: Mapping[str, slab_response.Event]
-    crossovers: tuple[slab_response.Event, ...]  #: by the dips of the task
-    rest_asymmetry: float
-    new_neighbours: int
+    events: list[Event]  #: of EVENTS
+    crossovers: list[Event]  #: by the dips of the task
+    at_rest: Rest
     problem: Problem
     rest: State
     states: tuple[State, ...]  #: at the forces, if they are kept
     regions: NDArray[np.bool_] | None  #: (force, pair) pairs of the region of opened contacts
 
 
-def solve(task: Task) -> Outcome:
-    """Settle a slab, load it step by step, measure it and locate its events."""
-    path = slab_response.LoadPath.of(task.scene, settle(task.scene))
-    states = path.through(task.forces)
+def solve(
+    scene: Scene, forces: tuple[float, ...], tolerance: float, dips: Sequence[float], keep_states: bool
+) -> Outcome:
+    """Settle a slab, load it step by step, measure it and locate its events.
+
+    ``tolerance`` is the width of the brackets of events, per force at which they happen; ``dips`` are those of which
+    the crossover is looked for.
+    """
+    path = slab_response.LoadPath.of(scene, settle(scene))
+    states = path.through(forces)
     measures = slab_response.Measures(path)
-    happened: dict[str, Callable[[State], bool]] = {
-        "first_opening": lambda state: measures.region(state).count > 0,
-        "crossover": measures.double_peaked,
-        "teardrop_reaches_floor": lambda state: measures.region(state).reaches_floor,
-    }
-    found = {
-        name: slab_response.locate(
-            name, path, task.forces, slab_response.Happening(happened[name], text), task.tolerance
-        )
-        for name, text in EVENTS.items()
-    }
-    crossovers = tuple(
-        slab_response.locate(
-            "crossover",
-            path,
-            task.forces,
-            slab_response.Happening(partial(_dips, measures, dip), f"a dip of more than {dip:g} at x = 0"),
-            task.tolerance,
-        )
-        for dip in task.dips
+    happened = (
+        lambda state: measures.region(state).count > 0,
+        measures.double_peaked,
+        lambda state: measures.region(state).reaches_floor,
     )
+    asked = {name: Happening(has, text) for has, (name, text) in zip(happened, EVENTS.items(), strict=True)}
+    of_dips = {f"dip {dip:g}": Happening(_exceeds(measures, dip), "a dip at x = 0") for dip in dips}
     packing = path.problem.packing
-    kept = [path.rest, *states] if task.keep_states else [path.rest]
-    kept = common_candidates(kept, packing.radius)
+    rest, *kept = common_candidates([path.rest, *(states if keep_states else ())], packing.radius)
     return Outcome(
-        slab=task.slab,
-        forces=task.forces,
+        forces=forces,
         measured=slab_response.measured(measures, states),
-        events=found,
-        crossovers=crossovers,
-        rest_asymmetry=rest_asymmetry(packing.position, path.rest, packing.width),
-        new_neighbours=new_neighbours(packing.position, path.rest),
+        events=slab_response.locate(path, forces, asked, tolerance),
+        crossovers=slab_response.locate(path, forces, of_dips, tolerance),
+        at_rest=Rest(
+            rest_asymmetry(packing.position, path.rest, packing.width), new_neighbours(packing.position, path.rest)
+        ),
         problem=path.problem,
-        rest=kept[0],
-        states=tuple(kept[1:]),
-        regions=np.stack([measures.region(s).contacts for s in states]) if task.keep_states else None,
+        rest=rest,
+        states=tuple(kept),
+        regions=np.stack([measures.region(s).contacts for s in states]) if keep_states else None,
     )
 
 
-def _dips(measures: slab_response.Measures, dip: float, state: State) -> bool:
-    return measures.dip(state) > dip
+def _exceeds(measures: slab_response.Measures, dip: float) -> Callable[[State], bool]:
+    return lambda state: measures.dip(state) > dip
 
 
 def settle(scene: Scene) -> State:
@@ -177,21 +170,20 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     SweepError
         If a slab cannot be solved.
     """
-    main, sizes, widths, stiff = slabs(parameters)
-    solved = map_tasks(solve, tasks(parameters), what="slabs")
-    outcomes = {outcome.slab: outcome for outcome in solved}
-    first = outcomes[main]
+    asked = parameters
+    main, sizes, widths, stiff = slabs(asked)
+    # the longest first
+    outcomes = computed(tasks(asked), "slabs", work=lambda slab: (slab.disks, -slab.normal_stiffness))
+    first, followed = outcomes[main], [slab for slab in sizes if slab.layers <= asked.region_layers]
     return {
-        "response": response(first, parameters.forces),
+        "response": response(main, first, asked.forces),
         "rest": slab_response.states_picture([first.rest], first.problem),
-        "states": pictures(first, parameters.forces),
-        "events": slab_response.events_dataset(list(first.events.values())),
-        "sizes": table("slab", [outcomes[slab] for slab in sizes], parameters.size_forces),
-        "regions": regions(outcomes, parameters),
-        "widths": table("slab", [outcomes[slab] for slab in widths], parameters.size_forces),
-        "stiffness": stiffness_table(
-            [outcomes[slab] for slab in stiff], parameters.stiffness_forces, parameters.compared_stiffnesses
-        ),
+        "states": pictures(first, asked.forces),
+        "events": slab_response.events_dataset(first.events),
+        "sizes": along("slab", sizes, outcomes, asked.size_forces),
+        "regions": along("slab", followed, outcomes, asked.region_forces)[list(REGION)],
+        "widths": along("slab", widths, outcomes, asked.size_forces),
+        "stiffness": stiffnesses(stiff, outcomes, asked.stiffness_forces, asked.compared_stiffnesses),
     }
 
 
@@ -206,32 +198,28 @@ def slabs(parameters: Parameters) -> tuple[Slab, list[Slab], list[Slab], list[Sl
     return main, sizes, widths, [replace(main, normal_stiffness=stiffness) for stiffness in parameters.stiffnesses]
 
 
-def followed(parameters: Parameters) -> list[Slab]:
-    """The slabs of several depths whose open region is measured at close forces."""
-    return [slab for slab in slabs(parameters)[1] if slab.layers <= parameters.region_layers]
-
-
-def tasks(parameters: Parameters) -> list[Task]:
-    """One task for each different slab, the longest first."""
+def tasks(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
+    """One task for each different slab, with all forces on it; open regions of not too deep ones at close forces."""
     main, sizes, widths, stiff = slabs(parameters)
-    asked: dict[Slab, set[float]] = {main: set(parameters.forces)}
+    forces: dict[Slab, set[float]] = {main: set(parameters.forces)}
     for slab in [*sizes, *widths]:
-        asked.setdefault(slab, set()).update(parameters.size_forces)
-    for slab in followed(parameters):
-        asked[slab].update(parameters.region_forces)
+        forces.setdefault(slab, set()).update(parameters.size_forces)
+    for slab in sizes:
+        if slab.layers <= parameters.region_layers:
+            forces[slab].update(parameters.region_forces)
     for slab in stiff:
-        asked.setdefault(slab, set()).update(parameters.stiffness_forces)
-    return [
-        Task(
-            slab=slab,
-            scene=slab.scene(parameters.base),
-            forces=tuple(sorted(asked[slab])),
-            tolerance=parameters.tolerance if slab in (main, *stiff) else parameters.size_tolerance,
-            keep_states=slab == main,
-            dips=DIPS if slab in stiff else (),
+        forces.setdefault(slab, set()).update(parameters.stiffness_forces)
+    return {
+        slab: partial(
+            solve,
+            slab.scene(parameters.base),
+            tuple(sorted(several)),
+            parameters.tolerance if slab in (main, *stiff) else parameters.size_tolerance,
+            DIPS if slab in stiff else (),
+            slab == main,
         )
-        for slab in sorted(asked, key=lambda s: (-s.layers * s.disks_per_row, s.normal_stiffness))
-    ]
+        for slab, several in forces.items()
+    }
 
 
 def pictures(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
@@ -253,14 +241,11 @@ def pictures(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
     return data.isel(force=np.searchsorted(outcome.forces, forces))
 
 
-def regions(outcomes: Mapping[Slab, Outcome], parameters: Parameters) -> xr.Dataset:
-    """The size of the open region at close forces, in slabs of several depths."""
-    return table("slab", [outcomes[slab] for slab in followed(parameters)], parameters.region_forces)[list(REGION)]
-
-
-def stiffness_table(outcomes: Sequence[Outcome], forces: Sequence[float], compared: tuple[float, ...]) -> xr.Dataset:
-    """As :func:`table`, and how much the response at x = 0 changes between two stiffnesses (Sec. IV.C)."""
-    data = table("normal_stiffness", outcomes, forces)
+def stiffnesses(
+    slabs: Sequence[Slab], outcomes: Mapping[Slab, Outcome], forces: Sequence[float], compared: tuple[float, ...]
+) -> xr.Dataset:
+    """As :func:`along`, and how much the response at x = 0 changes between two stiffnesses (Sec. IV.C)."""
+    data = along("normal_stiffness", slabs, outcomes, forces)
     soft, stiff = (data["response_at_centre"].sel(normal_stiffness=k).values for k in compared)
     data["response_change"] = variable(
         "force",
@@ -269,7 +254,7 @@ def stiffness_table(outcomes: Sequence[Outcome], forces: Sequence[float], compar
     )
     data["crossovers"] = variable(
         ("normal_stiffness", "dip", "bracket"),
-        [[(one.low, one.high) for one in outcome.crossovers] for outcome in outcomes],
+        [[(one.low, one.high) for one in outcomes[slab].crossovers] for slab in slabs],
         f"forces {FORCE} between which the dip at x = 0 comes to exceed this one; nan if not up to the first",
     )
     data["dip"] = variable("dip", DIPS, "dip at x = 0, per largest response, from which on there are two peaks")
@@ -277,64 +262,43 @@ def stiffness_table(outcomes: Sequence[Outcome], forces: Sequence[float], compar
     return data
 
 
-def response(outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
+def response(slab: Slab, outcome: Outcome, forces: Sequence[float]) -> xr.Dataset:
     """Measurements on one slab along ``force``."""
-    data = table("slab", [outcome], forces).isel(slab=0)
+    data = along("slab", [slab], {slab: outcome}, forces).isel(slab=0)
     data = data.rename(floor_place="floor_disk").drop_vars([f"{name}_bracket" for name in EVENTS])
     return data.assign_coords({name: outcome.measured[name].variable for name in ("floor_disk", "interior")})
 
 
-def table(dimension: str, outcomes: Sequence[Outcome], forces: Sequence[float]) -> xr.Dataset:
+def along(
+    dimension: str, slabs: Sequence[Slab], outcomes: Mapping[Slab, Outcome], forces: Sequence[float]
+) -> xr.Dataset:
     """Measurements on slabs along ``dimension`` and ``force``, and the brackets of their events.
 
     Slabs have different numbers of floor disks: ``floor_response`` and ``x`` run over ``floor_place``, from
     left to right, and are nan beyond the last disk of a slab.
     """
-    places = max(o.measured.sizes["floor_disk"] for o in outcomes)
+    each = [outcomes[slab] for slab in slabs]
+    measured = [one.measured.isel(state=np.searchsorted(one.forces, forces)) for one in each]
 
-    def padded(values: FloatArray) -> FloatArray:
-        full = np.full((*values.shape[:-1], places), np.nan)
-        full[..., : values.shape[-1]] = values
-        return full
+    def of(name: str, *dims: str) -> xr.Variable:
+        values = stacked({(k,): one[name].values for k, one in enumerate(measured)})
+        return variable((dimension, *dims), values, measured[0][name].attrs["long_name"])
 
-    grid = (dimension, "force")
-
-    def along_grid(name: str) -> xr.Variable:
-        columns = [o.measured[name].values[np.searchsorted(o.forces, forces)] for o in outcomes]
-        text = outcomes[0].measured[name].attrs["long_name"]
-        if name == "floor_response":
-            return variable((*grid, "floor_place"), np.stack([padded(column) for column in columns]), text)
-        return variable(grid, np.stack(columns), text)
-
-    data = {name: along_grid(name) for name in map(str, outcomes[0].measured) if name not in LEFT_OUT}
-    for name, text in EVENTS.items():
-        brackets = [(o.events[name].low, o.events[name].high) for o in outcomes]
+    places = {"floor_response": ("floor_place",)}
+    data = {name: of(name, "force", *places.get(name, ())) for name in map(str, measured[0]) if name not in LEFT_OUT}
+    for k, (name, text) in enumerate(EVENTS.items()):
         data[f"{name}_bracket"] = variable(
-            (dimension, "bracket"), brackets, f"forces {FORCE} between which: {text}; nan if not up to the first"
+            (dimension, "bracket"),
+            [(one.events[k].low, one.events[k].high) for one in each],
+            f"forces {FORCE} between which: {text}; nan if not up to the first",
         )
-    own: dict[str, tuple[Any, str]] = {
-        "layers": ([o.slab.layers for o in outcomes], "number of rows of the slab"),
-        "disks_per_row": ([o.slab.disks_per_row for o in outcomes], "disks in the bottom row"),
-        "normal_stiffness": (
-            [o.slab.normal_stiffness for o in outcomes],
-            "normal stiffness of contacts of disks in mean weights per mean radius",
-        ),
-        "rest_asymmetry": (
-            [o.rest_asymmetry for o in outcomes],
-            f"largest horizontal distance of a disk at rest from its place in a symmetric state {LENGTH}",
-        ),
-        "new_neighbours": (
-            [o.new_neighbours for o in outcomes],
-            "pairs touching at rest that are no lattice neighbours",
-        ),
-    }
-    coordinates = {name: variable(dimension, values, text) for name, (values, text) in own.items()}
-    coordinates["force"] = variable("force", np.array(forces, float), f"applied force {FORCE}")
-    coordinates["x"] = variable(
-        (dimension, "floor_place"),
-        np.stack([padded(o.measured["x"].values) for o in outcomes]),
-        f"rest position from the loaded disk {LENGTH}",
+    return (
+        xr.Dataset(data)
+        .assign_coords(table(slabs, dimension).variables)
+        .assign_coords(table([one.at_rest for one in each], dimension).variables)
+        .assign_coords(
+            axes(force=(np.array(forces, float), f"applied force {FORCE}"))
+            | {"x": of("x", "floor_place")}
+            | axes(bracket=(["low", "high"], "ends of a bracket"))
+        )
     )
-    dataset = xr.Dataset(data).assign_coords(coordinates)
-    dataset["bracket"] = variable("bracket", ["low", "high"], "ends of a bracket")
-    return dataset

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Part, Positive, Ratio
+from granular_response.scene.errors import Problem
 from granular_response_paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, over, some
 
 #: Keys of the scenes that cases decide.
@@ -27,12 +28,18 @@ class Case(Description):
     increments: Count = Field(description="States from each of these forces to the next one.")
 
 
+def _once(cases: tuple[Case, ...]) -> tuple[Case, ...]:
+    if len({(case.polydispersity, case.friction) for case in cases}) < len(cases):
+        raise Problem("must have each material once")
+    return cases
+
+
 class Parameters(SurveyedGroup):
     """Section ``hysteresis``."""
 
     scene: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of the lattices.")
     disordered: Annotated[Scene, over(UNIT_LOAD, *OF_CASES)] = Field(description="Base scene of all others.")
-    cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
+    cases: Annotated[tuple[Case, ...], AfterValidator(some), AfterValidator(_once)] = Field(description="Materials.")
     left: Part = Field(
         description="A loop is reversible if it leaves no floor force changed by more than this part of the largest "
         "change under the load."

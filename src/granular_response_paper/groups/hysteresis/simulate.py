@@ -22,7 +22,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.observe.events import bisect_event
-from granular_response.observe.floor import floor_force, smoothed_response
+from granular_response.observe.floor import floor_force
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
@@ -42,8 +42,7 @@ from granular_response_paper.slab_response import (
     first_change,
     first_opening,
 )
-from granular_response_paper.survey.packings import chosen
-from granular_response_paper.tasks import computed
+from granular_response_paper.survey.packings import measured
 
 #: The three ways of a loop, in turn.
 BRANCHES = ("loading", "unloading", "loading again")
@@ -199,11 +198,8 @@ class Packing:
         return float(self.path.rest.position[self.disk, 1] - state.position[self.disk, 1])
 
     def centre(self, state: State) -> float:
-        """Response at x = 0, under a disordered packing smoothed."""
-        if not self.width:
-            return self.measures.centre(state)
-        response = self.measures.response(state)
-        return float(smoothed_response([0.0], self.measures.x, response, self.width)[0])
+        """Response at x = 0."""
+        return self.measures.centre(state, self.width)
 
     def after(self, state: State, loads: Sequence[float]) -> list[State]:
         """States at ``loads`` in turn, from ``state`` on."""
@@ -306,10 +302,7 @@ def compute(
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``loops`` (case, realization, turn), ``events`` (case, realization, event), ``curves`` and ``floor``."""
     cases = parameters.cases
-    places = [(c, r) for c, case in enumerate(cases) for r in range(case.realizations)]
-    tasks = {place: _task(parameters, *place) for place in places}
-    outcomes = computed(tasks, "packings", work=lambda place: _work(parameters, place[0]))
-    outcomes |= chosen(parameters.survey_file, Outcome, _surveyed(parameters))
+    outcomes = measured(parameters, "packings", packings, task, Outcome, work=lambda place: _work(parameters, place[0]))
 
     along = ("case", "realization")
     coordinates = labels("case", cases, polydispersity="polydispersity", friction="friction between disks")
@@ -337,24 +330,21 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled(datasets, parameters.base)
 
 
-def _surveyed(parameters: Parameters) -> dict[tuple[int, int], Key]:
-    """The packings that are left to the survey, by their cases and realizations."""
+def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int], Key]:
+    """The packings of the survey, or all others, by their cases and realizations."""
     return {
         (c, r): Key(case.polydispersity, case.friction, r)
         for c, case in enumerate(parameters.cases)
-        for r in range(case.realizations, case.realizations + case.surveyed)
+        for r in range(case.realizations + case.surveyed)
+        if (r >= case.realizations) == surveyed
     }
 
 
-def survey(parameters: Parameters) -> dict[Key, partial[Outcome]]:
-    """The packings that are left to the survey."""
-    return {key: _task(parameters, *place) for place, key in _surveyed(parameters).items()}
-
-
-def _task(parameters: Parameters, c: int, r: int) -> partial[Outcome]:
-    case = parameters.cases[c]
+def task(parameters: Parameters, key: Key) -> partial[Outcome]:
+    """One of these packings."""
+    case = next(one for one in parameters.cases if (one.polydispersity, one.friction) == astuple(key)[:2])
     width = parameters.width if case.polydispersity else 0.0
-    scene = parameters.of(case, r)
+    scene = parameters.of(case, key.realization)
     return partial(compute, scene, case.forces, case.increments, parameters.left, width, parameters.tolerance)
 
 

@@ -34,7 +34,7 @@ from granular_response.theory.slab import Floor, Slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.moduli.parameters import Parameters
 from granular_response_paper.records import axes, column, labels, record, stacked, table
-from granular_response_paper.survey.packings import chosen
+from granular_response_paper.survey.packings import measured
 from granular_response_paper.tasks import computed
 
 #: Places at which responses are compared, in heights of the slab from the load.
@@ -255,16 +255,16 @@ def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, d
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``packings`` and ``lattice``."""
-    own = {place: _task(parameters, one) for place, one in slabs(parameters, surveyed=False).items()}
     # the largest first: two workers then end together
-    outcomes = computed(own, "packings", work=lambda place: parameters.cases[place[0]].layers[place[1]])
+    outcomes = measured(
+        parameters, "packings", packings, task, Outcome, work=lambda at: parameters.cases[at[0]].layers[at[1]]
+    )
     ideal = computed(_lattice_tasks(parameters), "lattices")
-    outcomes |= chosen(parameters.survey_file, Outcome, slabs(parameters, surveyed=True))
     datasets = {"packings": _packings(parameters, outcomes), "lattice": _lattice(parameters, ideal)}
     return labelled(datasets, parameters.base)
 
 
-def slabs(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Disordered]:
+def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Disordered]:
     """The packings of the survey, or all others, by their places: of the case, of its size, and the realization."""
     return {
         (c, s, r): Disordered(case.polydispersity, case.friction, case.layers[s], r)
@@ -274,12 +274,8 @@ def slabs(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int
     }
 
 
-def survey(parameters: Parameters) -> dict[Disordered, partial[Outcome]]:
-    """The packings that are left to the survey."""
-    return {one: _task(parameters, one) for one in slabs(parameters, surveyed=True).values()}
-
-
-def _task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
+def task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
+    """One of these packings."""
     scene = parameters.base.updated(
         {
             "packing.sides": "periodic",

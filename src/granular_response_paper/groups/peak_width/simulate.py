@@ -36,8 +36,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.peak_width.parameters import LEAST_REALIZATIONS, Case, Parameters
 from granular_response_paper.records import axes, column, columns, labels, record, table
 from granular_response_paper.survey.crossover import folded, weights
-from granular_response_paper.survey.packings import chosen
-from granular_response_paper.tasks import computed
+from granular_response_paper.survey.packings import measured
 
 #: Height of the line that stands for the floor (radii): below all centres, above what the floor contacts rest on.
 FLOOR_LINE = 1e-6
@@ -169,9 +168,7 @@ def scaled(forces: ContactForces, x: float, height: float, depth: float, t: Floa
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``inside`` and ``floors``."""
-    own = {place: task(parameters, slab) for place, slab in slabs(parameters, surveyed=False).items()}
-    outcomes = computed(own, "slabs")
-    outcomes |= chosen(parameters.survey_file, Outcome, slabs(parameters, surveyed=True))
+    outcomes = measured(parameters, "slabs", packings, task, Outcome)
     cases = [
         [[outcomes[c, h, r] for r in range(case.count(h))] for h in range(len(case.heights))]
         for c, case in enumerate(parameters.cases)
@@ -188,7 +185,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     return labelled(datasets, parameters.base)
 
 
-def slabs(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Slab]:
+def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int], Slab]:
     """The slabs of the survey, or all others, by their places: of the case, of its height, and the realization."""
     return {
         (c, h, r): Slab(case.polydispersity, case.friction, case.gravity, case.force or 0.0, case.heights[h], r)
@@ -197,11 +194,6 @@ def slabs(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, int
         for r in range(case.count(h))
         if (h >= len(case.layers)) == surveyed
     }
-
-
-def survey(parameters: Parameters) -> dict[Slab, partial[Outcome]]:
-    """The slabs that are left to the survey."""
-    return {slab: task(parameters, slab) for slab in slabs(parameters, surveyed=True).values()}
 
 
 def task(asked: Parameters, slab: Slab) -> partial[Outcome]:

@@ -2,30 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from granular_response.scene import Scene
-from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
+from granular_response.scene.base import Count, Description, Fraction, Index, Positive, Ratio
 from granular_response.scene.errors import Problem
 from granular_response.scene.lattice import LatticeConstant
-from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Growing, Positives, SceneGroup, over, some
-
-Spreads = Annotated[tuple[Fraction, ...], AfterValidator(some)]
-
-
-@dataclass(frozen=True)
-class Case:
-    """One column of an ensemble."""
-
-    polydispersity: float
-    friction: float
-    lattice_constant: float | str
-    forces: tuple[float, ...]
-    realizations: int
-    wall_friction: float | None = None  #: None: the same as between disks
+from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
+from granular_response_paper.parameters import Coefficients, Growing, Positives, some
 
 
 class Cases(Description):
@@ -65,29 +50,6 @@ class ForcesPicture(Description):
     friction: Ratio
     force: Positive
     realization: Index
-
-
-class EnsembleGroup(SceneGroup):
-    """What makes a realization of a disordered slab.
-
-    ``scene`` holds the lattice constant of the start and what ends the fall.
-    """
-
-    scene: Annotated[
-        Scene,
-        over(
-            UNIT_LOAD,
-            "packing.polydispersity",
-            "packing.realization",
-            "contact.friction",
-            "wall.friction",
-            "loads",
-            "protocol.time_step",
-        ),
-    ] = UNIT_LOAD
-    time_step_part: Part = Field(description="Time step over the stability limit of the lightest disk.")
-    longest_time_step: Positive = Field(description="Without friction the limit is far beyond what the fall needs.")
-    collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a packing counts as collapsed.")
 
 
 class Parameters(EnsembleGroup):

@@ -11,58 +11,145 @@ rest was found; ``not_reached`` after either. Averages are over those at rest, w
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
-from granular_response.scene import SceneError
+from granular_response.observe.floor import smoothed_response
+from granular_response.scene import Scene, SceneError
 from granular_response.solvers.problem import Problem
+from granular_response.state import FloatArray
 from granular_response.store.result import FORCE, LENGTH, common_candidates, states_dataset, variable
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
-from granular_response_paper.ensembles import averages, datasets, realizations
-from granular_response_paper.groups.polydisperse_averages.parameters import Case, Parameters
+from granular_response_paper.ensembles import AT_REST, datasets, smoothed
+from granular_response_paper.ensembles.averages import at_rest, averages_dataset
+from granular_response_paper.ensembles.parameters import Case
+from granular_response_paper.ensembles.realizations import Loaded, Realization, ensemble_task
+from granular_response_paper.groups.polydisperse_averages.parameters import Individual, LinearRange, Parameters
+from granular_response_paper.records import column, columns, record, table
+from granular_response_paper.slab_response import linear_end
+from granular_response_paper.tasks import computed
+
+
+@record
+class Small:
+    """The response of one packing to small forces."""
+
+    response_at_centre: FloatArray = column(
+        "smoothed response at x = 0 in 1/mean radius: stress per applied force", "force"
+    )
+    outcome: NDArray[np.int8] = column("what became of the packing", "force")
+    by_motion: FloatArray = column(columns(Loaded)["by_motion"].long_name, "force")
+    ends: tuple[float, float]  #: forces between which the response ceases to be constant
+
+    @classmethod
+    def of(cls, forces: FloatArray, found: Realization, width: float, tolerance: float) -> Small:
+        """With a Gaussian of ``width``."""
+        centre = np.full(len(forces), np.nan)
+        for s in np.flatnonzero(found.outcome == AT_REST):
+            centre[s] = smoothed_response([0.0], found.x, found.floor_response[s], width)[0]
+        return cls(centre, found.outcome, found.loaded.by_motion, linear_end(forces, centre, tolerance))
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles``, ``averages``, ``individual``, ``packings``, ``linear_range`` and ``forces``."""
-    cases, picture, linear = parameters.columns, parameters.forces_picture, parameters.linear_range
-    tasks: list[realizations.Task] = []
-    shown = -1
-    for case in cases:
-        for realization in range(case.realizations):
-            task = realizations.ensemble_task(parameters, case, realization)
-            asked = (picture.polydispersity, picture.friction, picture.realization)
-            this = (case.polydispersity, case.friction, realization)
-            if shown < 0 and this == asked and picture.force in case.forces:
-                shown = len(tasks)
-                task = replace(task, keep=(picture.force,))
-            tasks.append(task)
+    asked, cases, picture, linear = parameters, parameters.columns, parameters.forces_picture, parameters.linear_range
+    tasks: dict[tuple[str, int, int], partial[Realization]] = {
+        ("ensembles", *place): ensemble_task(asked, cases[place[0]], place[1]) for place in datasets.places(cases)
+    }
+    shown = next(
+        ("ensembles", c, picture.realization)
+        for c, case in enumerate(cases)
+        if (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
+        and picture.realization < case.realizations
+        and picture.force in case.forces
+    )
+    tasks[shown] = partial(tasks[shown], keep=(picture.force,))
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
-    for delta, mu in grid:
-        case = Case(delta, mu, parameters.lattice_constant, linear.forces, 1, wall_friction=0.0)
-        tasks.append(realizations.ensemble_task(parameters, case, 0))
+    for k, (delta, mu) in enumerate(grid):
+        case = Case(delta, mu, asked.lattice_constant, linear.forces, 1, wall_friction=0.0)
+        tasks["linear range", k, 0] = ensemble_task(asked, case, 0)
 
-    found = map_tasks(realizations.realize, tasks, what="realizations")
-    ensemble, single = found[: len(found) - len(grid)], found[len(found) - len(grid) :]
-    ensembles = datasets.ensembles_dataset(cases, ensemble)
-    half = round(parameters.reach / parameters.spacing)
-    x = np.arange(-half, half + 1, dtype=float) * parameters.spacing
+    done = computed(tasks, "realizations")
+    found = {place: done["ensembles", *place] for place in datasets.places(cases)}
+    ensembles = datasets.ensembles_dataset(cases, found)
+    half = round(asked.reach / asked.spacing)
+    x = np.arange(-half, half + 1, dtype=float) * asked.spacing
     made = {
         "ensembles": ensembles,
-        "averages": averages.averages_dataset(ensembles, x, widths=parameters.widths, few=parameters.few),
-        "individual": averages.individual_dataset(ensembles, parameters.individual, x),
-        "packings": datasets.packings_dataset(cases, ensemble),
-        "linear_range": averages.linear_range_dataset(grid, linear.forces, single, linear.width, linear.tolerance),
-        "forces": _forces_dataset(tasks[shown], found[shown], picture.polydispersity),
+        "averages": averages_dataset(ensembles, x, widths=asked.widths, few=asked.few),
+        "individual": _individual(ensembles, asked.individual, x),
+        "packings": datasets.packings_dataset(cases, found),
+        "linear_range": _linear_range(linear, grid, [done["linear range", k, 0] for k in range(len(grid))]),
+        "forces": _forces_dataset(tasks[shown].args[0], done[shown], picture.polydispersity),
     }
-    return labelled(made, tasks[0].scene)
+    return labelled(made, next(iter(tasks.values())).args[0])
 
 
-def _forces_dataset(task: realizations.Task, found: realizations.Realization, polydispersity: float) -> xr.Dataset:
+def _individual(ensembles: xr.Dataset, shown: Individual, x: FloatArray) -> xr.Dataset:
+    """Fig. 19: smoothed responses of single realizations at one force, of every start that has a case.
+
+    nan where there are fewer realizations at rest than asked for.
+    """
+    force, most, width = shown.force, shown.realizations, shown.width
+    alike = ensembles["polydispersity"].values == shown.polydispersity
+    alike &= np.isin(ensembles["friction"].values, shown.frictions)
+    cases = np.flatnonzero(alike & (ensembles["force"].values == force).any(axis=1))
+    response = np.full((len(cases), most, len(x)), np.nan)
+    for k, case in enumerate(cases):
+        step = int(np.flatnonzero(ensembles["force"].values[case] == force)[0])
+        rows = at_rest(smoothed(ensembles.isel(case=int(case)), x, width), step)[:most]
+        response[k, : len(rows)] = rows
+    return xr.Dataset(
+        {
+            "response": variable(
+                ("case", "realization", "x"), response, "smoothed response in 1/mean radius: stress per applied force"
+            ),
+            "force": variable((), force, f"applied force {FORCE}"),
+            "width": variable((), width, f"width w of the smoothing Gaussian {LENGTH}"),
+        },
+        coords={
+            "x": variable("x", x, f"distance from the loaded disk {LENGTH}"),
+            **{
+                name: ensembles[name].isel(case=cases).variable
+                for name in ("polydispersity", "friction", "lattice_constant")
+            },
+        },
+    )
+
+
+def _linear_range(asked: LinearRange, grid: Sequence[tuple[float, float]], found: Sequence[Realization]) -> xr.Dataset:
+    """Smoothed response at x = 0 against the force, one packing each, and where it ceases to be constant."""
+    forces = np.array(asked.forces)
+    each = [Small.of(forces, one, asked.width, asked.tolerance) for one in found]
+    below = f"differs by less than {asked.tolerance:.0%} from that to the smallest force"
+    ends = {
+        "linear_until": variable(
+            "path", [one.ends[0] for one in each], f"last force {FORCE} at which the response {below}"
+        ),
+        "nonlinear_from": variable(
+            "path", [one.ends[1] for one in each], f"first force {FORCE} at which it does not; nan for none"
+        ),
+    }
+    attributes = {"width": asked.width, "tolerance": asked.tolerance}
+    return (
+        table(each, "path")
+        .assign(ends)
+        .assign_attrs(attributes)
+        .assign_coords(
+            polydispersity=variable("path", [delta for delta, _ in grid], "delta: spread of the radii"),
+            friction=variable("path", [mu for _, mu in grid], "coefficient of friction, walls frictionless"),
+            force=variable("force", asked.forces, f"applied force {FORCE}"),
+        )
+    )
+
+
+def _forces_dataset(scene: Scene, found: Realization, polydispersity: float) -> xr.Dataset:
     """The states of Fig. 2: at rest, and under load."""
-    problem = Problem.from_scene(task.scene)
+    problem = Problem.from_scene(scene)
     if len(found.states) != 2:
         raise SceneError(f"forces_picture: the realization does not reach its force ({found.message or 'collapsed'})")
     packing = problem.packing
@@ -76,5 +163,5 @@ def _forces_dataset(task: realizations.Task, found: realizations.Realization, po
         width=variable((), packing.width, f"distance of the side walls {LENGTH}"),
         loaded_disk=variable((), int(problem.load_disk[0]), "index of the loaded disk"),
         polydispersity=variable((), polydispersity, "delta: spread of the radii"),
-        friction=variable((), task.scene.contact.friction, "coefficient of friction, walls included"),
+        friction=variable((), scene.contact.friction, "coefficient of friction, walls included"),
     )

@@ -68,7 +68,6 @@ def compute(way: str, scene: Scene, forces: tuple[float, ...], asymmetry: float)
     path = slab.LoadPath.of(scene)
     states = path.through(forces)
     measures = slab.Measures(path)
-    asked = slab.happenings(measures, states[0], asymmetry)
     pairs = path.rest.pairs
     level = pairs.touching & (network.lattice_direction(path.rest) == network.HORIZONTAL) & measures.near
     level_force = float(pairs.normal_force[level].mean()) if level.any() else 0.0
@@ -76,7 +75,7 @@ def compute(way: str, scene: Scene, forces: tuple[float, ...], asymmetry: float)
         Prepared.of(way, scene),
         Rest(level_force, np.array(measures.mobilised(path.rest))),
         slab.measured(measures, states),
-        [slab.locate(name, path, forces, what) for name, what in asked.items()],
+        slab.locate(path, forces, slab.happenings(measures, states[0], asymmetry)),
     )
 
 

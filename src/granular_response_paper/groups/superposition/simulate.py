@@ -12,8 +12,8 @@ The paper shows one realization; here are several, and where the motion of the d
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -27,120 +27,134 @@ from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
 from granular_response.sweeps.rest import rest_of
-from granular_response.sweeps.tasks import map_tasks
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.superposition.parameters import Parameters
-from granular_response_paper.slab_response import by_motion
-
-BoolArray = NDArray[np.bool_]
+from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.slab_response import by_motion, linear_end
+from granular_response_paper.tasks import computed
 
 #: Which forces act.
 PARTS = ("left", "right", "both")
 
-#: Relative errors of a floor force or a contact force, with long names.
-ERRORS = {
-    "floor_error": "root mean square of both - left - right over that of both, floor forces",
-    "floor_error_largest": "largest |both - left - right| over largest |both|, floor forces",
-    "contact_error": "root mean square of both - left - right over that of both, contact forces as vectors",
-    "contact_error_largest": "largest |both - left - right| over largest |both|, contact forces as vectors",
-}
 
-#: Worst entries of the certificates of a pair of loads, with long names.
-CERTIFIED = {
-    "force_residual": f"largest unbalanced force on a disk {FORCE}",
-    "torque_residual": "largest unbalanced torque on a disk in mean weight times mean radius",
-    "coulomb_excess": f"largest excess of a tangential force over the Coulomb limit {FORCE}",
-    "negative_modes": "unstable directions of the tangent stiffness",
-}
+@record
+class Responses:
+    """What two loads add, alone and together."""
+
+    floor_response: FloatArray = column(
+        "vertical floor force that the load adds, per force on one disk", "force", "part", "floor_disk"
+    )
+    by_motion: NDArray[np.int8] = column(
+        "1 where the motion of the disks had a part in what led here from the force before", "force", "part"
+    )
 
 
-@dataclass(frozen=True)
-class Task:
-    """A packing at rest that is to be loaded ``offset`` places to both sides of the middle of the top row."""
+@record
+class Errors:
+    """Relative errors of the sum of floor or contact forces, and the worst entries of the certificates."""
 
-    scene: Scene
-    rest: State
-    offset: int  #: 0 for a single load on the middle disk
-    forces: tuple[float, ...]
+    floor_error: FloatArray = column("root mean square of both - left - right over that of both, floor forces", "force")
+    floor_error_largest: FloatArray = column("largest |both - left - right| over largest |both|, floor forces", "force")
+    contact_error: FloatArray = column(
+        "root mean square of both - left - right over that of both, contact forces as vectors", "force"
+    )
+    contact_error_largest: FloatArray = column(
+        "largest |both - left - right| over largest |both|, contact forces as vectors", "force"
+    )
+    row_error: FloatArray = column(
+        "root mean square of both - left - right over that of both, contact forces between two rows, as vectors",
+        "force",
+        "gap",
+    )  #: from above
+    certificate_force_residual: float = column(f"largest unbalanced force on a disk {FORCE}, any force and part")
+    certificate_torque_residual: float = column(
+        "largest unbalanced torque on a disk in mean weight times mean radius, any force and part"
+    )
+    certificate_coulomb_excess: float = column(
+        f"largest excess of a tangential force over the Coulomb limit {FORCE}, any force and part"
+    )
+    certificate_negative_modes: float = column("unstable directions of the tangent stiffness, any force and part")
 
 
-@dataclass(frozen=True)
+@record
 class Pair:
-    """Two loads on a packing, alone and together."""
+    """Two loads on a packing."""
 
-    response: FloatArray  #: (forces, parts, floor disks) added floor force per force on one disk
-    errors: Mapping[str, FloatArray]  #: ERRORS, each (forces,)
-    row_error: FloatArray  #: (forces, rows - 1) root mean square errors between neighbouring rows, from below
-    by_motion: BoolArray  #: (forces, parts) as the dataset says
+    responses: Responses
+    errors: Errors
     load_x: FloatArray  #: (2,) rest position of the loaded disks
-    certified: Mapping[str, float]  #: CERTIFIED
 
 
-@dataclass(frozen=True)
+@record
 class Single:
     """One load on the middle disk."""
 
-    response: FloatArray  #: (forces, floor disks) added floor force per force
-    contact_change: FloatArray  #: (forces,) change of the added contact forces per force against the first force
+    response_at_centre: FloatArray = column(
+        "smoothed response to one force on the middle disk at x = 0, stress per applied force in 1/mean radius", "force"
+    )
+    contact_change: FloatArray = column(
+        "change of the contact forces per force that one force adds, root mean square, relative to those "
+        "at the smallest force",
+        "force",
+    )
+    linear_until: float = column(f"last force {FORCE} up to which the response at x = 0 is that to the smallest force")
+    nonlinear_from: float = column(f"first force {FORCE} at which it is not; nan for none")
     load_x: float  #: rest position of the loaded disk
+    x: FloatArray  #: rest positions of the floor disks from there
 
 
-def load_pair(task: Task) -> Pair:
-    """Left, right and both; raises what the solvers raise."""
-    sides = ((-task.offset,), (task.offset,), (-task.offset, task.offset))
+def load_pair(scene: Scene, rest: State, offset: int, forces: Sequence[float]) -> Pair:
+    """Left, right and both, ``offset`` places from the middle of the top row; raises what the solvers raise."""
     paths, load_x = [], np.empty(0)
-    for places in sides:
-        states, load_x = _path(task, places)  # the last one gives both positions
+    for places in ((-offset,), (offset,), (-offset, offset)):
+        states, load_x = _path(scene, rest, places, forces)  # the last one gives both positions
         paths.append(states)
-    packing = task.scene.packing.build()
-    count = len(task.forces)
-    flat = [state for path in paths for state in path]
-    rest, *flat = common_candidates([task.rest, *flat], packing.radius)
+    packing = scene.packing.build()
+    count = len(forces)
+    rest, *flat = common_candidates([rest, *(state for path in paths for state in path)], packing.radius)
     paths = [flat[part * count : (part + 1) * count] for part in range(len(PARTS))]
     disks = np.flatnonzero(packing.row == 0)
     at_rest = floor_force(rest, disks)
     on_floor = np.array([[floor_force(state, disks) - at_rest for state in path] for path in paths])
     at_contact = np.array([[pair_force_difference(rest, state) for state in path] for path in paths])
 
-    errors = {name: np.empty(count) for name in ERRORS}
+    floor, contact = (
+        np.array([superposition_error(*one[:, f]) for f in range(count)]).T for one in (on_floor, at_contact)
+    )
     below = np.minimum(packing.row[rest.pairs.first], packing.row[rest.pairs.second])
     between = packing.row[rest.pairs.first] != packing.row[rest.pairs.second]
-    row_error = np.empty((count, int(packing.row.max())))
-    for f in range(count):
-        for name, values in (("floor_error", on_floor[:, f]), ("contact_error", at_contact[:, f])):
-            errors[name][f], errors[f"{name}_largest"][f] = superposition_error(*values)
-        for row in range(row_error.shape[1]):
-            row_error[f, row], _ = superposition_error(*at_contact[:, f, between & (below == row)])
+    gaps = [between & (below == row) for row in range(int(packing.row.max()))]
+    rows = [[superposition_error(*at_contact[:, f, gap])[0] for gap in gaps[::-1]] for f in range(count)]
     certificates = [state.certificate for state in flat]
+    entries = ("force_residual", "torque_residual", "coulomb_excess", "negative_modes")
+    worst = {f"certificate_{name}": max(getattr(one, name) for one in certificates) for name in entries}
+    moved = np.array([[by_motion(state) for state in path] for path in paths], np.int8).T
+    response = np.moveaxis(on_floor, 0, 1) / np.array(forces)[:, None, None]
     return Pair(
-        response=np.moveaxis(on_floor, 0, 1) / np.array(task.forces)[:, None, None],
-        errors=errors,
-        row_error=row_error,
-        by_motion=np.array([[by_motion(state) for state in path] for path in paths]).T,
-        load_x=load_x,
-        certified={name: float(max(getattr(c, name) for c in certificates)) for name in CERTIFIED},
+        Responses(response, moved), Errors(floor[0], floor[1], contact[0], contact[1], np.array(rows), **worst), load_x
     )
 
 
-def load_single(task: Task) -> Single:
-    """One load on the middle disk; raises what the solvers raise."""
-    states, load_x = _path(task, (0,))
-    packing = task.scene.packing.build()
-    rest, *states = common_candidates([task.rest, *states], packing.radius)
+def load_single(scene: Scene, rest: State, forces: Sequence[float], width: float, tolerance: float) -> Single:
+    """One load on the middle disk; ``width`` of the Gaussian at x = 0. Raises what the solvers raise."""
+    states, (load_x,) = _path(scene, rest, (0,), forces)
+    packing = scene.packing.build()
+    rest, *states = common_candidates([rest, *states], packing.radius)
     disks = np.flatnonzero(packing.row == 0)
-    at_rest = floor_force(rest, disks)
-    forces = np.array(task.forces)
-    response = np.array([floor_force(state, disks) - at_rest for state in states]) / forces[:, None]
-    added = np.array([pair_force_difference(rest, state) for state in states]) / forces[:, None, None]
+    at_rest, per = floor_force(rest, disks), np.array(forces)
+    response = np.array([floor_force(state, disks) - at_rest for state in states]) / per[:, None]
+    added = np.array([pair_force_difference(rest, state) for state in states]) / per[:, None, None]
     change = np.linalg.norm(added - added[0], axis=(1, 2)) / np.linalg.norm(added[0])
-    return Single(response, change, float(load_x[0]))
+    x = rest.position[disks, 0] - load_x
+    centre = smoothed_response([0.0], x, response, width)[:, 0]
+    return Single(centre, change, *linear_end(per, centre, tolerance), load_x, x)
 
 
-def _path(task: Task, places: Sequence[int]) -> tuple[list[State], FloatArray]:
+def _path(scene: Scene, rest: State, places: Sequence[int], forces: Sequence[float]) -> tuple[list[State], FloatArray]:
     """States at all forces, and where the loaded disks are at rest."""
     loads = [{"disk": {"row": "top", "offset": place}, "force": [0.0, -1.0]} for place in places]
-    problem = Problem.from_scene(task.scene.updated({"loads": loads})).with_loads(task.rest.position)
-    return loaded_states(problem, task.rest, task.forces)[1], task.rest.position[problem.load_disk, 0]
+    problem = Problem.from_scene(scene.updated({"loads": loads})).with_loads(rest.position)
+    return loaded_states(problem, rest, forces)[1], rest.position[problem.load_disk, 0]
 
 
 def superposition_error(left: FloatArray, right: FloatArray, both: FloatArray) -> tuple[float, float]:
@@ -161,125 +175,58 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     SweepError
         If a realization does not come to rest, at rest or under a load: none is left out in silence.
     """
-    base, offsets, with_pairs = parameters.base, parameters.offsets, parameters.pair_realizations
-    packing = base.packing.build()
+    asked, offsets, with_pairs = parameters, parameters.offsets, range(parameters.pair_realizations)
+    scenes = {r: asked.base.updated({"packing.realization": r}) for r in range(asked.realizations)}
+    rests = computed({r: partial(rest_of, scene) for r, scene in scenes.items()}, "rest")
+    singles = computed(
+        {
+            r: partial(load_single, scene, rests[r], asked.single_forces, asked.width, asked.tolerance)
+            for r, scene in scenes.items()
+        },
+        "single loads",
+    )
+    pairs = computed(
+        {
+            (r, k): partial(load_pair, scenes[r], rests[r], offset, asked.forces)
+            for r in with_pairs
+            for k, offset in enumerate(offsets)
+        },
+        "pairs of loads",
+    )
 
-    scenes = [base.updated({"packing.realization": r}) for r in range(parameters.realizations)]
-    rests = map_tasks(rest_of, scenes, what="rest")
-    settled = list(zip(scenes, rests, strict=True))
-    single = [Task(scene, rest, 0, parameters.single_forces) for scene, rest in settled]
-    singles = map_tasks(load_single, single, what="single loads")
-    both = [Task(scene, rest, offset, parameters.forces) for scene, rest in settled[:with_pairs] for offset in offsets]
-    pairs = map_tasks(load_pair, both, what="pairs of loads")
-
-    disks = np.flatnonzero(packing.row == 0)
-    x = np.array([rest.position[disks, 0] - one.load_x for rest, one in zip(rests, singles, strict=True)])
-    coordinates = {
-        "distance": variable(
-            "distance",
+    packing = asked.base.packing.build()
+    gaps = np.sqrt(3.0) * (np.arange(int(packing.row.max())) + 0.5)
+    coordinates = axes(
+        distance=(
             2.0 * np.array(offsets),
             "places between the two loaded disks, their distance in mean disk diameters",
         ),
-        "force": variable("force", parameters.forces, f"each of the two applied forces {FORCE}"),
-    }
-    by_pair = [pairs[r * len(offsets) : (r + 1) * len(offsets)] for r in range(with_pairs)]
+        force=(asked.forces, f"each of the two applied forces {FORCE}"),
+    )
+    responses = table({place: pair.responses for place, pair in pairs.items()}, "realization", "distance").assign(
+        x=variable(
+            ("realization", "floor_disk"),
+            [singles[r].x for r in with_pairs],
+            f"rest position of a floor disk from the middle disk on top {LENGTH}",
+        ),
+        load_x=variable(
+            ("realization", "distance", "side"),
+            [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs],
+            f"rest position of the loaded disks from the middle disk on top {LENGTH}",
+        ),
+    )
+    further = axes(
+        floor_disk=(np.flatnonzero(packing.row == 0), "index of the floor disk"),
+        part=(PARTS, "which of the forces act"),
+        side=(PARTS[:2], "which of the loaded disks"),
+    )
+    errors = table({place: pair.errors for place, pair in pairs.items()}, "realization", "distance")
+    depth = axes(gap=(gaps, f"depth below the top row, on the lattice {LENGTH}"))
+    linear = table(list(singles.values()), "realization")
+    linear.attrs.update(width=asked.width, tolerance=asked.tolerance)
     datasets = {
-        "responses": _responses(by_pair, singles[:with_pairs], x[:with_pairs], disks, coordinates),
-        "errors": _errors(by_pair, int(packing.row.max()), coordinates),
-        "linear_range": _linear_range(singles, x, parameters.single_forces, parameters.width, parameters.tolerance),
+        "responses": responses.assign_coords(coordinates | further),
+        "errors": errors.assign_coords(coordinates | depth),
+        "linear_range": linear.assign_coords(axes(force=(asked.single_forces, f"force on the middle disk {FORCE}"))),
     }
-    return labelled(datasets, base)
-
-
-def _responses(
-    pairs: Sequence[Sequence[Pair]],
-    singles: Sequence[Single],
-    x: FloatArray,
-    disks: NDArray[np.intp],
-    coordinates: Mapping[str, xr.Variable],
-) -> xr.Dataset:
-    load_x = np.array([[pair.load_x - one.load_x for pair in row] for row, one in zip(pairs, singles, strict=True)])
-    return xr.Dataset(
-        {
-            "floor_response": variable(
-                ("realization", "distance", "force", "part", "floor_disk"),
-                [[pair.response for pair in row] for row in pairs],
-                "vertical floor force that the load adds, per force on one disk",
-            ),
-            "by_motion": variable(
-                ("realization", "distance", "force", "part"),
-                np.array([[pair.by_motion for pair in row] for row in pairs], dtype=np.int8),
-                "1 where the motion of the disks had a part in what led here from the force before",
-            ),
-            "x": variable(
-                ("realization", "floor_disk"), x, f"rest position of a floor disk from the middle disk on top {LENGTH}"
-            ),
-            "load_x": variable(
-                ("realization", "distance", "side"),
-                load_x,
-                f"rest position of the loaded disks from the middle disk on top {LENGTH}",
-            ),
-        },
-        coords={
-            **coordinates,
-            "floor_disk": variable("floor_disk", disks, "index of the floor disk"),
-            "part": variable("part", list(PARTS), "which of the forces act"),
-            "side": variable("side", list(PARTS[:2]), "which of the loaded disks"),
-        },
-    )
-
-
-def _errors(pairs: Sequence[Sequence[Pair]], gaps: int, coordinates: Mapping[str, xr.Variable]) -> xr.Dataset:
-    dims = ("realization", "distance", "force")
-    data = {
-        name: variable(dims, [[pair.errors[name] for pair in row] for row in pairs], text)
-        for name, text in ERRORS.items()
-    }
-    data["row_error"] = variable(
-        (*dims, "gap"),
-        [[pair.row_error[:, ::-1] for pair in row] for row in pairs],
-        "root mean square of both - left - right over that of both, contact forces between two rows, as vectors",
-    )
-    for name, text in CERTIFIED.items():
-        values = np.array([[pair.certified[name] for pair in row] for row in pairs])
-        data[f"certificate_{name}"] = variable(dims[:2], values, f"{text}, any force and part")
-    depth = np.sqrt(3.0) * (np.arange(gaps) + 0.5)
-    return xr.Dataset(
-        data,
-        coords={**coordinates, "gap": variable("gap", depth, f"depth below the top row, on the lattice {LENGTH}")},
-    )
-
-
-def _linear_range(
-    singles: Sequence[Single], x: FloatArray, forces: Sequence[float], width: float, tolerance: float
-) -> xr.Dataset:
-    centre = np.array(
-        [smoothed_response([0.0], at, one.response, width)[:, 0] for at, one in zip(x, singles, strict=True)]
-    )
-    away = np.abs(centre / centre[:, :1] - 1.0) > tolerance
-    first = np.where(away.any(axis=1), away.argmax(axis=1), len(forces))
-    return xr.Dataset(
-        {
-            "response_at_centre": variable(
-                ("realization", "force"),
-                centre,
-                "smoothed response to one force on the middle disk at x = 0, stress per applied force in 1/mean radius",
-            ),
-            "contact_change": variable(
-                ("realization", "force"),
-                [one.contact_change for one in singles],
-                "change of the contact forces per force that one force adds, root mean square, relative to those "
-                "at the smallest force",
-            ),
-            "linear_until": variable(
-                "realization",
-                np.array(forces)[first - 1],
-                f"last force {FORCE} up to which the response at x = 0 is that to the smallest force",
-            ),
-            "nonlinear_from": variable(
-                "realization", np.append(forces, np.nan)[first], f"first force {FORCE} at which it is not; nan for none"
-            ),
-        },
-        coords={"force": variable("force", forces, f"force on the middle disk {FORCE}")},
-        attrs={"width": width, "tolerance": tolerance},
-    )
+    return labelled(datasets, asked.base)

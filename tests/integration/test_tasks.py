@@ -24,7 +24,7 @@ from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
 from granular_response.sweeps.rest import rest_state
-from granular_response.sweeps.tasks import map_tasks, run_tasks
+from granular_response.sweeps.tasks import map_tasks
 
 
 def response(item):
@@ -187,7 +187,7 @@ def test_lambdas_and_functions_of_a_function_run_in_processes():
 
 NOTEBOOK = """
 import dataclasses
-from granular_response.sweeps.tasks import map_tasks, run_tasks
+from granular_response.sweeps.tasks import map_tasks
 @dataclasses.dataclass
 class Found:
     value: int
@@ -391,8 +391,7 @@ def test_a_named_package_counts_with_all_of_its_modules(tmp_path, monkeypatch):
     (package / "outcome.py").write_text(f"{dataclass}class Outcome:\n    value: int\n")
     (package / "study.py").write_text(
         "from . import RUNS, outcome, width\n"
-        f"{dataclass}class Study:\n    item: int\n\n    def run(self):\n"
-        "        RUNS.append(self.item)\n        return outcome.Outcome(width.width(self.item))\n"
+        "def study(item):\n    RUNS.append(item)\n    return outcome.Outcome(width.width(item))\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
     study = importlib.import_module("mine.study")
@@ -400,14 +399,14 @@ def test_a_named_package_counts_with_all_of_its_modules(tmp_path, monkeypatch):
     def outcomes():
         keys.sources.cache_clear()  # what another process would find
         with using(checkpoint=tmp_path / "kept", packages=("mine",), workers=1):
-            return [found.value for found in run_tasks([study.Study(1), study.Study(2)])]
+            return [found.value for found in map_tasks(study.study, [1, 2])]
 
     assert outcomes() == outcomes() == [2, 4] and study.RUNS == [1, 2]
     with (package / "width.py").open("a") as file:
         file.write("# another\n")
     assert outcomes() == [2, 4] and study.RUNS == [1, 2, 1, 2]
     with using(checkpoint=tmp_path / "other", workers=1), pytest.warns(MemoryWarning, match=r"mine\.outcome\.Outcome"):
-        run_tasks([study.Study(1)])
+        map_tasks(study.study, [1])
     with pytest.raises(ModuleNotFoundError, match=r"nowhere/a\.py: no part of this package, and no package nowhere"):
         keys.sources("nowhere/a.py")
     for name in [name for name in sys.modules if name.partition(".")[0] == "mine"]:
@@ -556,7 +555,7 @@ def test_a_scheduler_that_is_killed_is_an_error_of_one_line(scheduler, capfd, mo
 
 
 FROM_STANDARD_INPUT = """
-from granular_response.sweeps.tasks import map_tasks, run_tasks
+from granular_response.sweeps.tasks import map_tasks
 def square(x):
     return x * x
 if __name__ == "__main__":
