@@ -228,8 +228,7 @@ def plot(
     loaded()
 
     stored = read_result(result)
-    names = None if what is None else what.split(",")
-    typer.echo(str(pictures.save(stored, output, names, state=state, scale=scale, inputs=[result])))
+    typer.echo(str(pictures.save(stored, output, what, state=state, scale=scale, inputs=[result])))
 
 
 @commands.command("keys", "keys protocol", "keys --page docs/scene-reference.md")

@@ -19,6 +19,11 @@ class Certificate:
     disk. ``negative_modes``: unstable directions of the tangent with the recorded statuses (None: not determined).
     ``loose_disks``: disks with fewer than two contacts. ``unbalanced_part``: largest unbalanced force on a disk as a
     part of what it bears, its weight or its largest contact force (nan: not measured, in files from before).
+
+    Examples
+    --------
+    >>> result.certificate.stable, result.certificate.force_residual < 1e-9
+    (True, True)
     """
 
     force_residual: float
