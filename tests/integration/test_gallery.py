@@ -27,6 +27,7 @@ REDUCED = {
     "growing_load": {**SMALL, "FORCES": [0.5, 1.0, 1.5, 2.0]},
     "hysteresis": {**SMALL, "FORCE": 3.0},
     "own_packing": {"ROWS": 3, "COLUMNS": 6},
+    "poured": {"DISKS": 30, "WIDTH": 12.0},
     "periodic_slab": {"LAYERS": 3, "DISKS": 8},
     "stress_map": SMALL,
     "sweep": {"LAYERS": 3, "DISKS": 7, "REALIZATIONS": 2},

@@ -116,7 +116,8 @@ SIGNATURES = {
 }
 #: What a result has without being called.
 PROPERTIES = """
-certificate certificates contacts events floor_force_change floor_response load_factors loaded origin reaction rest scene
+certificate certificates contacts events floor_force_change floor_response load_factors loaded origin
+reaction rest scene
 """
 
 

@@ -90,7 +90,7 @@ def test_a_method_of_the_call(result):
     by_dynamics = gr.solve(SMALL, method="dynamics", load_factors=[0.5])
     assert by_dynamics.scene.protocol.method == "dynamics"
     np.testing.assert_allclose(by_dynamics.rest.position, result.rest.position, atol=1e-9)
-    with pytest.raises(gr.SceneError, match="method = 'dynamic': must be .*did you mean dynamics"):
+    with pytest.raises(gr.SceneError, match=r"method = 'dynamic': must be .*did you mean dynamics"):
         gr.solve(SMALL, method="dynamic")
 
 
@@ -105,7 +105,7 @@ def test_a_result_is_exported(result, tmp_path):
     path = result.export(tmp_path / "all.contacts.csv", state=0)
     assert path.read_text() == result.contacts_table(state=0).to_csv()
     assert len(result.export(tmp_path / "disks.csv").read_text().splitlines()) == 105
-    with pytest.raises(gr.ExportError, match="format '.abc' is unknown"):
+    with pytest.raises(gr.ExportError, match=r"format '.abc' is unknown"):
         result.export(tmp_path / "a.abc")
 
 

@@ -429,7 +429,7 @@ class Result:
                 rows.append((name, f"no certificate, {contacts}"))
                 continue
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[certificate.stable]
-            rows.append((name, f"{stable}, largest force left over {certificate.force_residual:.1e}, {contacts}"))
+            rows.append((name, f"{stable}, max. unbalanced force {certificate.force_residual:.1e}, {contacts}"))
         return rows
 
     def __repr__(self) -> str:
