@@ -494,7 +494,10 @@ def _shown(progress: Progress | bool) -> Iterator[Progress | None]:
 
 
 def _vouched(solution: Solution) -> Result:
-    """The result, with a warning for each remark on it."""
+    """The result; how it was reached goes into the log, and remarks on it are warnings."""
+    for stage, choice in (("gravity", solution.rest_choice), ("loads", solution.load_choice)):
+        if choice is not None:
+            compiling.LOG.info("%s by %s: %s", stage, choice.method, choice.reason)
     for remark in solution.remarks:
         warnings.warn(remark, stacklevel=3)
     return Result(solution)
