@@ -154,7 +154,7 @@ def test_a_law_from_elsewhere_does_not_trouble_other_processes(tmp_path):
     """Machine code for it is not kept: a process without its module could not read the list of what is."""
     small = {"packing": {"kind": "slab", "layers": 2, "disks_per_row": 5}, "contact": {"friction": 0.0}}
     plain = (
-        "from granular_response.scene import Scene; from granular_response.solvers import Problem;"
+        "from granular_response.scene import Scene; from granular_response.solvers.problem import Problem;"
         f"Problem.from_scene(Scene.from_dict({small})).bare_state()"
     )
     tests = str(Path(__file__).parents[1])

@@ -69,7 +69,7 @@ def test_contacts_as_a_table(result, tmp_path):
 
 def test_the_response_at_a_place(result):
     near = result.response_at(0.4)
-    assert near.dims == ("load",) and float(near["x"]) == pytest.approx(0.0, abs=1e-9)
+    assert near.dims == ("load",) and float(near["x"]) == pytest.approx(0.0, abs=1e-3)
     np.testing.assert_array_equal(near.values, result.floor_response.set_xindex("x").sel(x=0.4, method="nearest"))
     smooth = [float(result.response_at(x, smooth=3.0).sel(load=1.0)) for x in np.arange(-60.0, 60.0)]
     assert sum(smooth) == pytest.approx(1.0, abs=1e-6)
@@ -122,7 +122,7 @@ def test_a_scene_in_laboratory_units():
 
 def test_help_shows_keys_and_nothing_of_pydantic():
     shown = pydoc.plain(pydoc.render_doc(gr.Contact))
-    assert "normal_stiffness : 3000.0 [disk weight / mean radius]" in shown
+    assert "normal_stiffness : default 3000.0 [disk weight / mean radius]" in shown
     assert not {"model_dump", "validator", "Annotated"} & set(re.findall(r"\w+", shown)) and len(shown) < 4000
     assert "friction" in dir(gr.Contact()) and "model_dump" not in dir(gr.Contact())
     assert str(inspect.signature(gr.Contact)).startswith("(*, law='linear', normal_stiffness=3000.0")

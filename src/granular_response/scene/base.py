@@ -78,7 +78,7 @@ class Description(BaseModel, metaclass=_Public):
         for name, info in cls.model_fields.items():
             default = inspect.Parameter.empty if info.is_required() else info.get_default(call_default_factory=True)
             parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default))
-            shown = "must be given" if info.is_required() else repr(default)
+            shown = "must be given" if info.is_required() else f"default {default!r}"
             unit = f" [{UNITS[name]}]" if UNITS.get(name) else ""
             lines += [f"{name} : {shown}{unit}", textwrap.indent(textwrap.fill(info.description or "", 112), "    ")]
         cls.__signature__ = inspect.Signature(parameters)
