@@ -240,7 +240,7 @@ def test_a_result_is_continued_and_nothing_else(tmp_path):
         assert more["state_load_factor"].values.tolist() == [0.0, 1.0, 1.5, 3.0]
         assert more["load_factor"].values.tolist() == [1.0, 1.5, 3.0]
         np.testing.assert_array_equal(more["position"][:2], one["position"])
-        np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"])
+        np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"][0])
     finished = call("continue", "result.nc", "--to", "0.5", "--to", "0", "-o", "less.nc", folder=tmp_path)
     assert finished.returncode == 0 and "load factors 1, 0.5, 0" in finished.stdout
     finished = call("continue", "result.nc", "--to", "nan", "-o", "nan.nc", folder=tmp_path)

@@ -67,7 +67,7 @@ def test_the_torque_matters():
 
 
 def test_two_loads_are_mirror_images():
-    response = solved("two_loads.yaml")["floor_response"].values
+    response = solved("two_loads.yaml")["floor_response"].values[-1]
     np.testing.assert_allclose(response, response[::-1], atol=1e-7)
 
 
