@@ -8,10 +8,10 @@ all of them, and one is pushed.
 
 import granular_response as gr
 
-DISKS, WIDTH = 400, 45.0
+DISKS, WIDTH = 150, 26.0
 
 scene = gr.Scene(
-    packing=gr.Poured(disks=DISKS, width=WIDTH, sizes=[1.0, 1.4], polydispersity=0.1, seed=3),
+    packing=gr.Poured(disks=DISKS, width=WIDTH, sizes=[1.0, 1.4], polydispersity=0.1),
     contact=gr.Contact(friction=0.4),
     wall=gr.Wall(friction=0.4),
     loads=[gr.Load(disk="top-centre", force=(0.0, -2.0))],
