@@ -63,8 +63,9 @@ quote: setup ## Renew the lines that README and documents quote from stored resu
 	@"$(BIN)/dvc" commit --quiet --force report < /dev/null
 
 figure: setup ## Draw one figure group: make figure GROUP=pile_dip
-	@test -n "$(GROUP)" || { echo "make figure GROUP=name, one of:"; \
-	  "$(BIN)/dvc" stage list --name-only | sed -n 's/^draw@/  /p'; exit 1; } >&2
+	@test -n "$(GROUP)" || { echo "make figure GROUP=name, one of (seconds on two cores):"; \
+	  "$(BIN)/granular-response-paper" groups; exit 1; } >&2
+	@"$(BIN)/granular-response-paper" groups | grep -q "^$(GROUP) " || { echo "no group $(GROUP): make figure lists them" >&2; exit 1; }
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/dvc" repro draw@$(GROUP)
 
@@ -105,8 +106,8 @@ notebooks: setup ## Write a notebook for each figure group into notebooks/
 archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
 	"$(BIN)/granular-response-paper" archive
 
-restore: setup ## Take the datasets from an archive in place of computing them: make restore ARCHIVE=path
-	@test -n "$(ARCHIVE)" || { echo "make restore ARCHIVE=path" >&2; exit 1; }
+restore: setup ## Take the datasets from an archive in place of computing them: make restore ARCHIVE=path or address
+	@test -n "$(ARCHIVE)" || { echo "make restore ARCHIVE=path or address" >&2; exit 1; }
 	@test -e .git || "$(BIN)/dvc" config --local core.no_scm true
 	"$(BIN)/granular-response-paper" restore "$(ARCHIVE)"
 	"$(BIN)/dvc" commit simulate < /dev/null

@@ -22,8 +22,7 @@ scene = gr.Scene().updated(
 
 def two_peaks(result: gr.Result) -> bool:
     """Whether the response is largest beside the loaded disk."""
-    response = result.to_dataset()["floor_response"]
-    last = response.isel(load=-1) if "load" in response.dims else response
+    last = result.floor_response.isel(load=-1)
     return abs(float(last["x"][int(last.values.argmax())])) > 1.0
 
 

@@ -12,7 +12,6 @@ import xarray as xr
 from distributed import LocalCluster
 
 import granular_response as gr
-from granular_response.observe.floor import smoothed_response
 
 LAYERS, DISKS, REALIZATIONS, WORKERS = 6, 21, 12, 2
 
@@ -31,9 +30,8 @@ places = np.arange(-12.0, 12.5, 0.5)
 
 def smoothed(result: gr.Result) -> xr.DataArray:
     """The response over two radii: floor disks are at other places in each realization."""
-    response = result.floor_response
-    values = smoothed_response(places, response["x"].values, response.values, 2.0)
-    return xr.DataArray(values, {"x": places}, name="response")
+    at_places = [result.response_at(x, smooth=2.0).isel(load=-1) for x in places]
+    return xr.concat(at_places, "x").rename("response")
 
 
 if __name__ == "__main__":  # the processes of the cluster read this file, too

@@ -29,7 +29,7 @@ print(result)
 
 data = result.to_dataset()
 centre = abs(data["x"].values).argmin()
-added = (data["floor_force"] - data["floor_force_rest"]).isel(floor_disk=centre).values
+added = data["floor_force_change"].isel(floor_disk=centre).values
 
 figure, ax = plt.subplots(figsize=(5, 3.4), layout="constrained")
 force = FORCE * data["load_factor"].values

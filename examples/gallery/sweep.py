@@ -26,7 +26,7 @@ scene = gr.Scene().updated(
 
 def below_the_load(result: gr.Result) -> float:
     """The response within five radii of the load."""
-    response = result.floor_response
+    response = result.floor_response.isel(load=-1)
     return float(response.values[abs(response["x"].values) < 5.0].sum())
 
 

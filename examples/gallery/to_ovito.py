@@ -2,7 +2,7 @@
 Pictures in OVITO
 =================
 
-Stored results export to OVITO and ParaView. Here, what the file holds: one frame for each state, disks with radius,
+Results export to OVITO and ParaView. Here, what the file holds: one frame for each state, disks with radius,
 angle, coordination number and the change of the contact forces on them.
 """
 
@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 
 import granular_response as gr
-from granular_response.store.export import export
 
 LAYERS, DISKS = 10, 31
 
@@ -21,8 +20,7 @@ scene = gr.Scene().updated(
     {"packing.layers": LAYERS, "packing.disks_per_row": DISKS, "contact.friction": 1.0, "loads.0.force": [5.0, -10.0]}
 )
 result = gr.solve(scene)
-result.save(folder / "result.nc")
-path = export(folder / "result.nc", folder / "result.xyz")  # or .gsd, which keeps the contacts as bonds
+path = result.export(folder / "result.xyz")  # or .gsd, which keeps the contacts as bonds
 
 # %%
 # On the command line the same is ``granular-response export result.nc -o result.xyz``. The last frame begins so:

@@ -1,12 +1,13 @@
 """Quasi-static response of two-dimensional granular solids to a localized force.
 
-What stands in ``__all__`` is the public namespace: it keeps its names and meanings, and what they load is loaded on
-first use. Everything below it may change from version to version.
+``Scene`` says what is simulated: a packing (``Slab``, ``Pile``, ``Poured``, or disks of your own by
+``Scene.from_arrays``), ``Contact`` and ``Wall`` laws, ``Load`` and ``Protocol``. ``solve`` settles and loads it, and a
+``Result`` holds what came of it: states, certificates, events, floor response, contacts, stress. ``plot`` draws it,
+``open_result`` reads a stored one, ``sweep`` solves a scene with many values of its keys, ``find_event`` finds where
+something happens, ``theory`` has predictions to compare with. Everything that goes wrong is a ``GranularError``.
 
-``Scene`` says what is simulated, ``solve`` settles and loads it, and a ``Result`` holds what came of it: states,
-certificates, events, floor response, contacts, stress. ``plot`` draws results, ``open_result`` reads a stored one.
-``sweep`` solves a scene with many values of its keys, ``find_event`` finds where something happens. Everything that
-goes wrong is a ``GranularError``.
+What stands in ``__all__`` is the public namespace. It keeps its names and meanings, and is loaded on first use;
+everything below it may change from version to version.
 
 >>> import granular_response as gr
 >>> result = gr.solve(gr.Scene().updated({"contact.friction": 0.2}))
@@ -23,52 +24,100 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from . import plot as plot
+    from . import theory as theory
     from .api.event import find_event as find_event
+    from .api.event_table import Events as Events
     from .api.result import Result as Result
     from .api.result import open_result as open_result
     from .api.result import solve as solve
     from .api.sweep import sweep as sweep
     from .errors import GranularError as GranularError
     from .errors import SolveError as SolveError
+    from .machine.threads import using as threads  # noqa: F401
+    from .observe.events import Bracket as Bracket
+    from .observe.events import EventNotBracketed as EventNotBracketed
+    from .plot.pictures import PictureError as PictureError
+    from .scene import ArrayPacking as Arrays  # noqa: F401
+    from .scene import Contact as Contact
+    from .scene import FilePacking as File  # noqa: F401
+    from .scene import LaboratoryUnits as LaboratoryUnits
+    from .scene import Load as Load
+    from .scene import PilePacking as Pile  # noqa: F401
+    from .scene import PouredPacking as Poured  # noqa: F401
+    from .scene import Preparation as Preparation
+    from .scene import Protocol as Protocol
+    from .scene import RowSelector as Row  # noqa: F401
     from .scene import Scene as Scene
     from .scene import SceneError as SceneError
+    from .scene import SceneFileError as SceneFileError
+    from .scene import SlabPacking as Slab  # noqa: F401
+    from .scene import Wall as Wall
     from .solvers.laws import register_law as register_law
+    from .state import Certificate as Certificate
     from .state import Event as Event
+    from .state import State as State
+    from .store.export import ExportError as ExportError
     from .store.files import StoreError as StoreError
     from .store.result import ResultError as ResultError
     from .sweeps.errors import SweepError as SweepError
+    from .sweeps.tasks import map_tasks as map_tasks
 
-#: Where the public names are; those of "" are modules.
+#: Where the public names are: their module, with another name there after a colon; those of "" are modules.
 _HOME = {
+    "Arrays": "scene:ArrayPacking",
+    "Bracket": "observe.events",
+    "Certificate": "state",
+    "Contact": "scene",
     "Event": "state",
+    "EventNotBracketed": "observe.events",
+    "Events": "api.event_table",
+    "ExportError": "store.export",
+    "File": "scene:FilePacking",
     "GranularError": "errors",
+    "LaboratoryUnits": "scene",
+    "Load": "scene",
+    "PictureError": "plot.pictures",
+    "Pile": "scene:PilePacking",
+    "Poured": "scene:PouredPacking",
+    "Preparation": "scene",
+    "Protocol": "scene",
     "Result": "api.result",
     "ResultError": "store.result",
+    "Row": "scene:RowSelector",
     "Scene": "scene",
     "SceneError": "scene",
+    "SceneFileError": "scene",
+    "Slab": "scene:SlabPacking",
     "SolveError": "errors",
+    "State": "state",
     "StoreError": "store.files",
     "SweepError": "sweeps.errors",
+    "Wall": "scene",
     "find_event": "api.event",
+    "map_tasks": "sweeps.tasks",
     "open_result": "api.result",
     "plot": "",
     "register_law": "solvers.laws",
     "solve": "api.result",
     "sweep": "api.sweep",
+    "theory": "",
+    "threads": "machine.threads:using",
 }
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    home = _HOME[name]
-    value = getattr(import_module(f".{home}", __name__), name) if home else import_module(f".{name}", __name__)
+    home, _, own_name = _HOME[name].partition(":")
+    value = import_module(f".{home or name}", __name__)
+    if home:
+        value = getattr(value, own_name or name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOME})
+    return list(__all__)
 
 
 __all__ = ["__version__", *_HOME]

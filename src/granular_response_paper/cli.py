@@ -17,7 +17,15 @@ commands = CommandLine(
     "claims --list",
 )
 
-Group = Annotated[str, typer.Argument(help="Figure group.", show_default=False)]
+
+def _group_names() -> list[str]:
+    """For completion in a shell."""
+    from .groups import NAMES
+
+    return list(NAMES)
+
+
+Group = Annotated[str, typer.Argument(help="Figure group.", show_default=False, autocompletion=_group_names)]
 #: Folders and files that several commands take.
 LockFolder = Annotated[Path, typer.Option(help="Folder with dvc.lock.")]
 GroupData = Annotated[Path | None, typer.Option(help="Datasets of the group; data/GROUP.nc if not given.")]
@@ -140,10 +148,25 @@ def claims(
     for row in found["table"] if every else ():
         kind = f" [{row['interval_kind']}]" if row["interval_kind"] else ""
         typer.echo(f"{row['id']:4} {row['verdict']:22} {row['ours'] or '-'}{kind}")
+        typer.echo(f"{'':27} Paper, {row['place']}: {row['paper']}")
         typer.echo(f"{'':27} {row['reason']}")
         if row["robustness_reason"]:
             typer.echo(f"{'':27} Variants ({row['robustness']}): {row['robustness_reason']}")
     typer.echo(f"{output}: {stored.quoted(found)}")
+
+
+@commands.command("groups")
+def groups(root: Annotated[Path, typer.Option(help="Folder with figures/ and benchmarks/.")] = Path(".")) -> None:
+    """List the figure groups: figures of the paper, and the seconds that simulation and drawing took on two cores."""
+    from granular_response.inputs import read_json
+
+    runs = {run["group"]: run for run in read_json(root / "benchmarks" / "pipeline.json")["runs"]}
+    for name in _group_names():
+        captions = read_json(root / "figures" / name / "captions.json")
+        numbers = sorted({one["figure"] for one in captions.values() if one.get("figure")})
+        shown = f"Fig. {', '.join(map(str, numbers))}" if numbers else "beyond the paper"
+        seconds = sum(runs[name][f"{part}_seconds"] for part in ("simulate", "draw")) if name in runs else None
+        typer.echo(f"{name:28} {shown:26} {'-' if seconds is None else f'{seconds:.0f} s':>6}")
 
 
 @commands.command(
@@ -181,7 +204,10 @@ def report(
 
 @commands.command("notebooks", "notebooks pile_dip -o elsewhere")
 def notebooks(
-    groups: Annotated[list[str] | None, typer.Argument(help="Figure groups; all of them if none is given.")] = None,
+    groups: Annotated[
+        list[str] | None,
+        typer.Argument(help="Figure groups; all of them if none is given.", autocompletion=_group_names),
+    ] = None,
     params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
     reduced: Annotated[Path, typer.Option(help="Parameters that the notebooks begin with.")] = Path(
         "notebooks/reduced.yaml"
@@ -217,9 +243,11 @@ def archive(
     typer.echo(f"{output}: {len(names)} files, {output.stat().st_size / 1e6:.1f} MB")
 
 
-@commands.command("restore granular-response-0.1.0.zip")
+@commands.command("restore granular-response-0.1.0.zip", "restore https://example.org/granular-response-0.1.0.zip")
 def restore(
-    archive: Annotated[Path, typer.Argument(help="An archive of this project.", show_default=False)],
+    archive: Annotated[
+        str, typer.Argument(help="An archive of this project: a file, or its address.", show_default=False)
+    ],
     root: LockFolder = Path("."),
 ) -> None:
     """Take the datasets out of an archive, in place of computing them.
@@ -230,7 +258,8 @@ def restore(
 
     loaded()
 
-    restored = restoring.restore(archive, root)
+    with restoring.local(archive) as file:
+        restored = restoring.restore(file, root)
     for path in restored:
         typer.echo(str(root / path))
     typer.echo(f"{archive}: {len(restored)} datasets restored, those there already are the same")

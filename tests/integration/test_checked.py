@@ -44,15 +44,46 @@ def test_a_load_is_found_by_its_factor(path):
         assert plain["state_load_factor"].values.tolist() == [0.0, 0.5, 1.0, 2.0]
 
 
-def test_one_load_has_no_dimension(solution):
-    one = to_dataset(solve_scene(solution.scene, load_factors=[1.0]))
-    assert "load" not in one.dims and float(one["load_factor"]) == 1.0 and "load_factor" in one.coords
+@pytest.mark.parametrize("factors", [[], [1.0]], ids=["no load", "one load"])
+def test_load_is_a_dimension_for_any_number_of_loads(solution, factors):
+    scene = solution.scene if factors else solution.scene.updated({"loads": []})
+    data = to_dataset(solve_scene(scene, load_factors=factors or None))
+    for name in ("floor_force", "floor_force_change", "floor_response"):
+        assert data[name].dims == ("load", "floor_disk") and data.sizes["load"] == len(factors)
+    assert data["load_factor"].values.tolist() == factors
+    assert checked(data).identical(data)
+    # as versions before wrote it
+    before = data.drop_vars(["load", "load_factor", "step", "branch", "floor_force_change"])
+    if factors:
+        before = before.isel(load=0).assign_coords(load_factor=1.0)
+    else:
+        before = before.drop_dims("load").assign(
+            floor_force=before["floor_force_rest"],
+            floor_response=np.nan * before["floor_force_rest"],
+            total_force=np.nan,
+        )
+    again = checked(before)
+    for name in ("floor_force", "floor_force_change", "floor_response", "total_force", "load", "branch", "step"):
+        xr.testing.assert_equal(again[name], data[name])
 
 
 def test_factors_may_repeat():
     made = indexed(xr.Dataset({"a": ("load", [1, 2, 3])}, load_coordinates([0.5, 1.0, 0.5])))
     assert made["a"].sel(load=0.5).values.tolist() == [1, 3]
     assert made["a"].sel(step=3) == 3 and made["load_factor"].values.tolist() == [0.5, 1.0, 0.5]
+
+
+@pytest.mark.parametrize(
+    ("factors", "branches"),
+    [
+        ([1, 2, 1, 0, 1, 2, 3], "loading loading unloading unloading reloading reloading loading"),
+        ([1, 1, 0.5, 0.5], "loading loading unloading unloading"),
+        ([1, -1, -0.5, 1, 2], "loading loading unloading reloading loading"),
+        ([0, 1], "loading loading"),
+    ],
+)
+def test_each_load_has_its_branch(factors, branches):
+    assert load_coordinates(factors)["branch"].values.tolist() == branches.split()
 
 
 def test_codes_say_what_they_mean(path):

@@ -30,7 +30,7 @@ from granular_response.store import files as store
 from granular_response_paper import cli as paper
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ["run", "continue", "show", "plot", "keys", "export", "cite", "version"]
+COMMANDS = ["example", "run", "continue", "show", "plot", "keys", "export", "cite", "version"]
 PROGRAMS = {LIBRARY: "granular-response", PAPER: "granular-response-paper"}
 SCENE = """\
 packing: {kind: slab, layers: 3, disks_per_row: 5}
@@ -169,7 +169,12 @@ def test_stored_claims_are_listed_and_not_judged_anew():
     assert finished.returncode == 0 and table.read_bytes() == before
     rows = json.loads(table.read_text())["table"]
     assert re.match(r"A1   [a-z ]+ +\S", lines[0])
-    said = [text for row in rows for text in (row["ours"] or "-", row["reason"], row["robustness_reason"]) if text]
+    said = [
+        text
+        for row in rows
+        for text in (row["ours"] or "-", row["paper"], row["reason"], row["robustness_reason"])
+        if text
+    ]
     assert len(lines) == len(said) + 3 and all(text in line for text, line in zip(said, lines, strict=False))
     assert re.search(r"Of \d+ claims of the paper that were measured", lines[-3]) and "halved or doubled" in lines[-1]
 
@@ -235,7 +240,7 @@ def test_a_result_is_continued_and_nothing_else(tmp_path):
         assert more["state_load_factor"].values.tolist() == [0.0, 1.0, 1.5, 3.0]
         assert more["load_factor"].values.tolist() == [1.0, 1.5, 3.0]
         np.testing.assert_array_equal(more["position"][:2], one["position"])
-        np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"])
+        np.testing.assert_array_equal(more["floor_response"][0], one["floor_response"][0])
     finished = call("continue", "result.nc", "--to", "0.5", "--to", "0", "-o", "less.nc", folder=tmp_path)
     assert finished.returncode == 0 and "load factors 1, 0.5, 0" in finished.stdout
     finished = call("continue", "result.nc", "--to", "nan", "-o", "nan.nc", folder=tmp_path)

@@ -28,6 +28,7 @@ REDUCED = {
     "hysteresis": {**SMALL, "FORCE": 3.0},
     "overview": {**SMALL, "FORCES": [0.5, 2.0]},
     "own_packing": {"ROWS": 3, "COLUMNS": 6},
+    "poured": {"DISKS": 30, "WIDTH": 12.0},
     "periodic_slab": {"LAYERS": 3, "DISKS": 8},
     "photoelastic": {**SMALL, "FORCE": 5.0},
     "stress_map": SMALL,

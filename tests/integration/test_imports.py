@@ -69,20 +69,23 @@ for before in ("pass", "import granular_response; granular_response.solve"):
 
 #: Parameters of what is public, without their types.
 SIGNATURES = {
-    "find_event": "(scene, happened, low, high, *, where=None, key='load', tolerance=None, progress=True)",
-    "open_result": "(path, *, folder=None)",
-    "solve": "(scene, *, load_factors=None, progress=None)",
-    "sweep": (
-        "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None, checkpoint=None,"
-        " progress=True)"
-    ),
+    "Events.counts": "(self)",
+    "Events.of": "(self, *kinds)",
+    "Events.to_dataframe": "(self)",
+    "LaboratoryUnits.define": "(self, registry)",
+    "LaboratoryUnits.reduced_scene": "(self, scene)",
+    "LaboratoryUnits.to_laboratory": "(self, quantity, value)",
+    "LaboratoryUnits.to_reduced": "(self, quantity, value)",
+    "LaboratoryUnits.unit": "(self, quantity)",
     "Result.contacts_table": "(self, *, state=-1)",
-    "Result.continued": "(self, load_factors, *, progress=None)",
+    "Result.continued": "(self, load_factors, *, progress=True)",
+    "Result.export": "(self, path, *, state=None)",
     "Result.influence": "(self, *, state=-1, sliding='refuse')",
+    "Result.response_at": "(self, x=0.0, *, smooth=None)",
     "Result.save": "(self, path)",
     "Result.stress": "(self, x=None, z=None, *, state=-1, added=None, width=2.0)",
     "Result.to_dataset": "(self)",
-    "Scene.from_arrays": ("(x, z, radius, *, mass=None, width=None, origin=(0.0, 0.0), sides='walls', scene=None)"),
+    "Scene.from_arrays": "(x, z, radius, *, mass=None, width=None, origin=(0.0, 0.0), sides='walls', scene=None)",
     "Scene.from_dict": "(data, *, folder=None)",
     "Scene.from_text": "(text, *, folder=None)",
     "Scene.from_yaml": "(path)",
@@ -90,21 +93,35 @@ SIGNATURES = {
     "Scene.to_dict": "(self)",
     "Scene.to_yaml": "(self)",
     "Scene.updated": "(self, changes)",
+    "find_event": "(scene, happened, low, high, *, where=None, key='load', tolerance=None, progress=True)",
+    "map_tasks": (
+        "(function, items, *, workers=None, scheduler=None, progress=None, checkpoint=None, parts=(), what='tasks')"
+    ),
+    "open_result": "(path, *, folder=None)",
     "plot.animate": ("(results, *, output=None, half_width=None, fps=6.0, dpi=120.0, width=7.0, figure=None)"),
-    "plot.contacts": "(result, *, ax=None, state=-1)",
+    "plot.contacts": "(result, *, ax=None, state=-1, **lines)",
     "plot.floor": "(result, *, ax=None, state=-1, added=None, **line)",
-    "plot.forces": "(result, *, ax=None, state=-1, added=None, scale='sqrt', largest=None)",
-    "plot.packing": "(result, *, ax=None, state=-1, values=None, label='', colour_map='viridis')",
+    "plot.forces": "(result, *, ax=None, state=-1, added=None, scale='sqrt', vmax=None, **lines)",
+    "plot.packing": "(result, *, ax=None, state=-1, values=None, label='', cmap='viridis', **patches)",
     "plot.page": "(result, what=None, *, state=-1, scale='sqrt', figure=None)",
     "plot.photoelastic": (
         "(result, *, ax=None, state=-1, added=None, fringe=None, half_width=None, pixels=1200, **image)"
     ),
     "plot.response": "(result, *, ax=None, **line)",
-    "plot.stress": "(result, *, ax=None, state=-1, added=None, component='zz', width=2.0, largest=None)",
+    "plot.stress": (
+        "(result, *, ax=None, state=-1, added=None, component='zz', width=2.0, vmax=None, cmap='RdBu', **mesh)"
+    ),
+    "solve": "(scene, *, load_factors=None, method=None, progress=True)",
+    "sweep": (
+        "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"
+        " checkpoint=None, progress=True)"
+    ),
+    "threads": "(count)",
 }
 #: What a result has without being called.
 PROPERTIES = """
-certificate certificates contacts events floor_response load_factors loaded origin reaction rest scene
+certificate certificates contacts events floor_force_change floor_response load_factors loaded origin
+reaction rest scene
 """
 
 
@@ -120,7 +137,7 @@ def parameters(function) -> str:
 def test_public_signatures_stay():
     """One that changes breaks what others have written: it goes into CHANGELOG.md and into this list."""
     places = {name: getattr(gr, name) for name in gr.__all__ if inspect.isfunction(getattr(gr, name))}
-    for owner in ("Result", "Scene", "plot"):
+    for owner in ("Events", "LaboratoryUnits", "Result", "Scene", "plot"):
         found = getattr(gr, owner)
         names = found.__all__ if inspect.ismodule(found) else [n for n in vars(found) if not n.startswith("_")]
         places |= {f"{owner}.{name}": getattr(found, name) for name in names if callable(getattr(found, name))}

@@ -54,7 +54,7 @@ def test_a_sweep_is_one_dataset_on_common_axes():
 
 def test_the_floor_response_is_measured_where_nothing_is_named(tmp_path):
     found = gr.sweep(DISORDERED, {"packing.realization": range(3)}, workers=1, progress=False)
-    assert found["floor_response"].dims == ("realization", "floor_disk")
+    assert found["floor_response"].dims == ("realization", "load", "floor_disk")
     assert found["x"].dims == ("realization", "floor_disk")  # disks lie elsewhere in each
     assert "x" in found.coords
     one = gr.solve(DISORDERED.updated({"packing.realization": 2})).floor_response
@@ -162,11 +162,11 @@ def test_what_has_another_length_is_filled_up():
         return {"floor": result.floor_response, "plain": result.floor_response.values}
 
     found = gr.sweep(SCENE, {"packing.disks_per_row": [7, 9]}, responses, workers=1, progress=False)
-    assert found["floor"].sizes == {"disks_per_row": 2, "floor_disk": 9}
-    assert found["plain"].sizes == {"disks_per_row": 2, "plain_0": 9}
+    assert found["floor"].sizes == {"disks_per_row": 2, "load": 1, "floor_disk": 9}
+    assert found["plain"].sizes == {"disks_per_row": 2, "plain_0": 1, "plain_1": 9}
     for name in ("floor", "plain"):
-        assert np.isnan(found[name].values).sum(axis=1).tolist() == [2, 0]
-    assert "plain_0" not in found.coords
+        assert np.isnan(found[name].values).sum(axis=(1, 2)).tolist() == [2, 0]
+    assert "plain_1" not in found.coords
 
 
 def test_values_of_every_kind_are_coordinates():
@@ -279,7 +279,7 @@ def test_a_sweep_continues_from_its_checkpoint(tmp_path, monkeypatch):
     assert one["floor_response"][0] == two["floor_response"][0]
     monkeypatch.setattr(sweeping, "solve_scene", None)  # another measure takes what was solved
     whole = gr.sweep(SCENE, {"contact.friction": [0.0, 0.1]}, lambda result: result.to_dataset(), **kept)
-    np.testing.assert_array_equal(whole["floor_response"].max("floor_disk"), two["floor_response"])
+    np.testing.assert_array_equal(whole["floor_response"].max(["load", "floor_disk"]), two["floor_response"])
 
 
 def test_a_reason_is_kept_too(tmp_path, monkeypatch):
@@ -393,7 +393,7 @@ def test_floor_disks_that_differ_are_in_order_along_x():
         assert (np.diff(row[known]) > 0).all() and known[: known.sum()].all()
         one = gr.solve(DISORDERED.updated({**changes, "packing.realization": place})).floor_response
         np.testing.assert_array_equal(found["floor_disk_index"].values[place][known], one["floor_disk"])
-        np.testing.assert_array_equal(found["floor_response"].values[place][known], one)
+        np.testing.assert_array_equal(found["floor_response"].values[place][:, known], one)
 
 
 def test_a_sweep_has_the_attributes_that_all_results_share():

@@ -82,9 +82,14 @@ def paths_of(data: object, place: str = "") -> set[str]:
 
 def test_the_reference_has_every_key_of_every_kind_of_scene():
     known = {key.path for key in scene_reference.every()}
-    packings = ({"kind": "slab"}, {"kind": "pile"}, {"kind": "file", "path": "disks.csv", "width": 9.0})
+    packings = (
+        {"kind": "slab"},
+        {"kind": "pile"},
+        {"kind": "file", "path": "disks.csv", "width": 9.0},
+    )
     loads = [{"disk": {"row": "top"}, "force": [0.0, -1.0]}, {"disk": 3, "displacement": [None, -0.01]}]
     scenes = [Scene.from_dict({"packing": packing, "loads": loads}) for packing in packings]
+    scenes.append(Scene.from_dict({"packing": {"kind": "poured"}}))
     scenes.append(Scene.from_arrays([1.0], [1.0], 1.0))
     # written only where they are not the default
     sparse = {f"{part}.{name}" for part in ("contact", "wall") for name in Contact.sparse} - {"wall.parameters"}

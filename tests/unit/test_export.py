@@ -185,7 +185,7 @@ def test_a_series_has_no_single_state(result, tmp_path):
 
 
 def test_errors_are_one_line(result, tmp_path):
-    with pytest.raises(ExportError, match=r"format '\.pdf' is unknown, must be \.csv or .* or \.xyz$"):
+    with pytest.raises(ExportError, match=r"format '\.pdf' is unknown, must be \.contacts\.csv or .* or \.xyz$"):
         export(result, tmp_path / "result.pdf")
     with pytest.raises(ExportError, match=r"state = 2: must be from -2 to 1"):
         export(result, tmp_path / "result.vtu", state=2)

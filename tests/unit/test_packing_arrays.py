@@ -1,7 +1,5 @@
 """Packings from arrays: the same as from a file, stored with the scene, and the error for what cannot be."""
 
-import doctest
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -76,8 +74,3 @@ def test_mistakes_name_the_key_the_value_and_what_is_allowed(changes, message):
     with pytest.raises(gr.SceneError) as caught:
         gr.Scene.from_arrays(**{**PYRAMID, **changes})
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
-
-
-def test_the_example_of_the_docstring_runs():
-    (example,) = doctest.DocTestFinder(recurse=False).find(gr.Scene.from_arrays, "from_arrays", globs={"gr": gr})
-    assert doctest.DocTestRunner().run(example) == (0, 2)

@@ -226,7 +226,7 @@ def test_bad_input_is_named(result, ax):
         "state = 3: must be from -3 to 2": lambda: gr.plot.forces(result, ax=ax, state=3),
         "scale = 'log': must be one of linear, sqrt, percentile": lambda: gr.plot.forces(result, ax=ax, scale="log"),
         "component = 'yy'": lambda: gr.plot.stress(result, ax=ax, component="yy"),
-        "largest = 0": lambda: gr.plot.forces(result, ax=ax, largest=0),
+        "vmax = 0": lambda: gr.plot.forces(result, ax=ax, vmax=0),
         "holds no states": lambda: gr.plot.forces(result.to_dataset()[["radius"]], ax=ax),
     }.items():
         with pytest.raises(pictures.PictureError, match=message):

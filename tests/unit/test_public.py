@@ -1,5 +1,9 @@
 """The public namespace, with ``import granular_response as gr`` alone."""
 
+import inspect
+import pydoc
+import re
+
 import numba as nb
 import numpy as np
 import pytest
@@ -45,7 +49,7 @@ def test_contacts_as_a_table(result, tmp_path):
     state, data = result.loaded[-1], result.to_dataset()
     assert len(table) == state.pairs.touching.sum() + state.walls.touching.sum()
     assert list(table.columns) == ["first", "second", "wall", "x", "z", "status", "normal_force", "tangential_force"]
-    assert table.attrs["units"]["normal_force"] == "mean disk weight"
+    assert table.attrs["units"]["normal_force"] == "mean_weight"
     between = table[table.wall == ""]
     for disk in ("first", "second"):  # the point of contact lies within both disks, half the overlap from their rims
         centre, radius = state.position[between[disk]], data["radius"].values[between[disk]]
@@ -61,6 +65,68 @@ def test_contacts_as_a_table(result, tmp_path):
     assert (tmp_path / "contacts.csv").read_text().startswith("contact,first,second,wall,x,z,status,")
     with pytest.raises(IndexError, match="state = 3: must be from -3 to 2"):
         result.contacts_table(state=3)
+
+
+def test_the_response_at_a_place(result):
+    near = result.response_at(0.4)
+    assert near.dims == ("load",) and float(near["x"]) == pytest.approx(0.0, abs=1e-3)
+    np.testing.assert_array_equal(near.values, result.floor_response.set_xindex("x").sel(x=0.4, method="nearest"))
+    smooth = [float(result.response_at(x, smooth=3.0).sel(load=1.0)) for x in np.arange(-60.0, 60.0)]
+    assert sum(smooth) == pytest.approx(1.0, abs=1e-6)
+    for mistake in ({"x": np.nan}, {"smooth": 0.0}):
+        with pytest.raises(ValueError, match="must be"):
+            result.response_at(**mistake)
+
+
+def test_after_unloading_the_change_is_defined():
+    unloaded = gr.solve(SMALL, load_factors=[1.0, 0.0])
+    assert np.isnan(unloaded.floor_response.sel(load=0.0)).all()
+    assert np.abs(unloaded.floor_force_change.sel(load=0.0)).max() > 1e-3
+    labels = [text.get_text() for text in gr.plot.response(unloaded).get_legend().get_texts()]
+    assert labels == ["4 (loading)"]
+
+
+def test_a_method_of_the_call(result):
+    by_dynamics = gr.solve(SMALL, method="dynamics", load_factors=[0.5])
+    assert by_dynamics.scene.protocol.method == "dynamics"
+    np.testing.assert_allclose(by_dynamics.rest.position, result.rest.position, atol=1e-9)
+    with pytest.raises(gr.SceneError, match=r"method = 'dynamic': must be .*did you mean dynamics"):
+        gr.solve(SMALL, method="dynamic")
+
+
+def test_progress_is_called_or_left_out():
+    seen = []
+    gr.solve(SMALL, load_factors=[0.1], progress=lambda done, total, what: seen.append(what))
+    assert {"gravity", "load"} <= set(seen)
+    gr.solve(SMALL, load_factors=[0.1], progress=False)
+
+
+def test_a_result_is_exported(result, tmp_path):
+    path = result.export(tmp_path / "all.contacts.csv", state=0)
+    assert path.read_text() == result.contacts_table(state=0).to_csv()
+    assert len(result.export(tmp_path / "disks.csv").read_text().splitlines()) == 105
+    with pytest.raises(gr.ExportError, match=r"format '.abc' is unknown"):
+        result.export(tmp_path / "a.abc")
+
+
+def test_a_scene_in_laboratory_units():
+    units = gr.LaboratoryUnits(radius=0.01)
+    loads = [{"disk": "top-centre", "force": [0.0, -15.0 * units.unit("force")], "torque": 0.1 * units.unit("torque")}]
+    protocol = {"ramp_time": 20.0 * units.time, "time_step": "auto", "load_factors": [0.5, 1.0]}
+    scene = gr.Scene.from_dict(units.reduced_scene({"loads": loads, "protocol": protocol}))
+    assert scene.loads[0].force[1] == pytest.approx(-15.0) and scene.loads[0].torque == pytest.approx(0.1)
+    assert scene.protocol.ramp_time == pytest.approx(20.0) and scene.protocol.load_factors == (0.5, 1.0)
+    with pytest.raises(OSError, match="no such file"):
+        gr.Scene.from_yaml("nowhere.yaml")
+
+
+def test_help_shows_keys_and_nothing_of_pydantic():
+    shown = pydoc.plain(pydoc.render_doc(gr.Contact))
+    assert "normal_stiffness : default 3000.0 [disk weight / mean radius]" in shown
+    assert not {"model_dump", "validator", "Annotated"} & set(re.findall(r"\w+", shown)) and len(shown) < 4000
+    assert "friction" in dir(gr.Contact()) and "model_dump" not in dir(gr.Contact())
+    assert str(inspect.signature(gr.Contact)).startswith("(*, law='linear', normal_stiffness=3000.0")
+    assert "friction': 0.2" in repr(gr.Scene()) and set(dir(gr)) == set(gr.__all__)
 
 
 def test_stress_carries_the_load(result):

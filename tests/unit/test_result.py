@@ -1,5 +1,6 @@
 """Solutions as datasets and back."""
 
+import re
 from dataclasses import fields
 
 import numpy as np
@@ -51,8 +52,28 @@ def test_every_variable_says_what_it_is(solution):
     data = to_dataset(solution)
     assert len(data.variables) > 20
     for name, variable in data.variables.items():
-        assert variable.attrs.get("long_name"), name
-        assert variable.attrs.get("units"), name
+        assert len(variable.attrs["long_name"]) < 40 and variable.attrs["description"], name
+        coded = variable.dtype.kind not in "iuf" or "flag_values" in variable.attrs or name == "applied_load"
+        assert ("units" in variable.attrs) != coded, name
+    units = {name: data[name].attrs["units"] for name in ("x", "mass", "floor_force", "velocity", "floor_response")}
+    assert list(units.values()) == ["mean_radius", "mean_mass", "mean_weight", "mean_radius / reduced_time", "1"]
+
+
+def test_units_are_those_that_a_registry_learns(solution):
+    """As ``pint.UnitRegistry.define`` takes them; every unit of a result is made of them."""
+    defined = {}
+
+    class Registry:
+        def define(self, line):
+            name, value, unit = re.fullmatch(r"(\w+) = (\S+) (\w+)", line).groups()
+            defined[name] = (float(value), unit)
+
+    lab = granular_response.LaboratoryUnits()
+    lab.define(Registry())
+    assert defined["mean_weight"] == (pytest.approx(lab.mass * lab.gravity), "N")
+    assert defined["reduced_time"] == (lab.time, "s")
+    units = {variable.attrs.get("units", "1") for variable in to_dataset(solution).variables.values()}
+    assert set(re.findall(r"[a-z_]+", " ".join(units))) == {*defined, "radian"}
 
 
 def test_floor_response_of_each_load(solution):
@@ -62,6 +83,7 @@ def test_floor_response_of_each_load(solution):
     assert data.total_force.values == pytest.approx([0.5 * total, total])
     assert data.floor_response.sum("floor_disk").values == pytest.approx([3.0 / total] * 2, abs=1e-9)
     change = data.floor_force - data.floor_force_rest
+    np.testing.assert_array_equal(change, data.floor_force_change)
     assert np.allclose(change / data.total_force, data.floor_response, rtol=0, atol=1e-12)
     assert data.certificate_force_residual.values.max() < 1e-9
     assert data.attrs["stable"] == "yes" and data.attrs["settled"] == "yes"

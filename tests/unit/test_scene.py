@@ -198,7 +198,7 @@ def test_file_packing_belongs_to_the_folder_of_its_scene(tmp_path):
 def test_examples(path):
     scene = Scene.from_yaml(path)
     packing = scene.packing.build()
-    assert packing.n > 1 and (packing.left is None) == (scene.packing.kind == "file")
+    assert packing.n > 1 and (packing.left is None) == (scene.packing.kind in ("file", "poured"))
     assert Scene.from_text(scene.to_yaml(), folder=scene.folder) == scene
     for load in scene.loads:
         assert 0 <= resolve_disk(load.disk, packing, packing.position) < packing.n
@@ -206,5 +206,5 @@ def test_examples(path):
 
 def test_examples_show_every_kind_of_packing():
     scenes = {path.stem: Scene.from_yaml(path) for path in EXAMPLES.glob("*.yaml")}
-    assert {scene.packing.kind for scene in scenes.values()} == {"slab", "pile", "file"}
+    assert {scene.packing.kind for scene in scenes.values()} == {"slab", "pile", "poured", "file"}
     assert scenes["slab"] == Scene()

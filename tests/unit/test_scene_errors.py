@@ -6,6 +6,7 @@ from granular_response.scene import Contact, Load, Scene, SceneError, SlabPackin
 
 CONTACT_KEYS = "law, normal_stiffness, stiffness_ratio, friction, damping_ratio"
 SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol"
+KINDS = "slab or pile or poured or file or arrays"
 RATIO = "must be a number from 0 to 1e6"
 DISK = "must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"
 
@@ -61,10 +62,10 @@ MALFORMED = {
     "wall: {normal_stiffness: 0}": ("wall.normal_stiffness = 0: must be a number greater than 0, at most 1e12"),
     "contact: {friction: -1, damping_ratio: -1}": f"contact.friction = -1: {RATIO} (and 1 more mistake)",
     # Packings.
-    "packing: slab": "packing = 'slab': must be a mapping with the key kind (slab or pile or file or arrays)",
-    "packing: {layers: 3}": "packing = {'layers': 3}: key kind is missing, must be slab or pile or file or arrays",
-    "packing: {kind: slub}": "packing.kind = 'slub': must be slab or pile or file or arrays, did you mean slab?",
-    "packing: {kind: [slab]}": "packing.kind = ['slab']: must be slab or pile or file or arrays",
+    "packing: slab": f"packing = 'slab': must be a mapping with the key kind ({KINDS})",
+    "packing: {layers: 3}": f"packing = {{'layers': 3}}: key kind is missing, must be {KINDS}",
+    "packing: {kind: slub}": f"packing.kind = 'slub': must be {KINDS}, did you mean slab?",
+    "packing: {kind: [slab]}": f"packing.kind = ['slab']: must be {KINDS}",
     "packing: {kind: slab, layers: 0}": "packing.layers = 0: must be a whole number from 1 to 100000",
     "packing: {kind: slab, layers: 15.0}": "packing.layers = 15.0: must be a whole number from 1 to 100000",
     "packing: {kind: slab, disks_per_row: 1}": ("packing.disks_per_row = 1: must be a whole number from 2 to 100000"),

@@ -112,7 +112,7 @@ def distance_to_the_elastic_slab(sides: str, disks_per_row: int) -> float:
     stored = to_dataset(solve_scene(Scene().updated({"packing": packing, **changes})))
     width = stored.attrs["width"]
     inside = np.abs(stored["x"].values) < 0.5 * width - 1.5
-    x, response = stored["x"].values[inside], stored["floor_response"].values[inside]
+    x, response = stored["x"].values[inside], stored["floor_response"].values[-1, inside]
     moduli = lattice.moduli(Springs.uniform(1.0, 0.8), "free")
     elastic = response_of_layers(x, layers=15, moduli=moduli, floor="smooth", width=width)
     return float(np.abs(response - elastic).max() / elastic.max())

@@ -43,7 +43,7 @@ def find_event(
     Parameters
     ----------
     scene : a scene, nested mappings, or the path of a scene file.
-    happened : a kind of :class:`granular_response.state.Event`, such as ``"opens"``, for the first one on the path; or
+    happened : a kind of :class:`granular_response.Event`, such as ``"opens"``, for the first one on the path; or
         what is called with a :class:`Result` and says whether it has happened in its last state, such as
         ``lambda result: result.floor_response.max() > 0.2``.
     low, high : between these, and different at both: factors of the scene's loads, ``low`` above 0 (or 0 for a kind of
@@ -70,20 +70,22 @@ def find_event(
 
     Raises
     ------
-    granular_response.observe.events.EventNotBracketed
+    granular_response.EventNotBracketed
         If it says the same at both ends, or there is no such event between them.
     ValueError
         For an empty range, a tolerance or a smallest load that is not positive, a kind that there is not, and for
         ``where`` with a function of the result.
-    granular_response.scene.SceneError, granular_response.SolveError
+    granular_response.SceneError, granular_response.SolveError
         For a key or a value that is not allowed, for a scene without loads where these grow, for a kind of event where
         no path is followed, and where there is no equilibrium.
 
     Examples
     --------
-    >>> gr.find_event(scene, "opens", 0.0, 1.0).low  # load factor of the first contact that opens
-    >>> gr.find_event(scene, "slides", 0.0, 1.0, where=lambda event: event.at_wall)
-    >>> gr.find_event(scene, lambda result: result.floor_response.max() > 0.2, 0.1, 1.0, tolerance=1e-6)
+    >>> scene = gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9), loads=[gr.Load(disk="top-centre", force=(0, -2))])
+    >>> opening = gr.find_event(scene, "opens", 0.0, 1.0).low  # load factor of the first contact that opens
+    >>> more = gr.find_event(scene, lambda result: len(result.events) > 20, 0.01, 1.0, tolerance=1e-3)
+    >>> 0.0 < opening < 1.0, more.low < more.high
+    (True, True)
     """
     base = described(scene)
     kind = happened if isinstance(happened, str) else None
@@ -106,7 +108,7 @@ def find_event(
         if kind is not None and key == "load":
             if report:
                 report(0, 1, "event")
-            bracket = _first(solve(base, load_factors=[high]), kind, where, low)
+            bracket = _first(solve(base, load_factors=[high], progress=False), kind, where, low)
         elif kind is not None:
             search = _Search(base, lambda result: bool(_events(result, kind, where)), key, report)
             bracket = search.along(low, high, tolerance)
@@ -182,9 +184,12 @@ class _Search:
 
     def _at(self, value: float) -> Result:
         if self.key != "load":
-            return solve(self.base.updated({self.key: value}))
+            return solve(self.base.updated({self.key: value}), progress=False)
         below = [factor for factor in self.states if factor < value]
-        found = self.states[max(below)].continued([value]) if below else solve(self.base, load_factors=[value])
+        if below:
+            found = self.states[max(below)].continued([value], progress=False)
+        else:
+            found = solve(self.base, load_factors=[value], progress=False)
         self.states[value] = found
         return found
 

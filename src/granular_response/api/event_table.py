@@ -21,13 +21,14 @@ _SHOWN = 20
 class Events(Sequence[Event]):
     """Events in the order of the load path, and for each the index of the state that it leads to.
 
-    A sequence of :class:`granular_response.state.Event`: ``events[0]``, ``len(events)``, ``for event in events``. It is
+    A sequence of :class:`granular_response.Event`: ``events[0]``, ``len(events)``, ``for event in events``. It is
     empty where no path was followed.
 
-    >>> result = gr.solve(gr.Scene())
-    >>> result.events.of("opens")[0].load_factor
-    >>> result.events.lost
-    >>> result.events.to_dataframe().groupby(["state", "kind"]).size()
+    Examples
+    --------
+    >>> result.events.of("opens")[0].load_factor < 1.0
+    True
+    >>> counts = result.events.to_dataframe().groupby(["state", "kind"]).size()
     """
 
     def __init__(self, events: Iterable[Event] = (), states: Iterable[int] = ()) -> None:
@@ -50,7 +51,13 @@ class Events(Sequence[Event]):
         return len(self._events)
 
     def of(self, *kinds: str) -> Events:
-        """The events of these kinds. Raises ValueError for a kind that there is not."""
+        """The events of these kinds. Raises ValueError for a kind that there is not.
+
+        Examples
+        --------
+        >>> len(result.events.of("opens", "closes")) <= len(result.events)
+        True
+        """
         for kind in kinds:
             check_kind(kind)
         return self._where([event.kind in kinds for event in self._events])
@@ -61,12 +68,24 @@ class Events(Sequence[Event]):
         return self._where([event.lost for event in self._events])
 
     def counts(self) -> dict[str, int]:
-        """How many there are of each kind that there is."""
+        """How many there are of each kind that there is.
+
+        Examples
+        --------
+        >>> sum(result.events.counts().values()) == len(result.events)
+        True
+        """
         kinds = [event.kind for event in self._events]
         return {kind: kinds.count(kind) for kind in KINDS if kind in kinds}
 
     def to_dataframe(self) -> Any:
-        """A ``pandas.DataFrame``, a row for each event: its fields, after the index of the ``state`` it leads to."""
+        """A ``pandas.DataFrame``, a row for each event: its fields, after the index of the ``state`` it leads to.
+
+        Examples
+        --------
+        >>> result.events.to_dataframe().columns[:3].tolist()
+        ['state', 'load_factor', 'kind']
+        """
         columns = {"state": self.states}
         columns |= {field.name: tuple(getattr(event, field.name) for event in self._events) for field in fields(Event)}
         return xr.Dataset({name: ("event", list(values)) for name, values in columns.items()}).to_dataframe()

@@ -5,37 +5,48 @@ Units are the reduced ones (mean disk radius, mean disk mass, g), as everywhere 
 
 from __future__ import annotations
 
+import contextlib
 import html
 import os
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..observe.floor import origin_of
+from ..observe.floor import origin_of, smoothed_response
 from ..observe.stress import coarse_grained_stress, contact_forces, grid_points, load_forces
 from ..scene import Scene
 from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from ..scene.errors import show
+from ..scene.laboratory import FORCE, LENGTH
 from ..solvers.small_loads import influence
 from ..solvers.solution import Progress, Solution, continue_solution, solve_scene
 from ..state import Certificate, State
+from ..store import export as exporting
 from ..store import files
 from ..store.checked import read_result
+from ..store.contact_table import contact_table
 from ..store.result import scene_of, solution_from, state_from, to_dataset
 from . import compiling
-from .contact_table import contact_table
 from .event_table import Events
+from .terminal import TerminalProgress
 
 
 class Result:
     """The states of a scene, at rest and under load, and what is measured on them.
 
     Made by :func:`solve` and :func:`open_result`.
+
+    Examples
+    --------
+    >>> result = gr.solve(gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9)))
+    >>> len(result.rest.position), result.load_factors, result.certificate.stable
+    (34, (1.0,), True)
     """
 
     def __init__(
@@ -99,19 +110,68 @@ class Result:
 
     @property
     def floor_response(self) -> xr.DataArray:
-        """What the load adds to the vertical force on each floor disk, per total magnitude of the applied forces.
+        """What each load adds to the vertical force on each floor disk, per total magnitude of the applied forces.
 
-        Dimension ``floor_disk`` with ``x``, its place from the loaded disk in mean radii; before it one for the load
-        where there are several.
+        Dimensions ``load`` (with ``load_factor``, ``step`` and ``branch``) and ``floor_disk`` (with ``x``, its place
+        from the loaded disk in mean radii). NaN after unloading, where :attr:`floor_force_change` is defined.
+
+        Examples
+        --------
+        >>> result.floor_response.sel(load=1.0).plot(x="x")  # doctest: +ELLIPSIS
+        [<matplotlib...
+        >>> result.floor_response.set_xindex("x").sel(x=0.3, method="nearest").sizes
+        Frozen({'load': 1})
         """
         return self._data["floor_response"].copy()
+
+    @property
+    def floor_force_change(self) -> xr.DataArray:
+        """What each load adds to the vertical force on each floor disk, in mean disk weights; after unloading too.
+
+        Dimensions as of :attr:`floor_response`.
+
+        Examples
+        --------
+        >>> round(float(result.floor_force_change.sum()), 6)
+        15.0
+        """
+        return self._data["floor_force_change"].copy()
+
+    def response_at(self, x: float = 0.0, *, smooth: float | None = None) -> xr.DataArray:
+        """The floor response at the place ``x`` from the loaded disk, for each load.
+
+        Parameters
+        ----------
+        x : place in mean radii; the response is that of the nearest floor disk.
+        smooth : width in mean radii of a Gaussian average over floor disks (Sec. VI); then the stress per force at x,
+            per mean radius.
+
+        Raises
+        ------
+        ValueError
+            For a place that is not finite, and a width that is not positive.
+
+        Examples
+        --------
+        >>> result.response_at(0.0).sizes
+        Frozen({'load': 1})
+        """
+        (place,) = _places("x", [x])
+        data = self._data
+        if smooth is None:
+            found = data["floor_response"].isel(floor_disk=int(np.abs(data["x"].values - place).argmin()))
+            return found.copy()
+        smoothed = smoothed_response([place], data["x"].values, data["floor_response"].values, smooth)[:, 0]
+        labels = {"long_name": "smoothed floor response", "units": f"1 / {LENGTH}"}
+        along = {name: data[name] for name in ("load", "load_factor", "step", "branch")}
+        return xr.DataArray(smoothed, {**along, "x": place}, ("load",), "smoothed_response", labels)
 
     @property
     def reaction(self) -> xr.DataArray:
         """Force x, z, in mean disk weights, with which each load holds its disk at its displacement.
 
-        Dimensions ``load_point`` and ``axis`` ("x", "z"), before them one for the load where there are several; 0 along
-        directions that are free. Raises ValueError for a scene in which no load displaces a disk.
+        Dimensions ``load``, ``load_point`` and ``axis`` ("x", "z"); 0 along directions that are free. Raises ValueError
+        for a scene in which no load displaces a disk.
         """
         if "reaction" not in self._data:
             raise ValueError("reaction: there is none, no load of this scene has a displacement")
@@ -188,6 +248,12 @@ class Result:
         ValueError
             Unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
             state at rest.
+
+        Examples
+        --------
+        >>> stress = result.stress(z=[0.0, 2.0, 4.0]).sel(force="z", branch="z")
+        >>> stress.dims
+        ('z', 'x')
         """
         state = self._index(state)
         added = state > 0 if added is None else added
@@ -208,7 +274,11 @@ class Result:
             {"z": up, "x": across, "force": names, "branch": names},
             ("z", "x", "force", "branch"),
             "stress",
-            {"long_name": "stress that the load adds" if added else "stress", "units": "1", "gaussian_width": width},
+            {
+                "long_name": "stress that the load adds" if added else "stress",
+                "units": f"{FORCE} / {LENGTH}",
+                "gaussian_width": width,
+            },
         )
 
     def influence(self, *, state: int = -1, sliding: str = "refuse") -> xr.DataArray:
@@ -234,8 +304,14 @@ class Result:
             For a ``state`` that is no integer.
         ValueError
             For another ``sliding``.
-        granular_response.solvers.equilibrium.EquilibriumError
+        granular_response.SolveError
             For a state that is not stable, or has contacts at the Coulomb limit where these are refused.
+
+        Examples
+        --------
+        >>> response = result.influence(state=0, sliding="stick").sel(component="z")
+        >>> response.dims
+        ('floor_disk', 'disk')
         """
         state = self._index(state)
         solution = self._solution or solution_from(self._data, folder=self._folder)
@@ -249,8 +325,8 @@ class Result:
             {
                 "floor_disk": data["floor_disk"],
                 "x": ("floor_disk", data["x"].values, data["x"].attrs),
-                "disk_x": ("disk", across, {"units": "mean radii"}),
-                "disk_z": ("disk", chosen.position[:, 1], {"units": "mean radii"}),
+                "disk_x": ("disk", across, {"units": LENGTH}),
+                "disk_z": ("disk", chosen.position[:, 1], {"units": LENGTH}),
                 "component": ["x", "z", "torque"][: found.shape[2]],
             },
             ("floor_disk", "disk", "component"),
@@ -273,7 +349,13 @@ class Result:
         return origin_of(self.rest.position, data["floor_disk"].values, data["x"].values, self.rest.box)
 
     def to_dataset(self) -> xr.Dataset:
-        """Everything as one labelled dataset: what a stored file holds."""
+        """Everything as one labelled dataset: what a stored file holds.
+
+        Examples
+        --------
+        >>> result.to_dataset()["position"].dims
+        ('state', 'disk', 'axis')
+        """
         return self._data.copy(deep=True)
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -281,19 +363,52 @@ class Result:
 
         Raises
         ------
-        granular_response.store.files.StoreError
+        granular_response.StoreError
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> result.save("result.nc")
+        >>> gr.open_result("result.nc").load_factors
+        (1.0,)
         """
         files.write(path, self._data)
 
-    def continued(self, load_factors: Sequence[float], *, progress: Progress | None = None) -> Result:
+    def export(self, path: str | os.PathLike[str], *, state: int | None = None) -> Path:
+        """Write a file for another program; returns its path.
+
+        Parameters
+        ----------
+        path : its ending is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView, ``.data``
+            and ``.dump`` for LAMMPS, ``.txt`` for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
+        state : the only one to write, 0 at rest, -1 the last; if left out all, or the last in a file of one.
+
+        Raises
+        ------
+        granular_response.ExportError
+            For another ending, a state that does not exist, a missing library, or a place that cannot be written.
+
+        Examples
+        --------
+        >>> result.export("slab.contacts.csv").name
+        'slab.contacts.csv'
+        """
+        return exporting.export(self._data, path, state=state)
+
+    def continued(self, load_factors: Sequence[float], *, progress: Progress | bool = True) -> Result:
         """The result with states at further ``load_factors``, as if they had been asked for from the beginning.
 
-        Raises as :func:`solve` does, and ResultError where the table of disks has changed since.
+        ``progress`` is as of :func:`solve`. Raises as :func:`solve` does, and ResultError where the table of disks has
+        changed since.
+
+        Examples
+        --------
+        >>> result.continued([0.5]).load_factors
+        (1.0, 0.5)
         """
         solution = self._solution or solution_from(self._data, folder=self._folder)
-        with compiling.logged():
-            further = continue_solution(solution, load_factors, progress=progress)
+        with compiling.logged(), _shown(progress) as report:
+            further = continue_solution(solution, load_factors, progress=report)
         return _vouched(further)
 
     @property
@@ -315,7 +430,7 @@ class Result:
                 rows.append((name, f"no certificate, {contacts}"))
                 continue
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[certificate.stable]
-            rows.append((name, f"{stable}, largest force left over {certificate.force_residual:.1e}, {contacts}"))
+            rows.append((name, f"{stable}, max. unbalanced force {certificate.force_residual:.1e}, {contacts}"))
         return rows
 
     def __repr__(self) -> str:
@@ -335,7 +450,8 @@ def solve(
     scene: Scene | Mapping[str, Any] | str | os.PathLike[str],
     *,
     load_factors: Sequence[float] | None = None,
-    progress: Progress | None = None,
+    method: str | None = None,
+    progress: Progress | bool = True,
 ) -> Result:
     """Settle a scene under gravity, then take it through its load programme.
 
@@ -343,25 +459,46 @@ def solve(
     ----------
     scene : a scene, nested mappings with its keys, or the path of a scene file.
     load_factors : multipliers of the scene's loads, in turn, growing or falling; ``protocol.load_factors`` if None.
-    progress : called with the part done of a stage, 1 and the stage's name.
+    method : "auto", "dynamics", "path" or "minimise" in place of ``protocol.method``.
+    progress : a bar on the terminal, or a line in a notebook, after two seconds; False for none, or a function that is
+        called as ``progress(done, total, stage)``.
 
     Raises
     ------
-    granular_response.scene.SceneError
+    granular_response.SceneError
         For a scene that is not allowed.
     granular_response.SolveError
-        For one that has no such states, each with one line that says what to change.
+        For one that has no such states, with one line that says what to change.
 
     Warns (UserWarning) of states that are still moving where no static finish is asked for, of a load so small that
     rounding is seen in its response, and of settings for another method, which have no effect.
+
+    Examples
+    --------
+    >>> result = gr.solve(gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9)), load_factors=[0.1, 0.2])
+    >>> result.certificate.stable
+    True
     """
-    with compiling.logged():
-        solution = solve_scene(described(scene), load_factors=load_factors, progress=progress)
+    asked = described(scene)
+    if method is not None:
+        asked = asked.updated({"protocol.method": method})
+    with compiling.logged(), _shown(progress) as report:
+        solution = solve_scene(asked, load_factors=load_factors, progress=report)
     return _vouched(solution)
 
 
+@contextlib.contextmanager
+def _shown(progress: Progress | bool) -> Iterator[Progress | None]:
+    """What is called with the progress: a bar, a function of the user's, or nothing."""
+    with TerminalProgress() if progress is True else contextlib.nullcontext(progress or None) as report:
+        yield report
+
+
 def _vouched(solution: Solution) -> Result:
-    """The result, with a warning for each remark on it."""
+    """The result; how it was reached goes into the log, and remarks on it are warnings."""
+    for stage, choice in (("gravity", solution.rest_choice), ("loads", solution.load_choice)):
+        if choice is not None:
+            compiling.LOG.info("%s by %s: %s", stage, choice.method, choice.reason)
     for remark in solution.remarks:
         warnings.warn(remark, stacklevel=3)
     return Result(solution)
@@ -393,9 +530,15 @@ def open_result(path: str | os.PathLike[str], *, folder: str | os.PathLike[str] 
 
     Raises
     ------
-    granular_response.store.files.StoreError
+    granular_response.StoreError
         If the file cannot be read.
-    granular_response.store.result.ResultError
+    granular_response.ResultError
         If it holds something else than a whole result.
+
+    Examples
+    --------
+    >>> result.save("result.nc")
+    >>> gr.open_result("result.nc").scene == result.scene
+    True
     """
     return Result(dataset=read_result(path), folder=folder)

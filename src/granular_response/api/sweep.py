@@ -82,12 +82,19 @@ def sweep(
 
     Raises
     ------
-    granular_response.scene.SceneError
+    granular_response.SceneError
         For a key, a value or load factors that are not allowed, before anything is solved.
     ValueError
         For axes that are no mapping, and for an axis that is no list of values, is empty or has a value twice.
-    granular_response.sweeps.errors.SweepError
+    granular_response.SweepError
         If ``measure`` raises or returns something else, if no combination has an equilibrium, or if workers fail.
+
+    Examples
+    --------
+    >>> small = gr.Scene(packing=gr.Slab(layers=3, disks_per_row=7), loads=[gr.Load(disk="top-centre", force=(0, -1))])
+    >>> found = gr.sweep(small, {"contact.friction": [0.0, 0.2]}, workers=1)
+    >>> found["floor_response"].dims
+    ('friction', 'load', 'floor_disk')
     """
     base = described(scene)
     values = _values(axes)

@@ -61,6 +61,36 @@ Threads = Annotated[
 ]
 
 
+def _example_names() -> list[str]:
+    """Examples by name, for completion in a shell too."""
+    return sorted(path.stem for path in _examples_folder().glob("*.yaml"))
+
+
+def _examples_folder() -> Path:
+    """In the package when it is installed, else beside the sources."""
+    inside = Path(__file__).parents[1] / "examples"
+    return inside if inside.exists() else Path(__file__).parents[3] / "examples"
+
+
+@commands.command("example slab > slab.yaml", "example")
+def example(
+    name: Annotated[
+        str | None,
+        typer.Argument(help="Of the scene; all names if left out.", show_default=False, autocompletion=_example_names),
+    ] = None,
+) -> None:
+    """Print a scene to start from."""
+    names = _example_names()
+    if name is None:
+        typer.echo("\n".join(names))
+    elif name in names:
+        typer.echo((_examples_folder() / f"{name}.yaml").read_text(encoding="utf-8"), nl=False)
+    else:
+        from ..scene import SceneError
+
+        raise SceneError(f"{name}: no such example, must be {' or '.join(names)}")
+
+
 def _keep(output: Path, solution: Solution, started: float, allow_unsettled: bool, said: str) -> None:
     """Store a solution. States that are still moving are kept too, but no success unless they were asked for."""
     import time
@@ -228,8 +258,7 @@ def plot(
     loaded()
 
     stored = read_result(result)
-    names = None if what is None else what.split(",")
-    typer.echo(str(pictures.save(stored, output, names, state=state, scale=scale, inputs=[result])))
+    typer.echo(str(pictures.save(stored, output, what, state=state, scale=scale, inputs=[result])))
 
 
 @commands.command("keys", "keys protocol", "keys --page docs/scene-reference.md")

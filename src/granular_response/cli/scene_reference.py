@@ -11,37 +11,13 @@ from typing import Any, get_args
 
 from .. import scene
 from ..scene import text as yaml_text
-from ..scene.base import Description
+from ..scene.base import UNITS, Description
 from ..scene.lattice import LatticePacking
 from ..scene.material import LAW_PARAMETERS
 from ..store import generated
 
 #: Name of the generated lines.
 BLOCK = "keys"
-#: Units of all keys that hold a number with a decimal point; the empty one is that of a plain number.
-UNITS = {
-    "polydispersity": "",
-    "lattice_constant": "mean radius",
-    "x": "length",
-    "z": "that of x",
-    "radius": "that of x",
-    "mass": "any",
-    "width": "that of x, z and radius",
-    "origin": "that of x, z and radius",
-    "normal_stiffness": "disk weight / mean radius",
-    "stiffness_ratio": "",
-    "friction": "",
-    "damping_ratio": "",
-    "rolling_friction": "",
-    "rolling_stiffness_ratio": "",
-    "force": "disk weight",
-    "displacement": "mean radius",
-    "torque": "disk weight × mean radius",
-    "time_step": "sqrt(R/g)",
-    "ramp_time": "sqrt(R/g)",
-    "load_factors": "",
-    "stop_kinetic_energy": "disk weight × mean radius",
-}
 #: No key accepts this.
 _WRONG: Any = [[]]
 
@@ -113,6 +89,7 @@ SECTIONS = (
     Section("Slab", "packing", scene.SlabPacking, left_out=_BOTH),
     Section("Pile", "packing", scene.PilePacking, left_out=_BOTH),
     Section("Slab or pile", "packing", scene.SlabPacking, left_out=frozenset(scene.SlabPacking.model_fields) - _BOTH),
+    Section("Poured disks", "packing", scene.PouredPacking),
     Section("Packing from a file", "packing", scene.FilePacking, {"kind": "file", "path": "disks.csv", "width": 1.0}),
     Section(
         "Packing from arrays",

@@ -32,7 +32,13 @@ Result = TypeVar("Result")
 
 @contextlib.contextmanager
 def using(count: int) -> Iterator[None]:
-    """Take ``count`` threads in this block; raises ValueError for less than one."""
+    """Take ``count`` threads in this block; raises ValueError for less than one.
+
+    Examples
+    --------
+    >>> with gr.threads(2):
+    ...     result = gr.solve(gr.Scene(packing=gr.Slab(layers=4, disks_per_row=9)))
+    """
     if count < 1:
         raise ValueError(f"threads = {count}: must be 1 or more")
     token = _COUNT.set(count)

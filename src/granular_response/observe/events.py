@@ -15,7 +15,13 @@ class EventNotBracketed(GranularError, ValueError):
 
 @dataclass(frozen=True)
 class Bracket:
-    """Two parameter values between which a predicate changes; the same one twice where it is known exactly."""
+    """Two parameter values between which a predicate changes; the same one twice where it is known exactly.
+
+    Examples
+    --------
+    >>> gr.Bracket(low=0.2, high=0.4, at_low=False, evaluations=5).width
+    0.2
+    """
 
     low: float
     high: float

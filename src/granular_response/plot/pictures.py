@@ -125,6 +125,10 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     """The floor response against the place from the loaded disk, a curve for each load (Fig. 7).
 
     ``line`` goes to ``Axes.plot``. Raises PictureError for a result without forces to respond to; see :func:`floor`.
+
+    Examples
+    --------
+    >>> gr.plot.response(result).figure.savefig("response.png")
     """
     shown = Shown.of(result)
     values = np.atleast_2d(shown.data["floor_response"].values)
@@ -135,15 +139,26 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     with style.context():
         axes = _axes(ax, 0.36)
         forces = np.atleast_1d(shown.data["total_force"].values)
+        branch = _branches(shown)
         for k, (curve, force) in enumerate(zip(values, forces, strict=True)):
+            if np.isnan(curve).all():  # unloaded: floor draws what is left
+                continue
             colour = style.ordered_colours(len(values))[k]
-            look = {**style.marked_line(k, colour=colour), "markersize": 2.6, "label": f"{force:g}", **line}
+            label = f"{force:g}{branch[k]}"
+            look = {**style.marked_line(k, colour=colour), "markersize": 2.6, "label": label, **line}
             axes.plot(shown.data["x"].values, curve, **look)
         axes.axhline(0.0, color=style.FAINT, linewidth=0.5, linestyle="-", zorder=0)
         axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
         axes.margins(x=0.02)
         axes.legend(title=style.FORCE)
     return axes
+
+
+def _branches(shown: Shown) -> list[str]:
+    """What a legend adds to each load: its branch, where not all are on the first."""
+    branch = shown.data["branch"].values.tolist() if "branch" in shown.data.variables else []
+    told = any(one != "loading" for one in branch)
+    return [f" ({one})" if told else "" for one in branch] or [""] * shown.data["floor_response"].size
 
 
 def floor(
@@ -162,6 +177,10 @@ def floor(
     ----------
     added : draw what the load adds rather than the whole; by default so but at rest.
     line : goes to ``Axes.plot``.
+
+    Examples
+    --------
+    >>> gr.plot.floor(result).figure.savefig("floor.png")
     """
     shown = Shown.of(result, state)
     added = shown.index > 0 if added is None else added
@@ -184,7 +203,8 @@ def forces(
     state: int = -1,
     added: bool | None = None,
     scale: Scale = "sqrt",
-    largest: float | None = None,
+    vmax: float | None = None,
+    **lines: Any,
 ) -> Axes:
     """Force chains: each contact force is a line along it, as long and as wide as it is large (Figs. 2, 13).
 
@@ -194,15 +214,20 @@ def forces(
         it presses the disks together, red where it takes compression away. By default so but at rest.
     scale : of lengths and widths: linear in the force as in the paper, by its square root, which shows the
         chains of a point load beyond its first rows, or by the percentile of the force among all.
-    largest : magnitude that has full length, in mean disk weights; by default that of the largest force. Give several
+    vmax : magnitude that has full length, in mean disk weights; by default that of the largest force. Give several
         pictures the same one to compare them (not for percentiles).
+    lines : go to ``LineCollection``, such as ``color="tab:blue"`` or ``alpha``.
+
+    Examples
+    --------
+    >>> gr.plot.forces(result, scale="linear").figure.savefig("forces.png")
     """
     shown = Shown.of(result, state)
     added = shown.index > 0 if added is None else added
     if scale not in network.SCALES:
         raise PictureError(f"scale = {scale!r}: must be one of {', '.join(network.SCALES)}")
-    if largest is not None and not largest > 0.0:
-        raise PictureError(f"largest = {largest}: must be positive")
+    if vmax is not None and not vmax > 0.0:
+        raise PictureError(f"vmax = {vmax}: must be positive")
     pair, wall = shown.forces(added)
     normal = shown.box.separation(*(shown.position[disks] for disks in shown.pairs))
     inward = wall_normals(shown.values("wall_index"))
@@ -214,7 +239,7 @@ def forces(
     )
     force, direction = np.concatenate([pair, wall]), np.concatenate([normal, inward])
     pushes = np.sum(force * direction, axis=1) >= 0.0
-    reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if largest is None else largest
+    reference = float(np.linalg.norm(force, axis=1).max(initial=0.0)) if vmax is None else vmax
     drawn = network.rescaled(force, scale, largest=reference)
     with style.context():
         axes = _axes(ax, _aspect(shown))
@@ -225,11 +250,10 @@ def forces(
         factors = {"length_per_force": 4.0 * crowded, "width_per_force": widest}
         kinds = {"presses more": (pushes, style.BLACK, 3), "presses less": (~pushes, style.VERMILION, 4)}
         for mask, colour, order in kinds.values():
-            network.draw_force_chains(
-                axes, point[mask], drawn[mask], smallest=0.02, color=colour, zorder=order, **factors
-            )
+            look = {"color": colour, "zorder": order, **factors, **lines}
+            network.draw_force_chains(axes, point[mask], drawn[mask], smallest=0.02, **look)
         handles = [
-            Line2D([], [], color=colour, linewidth=1.6, label=name)
+            Line2D([], [], color=lines.get("color", colour), linewidth=1.6, label=name)
             for name, (mask, colour, _) in kinds.items()
             if added and (np.linalg.norm(drawn[mask], axis=1) > 0.02).any()
         ]
@@ -243,8 +267,15 @@ def forces(
     return axes
 
 
-def contacts(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: int = -1) -> Axes:
-    """What a load changes in the contact network: opened, closed and sliding contacts (Figs. 4, 8, 9)."""
+def contacts(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: int = -1, **lines: Any) -> Axes:
+    """What a load changes in the contact network: opened, closed and sliding contacts (Figs. 4, 8, 9).
+
+    ``lines`` go to ``LineCollection``.
+
+    Examples
+    --------
+    >>> gr.plot.contacts(result).figure.savefig("contacts.png")
+    """
     shown = Shown.of(result, state)
     before, now = shown.values("contact_status", 0), shown.values("contact_status")
     with style.context():
@@ -258,6 +289,7 @@ def contacts(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, state: 
             touching=now != OPEN,
             sliding=now == SLIDING,
             box=shown.box,
+            **lines,
         )
         _legend(axes, list(drawn.values())[::-1], shown)
     return axes
@@ -271,7 +303,9 @@ def stress(
     added: bool | None = None,
     component: Literal["xx", "xz", "zx", "zz"] = "zz",
     width: float = 2.0,
-    largest: float | None = None,
+    vmax: float | None = None,
+    cmap: str = style.SIGNED,
+    **mesh: Any,
 ) -> Axes:
     """A component of the coarse-grained stress, by default the part that the load adds (Fig. 14).
 
@@ -283,14 +317,20 @@ def stress(
     added : draw what the load adds rather than the whole; by default so but at rest.
     component : indices of the tensor, the force's first.
     width : of the Gaussian in mean radii (Sec. V.C).
-    largest : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.
+    vmax : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.
+    cmap : colour map of matplotlib; zero is in its middle.
+    mesh : goes to ``Axes.pcolormesh``.
+
+    Examples
+    --------
+    >>> gr.plot.stress(result, vmax=2.0).figure.savefig("stress.png")
     """
     shown = Shown.of(result, state)
     added = shown.index > 0 if added is None else added
     if component not in ("xx", "xz", "zx", "zz"):
         raise PictureError(f"component = {component!r}: must be one of xx, xz, zx, zz")
-    if largest is not None and not (np.isfinite(largest) and largest > 0.0):
-        raise PictureError(f"largest = {largest}: must be a number greater than 0")
+    if vmax is not None and not (np.isfinite(vmax) and vmax > 0.0):
+        raise PictureError(f"vmax = {vmax}: must be a number greater than 0")
     first, second = shown.pairs
     at_wall, wall = shown.position[shown.values("wall_disk")], shown.values("wall_index")
     separation = shown.box.separation(shown.position[first], shown.position[second])
@@ -306,11 +346,11 @@ def stress(
     z = np.linspace(0.0, shown.top, round(shown.top / step) + 1)
     tensor = coarse_grained_stress(carried, grid_points(x + shown.origin, z), width)
     field = tensor[..., "xz".index(component[0]), "xz".index(component[1])]
-    end = float(np.abs(field).max()) if largest is None else largest
+    end = float(np.abs(field).max()) if vmax is None else vmax
     with style.context():
         axes = _axes(ax, _aspect(shown))
         norm = root_norm(end if end > 0.0 else 1.0, signed=True)
-        image = draw_field(axes, x, z, field, norm=norm, cmap=style.SIGNED)
+        image = draw_field(axes, x, z, field, norm=norm, cmap=cmap, **mesh)
         near: dict[str, Any] = {"color": style.MUTED, "linewidth": 0.5, "linestyle": ":"}
         axes.axhline(width, **near)
         for side in () if shown.box.periodic else (width, shown.box.width - width):
@@ -335,18 +375,24 @@ def packing(
     state: int = -1,
     values: ArrayLike | None = None,
     label: str = "",
-    colour_map: str = style.SEQUENTIAL,
+    cmap: str = style.SEQUENTIAL,
+    **patches: Any,
 ) -> Axes:
     """The disks with their contacts, the box and the loads.
 
-    ``values`` (n,) fill the disks with colours; ``label`` names them at the colour bar.
+    ``values`` (n,) fill the disks with colours of ``cmap``; ``label`` names them at the colour bar. ``patches`` go to
+    the ``PatchCollection`` of the disks.
+
+    Examples
+    --------
+    >>> gr.plot.packing(result, values=result.rest.angle, cmap="viridis").figure.savefig("packing.png")
     """
     shown = Shown.of(result, state)
     touching = shown.values("contact_status") != OPEN
     with style.context():
         axes = _axes(ax, _aspect(shown))
         if values is None:
-            _packing(axes, shown, edgecolor=style.MUTED, facecolor="#EDF2F6")
+            _packing(axes, shown, **{"edgecolor": style.MUTED, "facecolor": "#EDF2F6", **patches})
             network.draw_rotations(
                 axes, shown.position, shown.radius, shown.values("angle"), color=style.SKY, linewidth=0.5
             )
@@ -354,7 +400,8 @@ def packing(
             number = np.asarray(values, dtype=float)
             if number.shape != shown.radius.shape:
                 raise PictureError(f"values: must have shape {shown.radius.shape}, a disk each, not {number.shape}")
-            disks = _packing(axes, shown, values=number, cmap=colour_map, edgecolor=style.MUTED)
+            look = {"cmap": cmap, "edgecolor": style.MUTED, **patches}
+            disks = _packing(axes, shown, values=number, **look)
             axes.figure.colorbar(disks, ax=axes, shrink=0.9, aspect=14, pad=0.02).set_label(label)
         network.draw_contacts(
             axes, shown.position, *(disks[touching] for disks in shown.pairs), box=shown.box, linewidth=0.5, zorder=3
@@ -377,19 +424,26 @@ _GRAPHS = ("response", "floor")
 
 def page(
     result: HasDataset | xr.Dataset,
-    what: Sequence[str] | None = None,
+    what: str | Sequence[str] | None = None,
     *,
     state: int = -1,
     scale: Scale = "sqrt",
     figure: Figure | None = None,
 ) -> Figure:
-    """One figure with a picture for each of ``what``, in this order: names of the functions of this module.
+    """One figure with a picture for each of ``what``, in this order.
+
+    ``what`` are names of the functions of this module, as a list or as text with commas.
 
     By default ``response``, ``forces``, ``contacts`` and ``stress``, with ``floor`` where there is no response.
     ``scale`` is that of :func:`forces`; ``figure`` is drawn into, or a new one of pyplot's.
 
     Raises PictureError for another name, and what the pictures raise.
+
+    Examples
+    --------
+    >>> gr.plot.page(result, "response,forces").savefig("page.png")
     """
+    what = [name.strip() for name in what.split(",")] if isinstance(what, str) else what
     for name in what or ():
         if name not in PICTURES:
             raise PictureError(f"what = {name!r}: must be among {', '.join(PICTURES)}")
@@ -424,7 +478,7 @@ def page(
 def save(
     result: HasDataset | xr.Dataset,
     output: str | os.PathLike[str],
-    what: Sequence[str] | None = None,
+    what: str | Sequence[str] | None = None,
     *,
     state: int = -1,
     scale: Any = "sqrt",

@@ -6,12 +6,13 @@ Whatever is wrong with a scene is a ``SceneError``: one line with the key, the v
 """
 
 from .arrays import ArrayPacking
-from .errors import SceneError
+from .errors import SceneError, SceneFileError
 from .laboratory import LaboratoryUnits
 from .lattice import PilePacking, SlabPacking
 from .load import Load, RowSelector, resolve_disk
 from .material import Contact, Wall
 from .packing import Packing
+from .poured import PouredPacking
 from .protocol import Preparation, Protocol
 from .scene import Scene
 from .table import FilePacking
@@ -24,11 +25,13 @@ __all__ = [
     "Load",
     "Packing",
     "PilePacking",
+    "PouredPacking",
     "Preparation",
     "Protocol",
     "RowSelector",
     "Scene",
     "SceneError",
+    "SceneFileError",
     "SlabPacking",
     "Wall",
     "resolve_disk",

@@ -28,6 +28,11 @@ class ArrayPacking(Description):
 
     Lengths are in any one unit, masses too. Every centre lies above the floor and between the side walls; periodic
     sides take any x. Lengths, the width too, are rescaled to a mean radius of 1, masses to a mean of 1.
+
+    Examples
+    --------
+    >>> gr.Arrays(x=[1.0, 3.0], z=[1.0, 1.0], radius=[1.0, 1.0], width=8.0).build()
+    Packing(2 disks, radii from 1 to 1, box 8 wide)
     """
 
     kind: Literal["arrays"] = Field(default="arrays", description="Disks given as numbers.")

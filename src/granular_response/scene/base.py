@@ -2,18 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+import inspect
+import textwrap
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
 
 from .errors import Problem, from_validation, suggestion
 
-PACKING_KINDS = ("slab", "pile", "file", "arrays")
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
+PACKING_KINDS = ("slab", "pile", "poured", "file", "arrays")
+#: Units of all keys that hold a number with a decimal point; the empty one is that of a plain number.
+UNITS = {
+    "polydispersity": "",
+    "sizes": "any",
+    "fractions": "",
+    "lattice_constant": "mean radius",
+    "x": "length",
+    "z": "that of x",
+    "radius": "that of x",
+    "mass": "any",
+    "width": "that of x, z and radius; mean radius for poured disks",
+    "origin": "that of x, z and radius",
+    "normal_stiffness": "disk weight / mean radius",
+    "stiffness_ratio": "",
+    "friction": "",
+    "damping_ratio": "",
+    "rolling_friction": "",
+    "rolling_stiffness_ratio": "",
+    "force": "disk weight",
+    "displacement": "mean radius",
+    "torque": "disk weight × mean radius",
+    "time_step": "sqrt(R/g)",
+    "ramp_time": "sqrt(R/g)",
+    "load_factors": "",
+    "stop_kinetic_energy": "disk weight × mean radius",
+}
 
 
-class Description(BaseModel):
+class _Public(ModelMetaclass):
+    """Has ``help`` and ``dir`` list what a description adds, and nothing of pydantic."""
+
+    def __dir__(cls) -> list[str]:
+        return sorted({name for name in super().__dir__() if not name.startswith("_")} - _OF_PYDANTIC)
+
+
+_OF_PYDANTIC = frozenset(ModelMetaclass.__dir__(BaseModel))
+
+
+class Description(BaseModel, metaclass=_Public):
     """Frozen, validated data; a value that is not allowed or a key that does not exist is a SceneError."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
@@ -29,6 +72,30 @@ class Description(BaseModel):
 
     # Without this mark pydantic would call __init__ for nested descriptions too and lose the path of the key.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Keys, defaults, units and meanings go into the docstring, and no types of validators into the signature."""
+        parameters, lines = [], []
+        for name, info in cls.model_fields.items():
+            default = inspect.Parameter.empty if info.is_required() else info.get_default(call_default_factory=True)
+            parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default))
+            shown = "must be given" if info.is_required() else f"default {default!r}"
+            unit = f" [{UNITS[name]}]" if UNITS.get(name) else ""
+            lines += [f"{name} : {shown}{unit}", textwrap.indent(textwrap.fill(info.description or "", 112), "    ")]
+        cls.__signature__ = inspect.Signature(parameters)
+        text, title, examples = inspect.cleandoc(cls.__doc__ or "").partition("\n\nExamples\n")
+        cls.__doc__ = "\n".join([text, "", "Parameters", "----------", *lines]) + title + examples
+
+    def __dir__(self) -> Iterable[str]:
+        return sorted({*dir(type(self)), *type(self).model_fields})
+
+    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
+        """What differs from its default."""
+        for name, value in super().__repr_args__():
+            info = type(self).model_fields.get(name or "")
+            if info is None or value != info.get_default(call_default_factory=True):
+                yield name, value
 
     @model_validator(mode="before")
     @classmethod

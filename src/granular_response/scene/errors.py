@@ -27,6 +27,10 @@ class SceneError(GranularError, ValueError):
         super().__init__(" ".join(message.splitlines()))
 
 
+class SceneFileError(SceneError, OSError):
+    """A scene file, or a table of disks, that cannot be read."""
+
+
 class Problem(GranularError, ValueError):
     """What is wrong with a value, raised inside a validator; pydantic adds where it stands.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Final, TypeVar, overload
+from typing import Any, Final, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,19 @@ _DIMENSIONS: Final = {
     "inertia": (2, 1, 0),
     "stress": (0, 1, -2),
 }
+#: Names of the reduced units in results and tables.
+LENGTH, MASS, TIME, FORCE = "mean_radius", "mean_mass", "reduced_time", "mean_weight"
+#: Keys of a scene that have a unit, and what they are; lengths of own disks are in any unit.
+_KEYS: Final = {
+    "lattice_constant": "length",
+    "displacement": "length",
+    "normal_stiffness": "stiffness",
+    "force": "force",
+    "torque": "torque",
+    "time_step": "time",
+    "ramp_time": "time",
+    "stop_kinetic_energy": "energy",
+}
 
 
 @dataclass(frozen=True)
@@ -41,6 +54,14 @@ class LaboratoryUnits:
 
     A ``stress`` is two-dimensional, force per length (N/m); a ``pressure`` is a stress over the thickness
     (Pa).
+
+    Examples
+    --------
+    >>> units = gr.LaboratoryUnits(radius=3.75e-3, thickness=6.6e-3, density=1150.0)
+    >>> round(units.to_laboratory("stiffness", 3000.0))  # N/m
+    2629
+    >>> round(units.to_reduced("force", 0.0493), 1)  # mean particle weights
+    15.0
     """
 
     radius: float = 3.75e-3  #: m
@@ -70,6 +91,11 @@ class LaboratoryUnits:
 
         Quantities are length, mass, time, velocity, acceleration, force, torque, energy, stiffness, damping,
         inertia, stress and pressure; another name is a SceneError.
+
+        Examples
+        --------
+        >>> round(gr.LaboratoryUnits().unit("force"), 5)  # N
+        0.00329
         """
         if quantity == "pressure":
             return self.unit("stress") / self.thickness
@@ -86,7 +112,13 @@ class LaboratoryUnits:
     def to_reduced(self, quantity: str, value: Sequence[float]) -> NDArray[np.float64]: ...
 
     def to_reduced(self, quantity, value):
-        """``value`` in SI units as a multiple of the reduced unit; scalars, lists or arrays of any shape."""
+        """``value`` in SI units as a multiple of the reduced unit; scalars, lists or arrays of any shape.
+
+        Examples
+        --------
+        >>> gr.LaboratoryUnits().to_reduced("length", [3.75e-3, 7.5e-3])
+        array([1., 2.])
+        """
         return _listed(value) / self.unit(quantity)
 
     @overload
@@ -95,8 +127,52 @@ class LaboratoryUnits:
     def to_laboratory(self, quantity: str, value: Sequence[float]) -> NDArray[np.float64]: ...
 
     def to_laboratory(self, quantity, value):
-        """``value`` in reduced units as SI units; scalars, lists or arrays of any shape."""
+        """``value`` in reduced units as SI units; scalars, lists or arrays of any shape.
+
+        Examples
+        --------
+        >>> round(gr.LaboratoryUnits().to_laboratory("time", 20.0), 3)  # s
+        0.391
+        """
         return _listed(value) * self.unit(quantity)
+
+    def reduced_scene(self, scene: Mapping[str, Any]) -> dict[str, Any]:
+        """The data of a scene whose forces, torques, displacements, stiffnesses, times and energies are in SI units.
+
+        The keys are those of a scene file. Plain numbers stay, and columns of own disks, in any unit of length.
+
+        Examples
+        --------
+        >>> units = gr.LaboratoryUnits()
+        >>> data = {"contact": {"normal_stiffness": 2629.0}, "loads": [{"disk": "top-centre", "force": [0.0, -0.0493]}]}
+        >>> scene = gr.Scene.from_dict(units.reduced_scene(data))
+        >>> round(scene.contact.normal_stiffness), round(scene.loads[0].force[1], 1)
+        (3000, -15.0)
+        """
+
+        def reduced(value: Any, quantity: str = "") -> Any:
+            if isinstance(value, Mapping):
+                return {key: reduced(part, _KEYS.get(key, "")) for key, part in value.items()}
+            if isinstance(value, (list, tuple)):
+                return [reduced(part, quantity) for part in value]
+            number = quantity and isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
+            return self.to_reduced(quantity, float(value)) if number else value
+
+        return {key: reduced(part) for key, part in scene.items()}
+
+    def define(self, registry: Any) -> None:
+        """Define the units that results name in a registry of pint: mean_radius, mean_mass, reduced_time, mean_weight.
+
+        ``registry`` is a ``pint.UnitRegistry``, or what has its method ``define``.
+
+        Examples
+        --------
+        >>> units.define(registry)  # doctest: +SKIP
+        >>> result.to_dataset().pint.quantify(unit_registry=registry)  # doctest: +SKIP
+        """
+        named = {LENGTH: "length", MASS: "mass", TIME: "time", FORCE: "force"}
+        for (name, quantity), unit in zip(named.items(), ("m", "kg", "s", "N"), strict=True):
+            registry.define(f"{name} = {self.unit(quantity)!r} {unit}")
 
 
 def _listed(value):

@@ -115,6 +115,11 @@ class SlabPacking(LatticePacking):
     """A slab between two side walls; rows of n and n - 1 disks alternate, a long one at the bottom.
 
     With periodic sides all rows have n disks, and every second one is shifted by half a lattice constant.
+
+    Examples
+    --------
+    >>> gr.Slab(layers=4, disks_per_row=9).disk_count
+    34
     """
 
     kind: Literal["slab"] = Field(
@@ -158,6 +163,11 @@ class PilePacking(LatticePacking):
     """A pile with sides at 30 degrees: each row has three disks less than the one below, the top one has one.
 
     The side walls are tangent to the bottom row, which they keep from spreading (Sec. V.F).
+
+    Examples
+    --------
+    >>> gr.Pile(layers=5).build()
+    Packing(35 disks, radii from 1 to 1, box 26 wide)
     """
 
     kind: Literal["pile"] = Field(default="pile", description="A triangular heap with sides at 30 degrees.")

@@ -25,7 +25,13 @@ RowName = Annotated[
 
 
 class RowSelector(Description):
-    """A disk by its row in the lattice and its place there."""
+    """A disk by its row in the lattice and its place there.
+
+    Examples
+    --------
+    >>> gr.Load(disk=gr.Row(row="top", offset=-4), force=(0.0, -1.0)).disk.offset
+    -4
+    """
 
     row: RowName = Field(description="top, bottom, or the number of the row, 0 at the bottom.")
     offset: Annotated[int, Field(strict=True), allowed("must be a whole number")] = Field(
@@ -49,6 +55,12 @@ class Load(Description):
 
     A disk that is displaced is held where the displacement says, and the force that this takes is part of the answer.
     A direction that is left free has the force, as rotation has the torque.
+
+    Examples
+    --------
+    >>> gr.Load(disk="top-centre", force=(0.0, -4.0))
+    Load(disk='top-centre', force=(0.0, -4.0))
+    >>> pressed = gr.Load(disk="top-centre", displacement=(None, -0.01))
     """
 
     disk: Selector = Field(

@@ -59,6 +59,11 @@ class Contact(Sparse):
     Sec. III.A and III.B of the paper, with its values as defaults. Reduced units: stiffness in mean disk
     weights per mean radius. The damping coefficients are absolute: they do not depend on the masses of
     the two bodies, and ``damping_ratio`` 0.5 gives the paper's ``sqrt(k)``.
+
+    Examples
+    --------
+    >>> gr.Contact(friction=0.5, normal_stiffness=1000.0).tangential_stiffness
+    800.0
     """
 
     law: Annotated[str, BeforeValidator(_check_law)] = Field(
@@ -138,7 +143,13 @@ class Contact(Sparse):
 
 
 class Wall(Sparse):
-    """The contact law at the floor and the side walls; what is null follows the contacts between disks."""
+    """The contact law at the floor and the side walls; what is null follows the contacts between disks.
+
+    Examples
+    --------
+    >>> gr.Scene(wall=gr.Wall(friction=0.3)).resolved_wall.normal_stiffness  # twice that between disks
+    6000.0
+    """
 
     normal_stiffness: Stiffness | None = Field(
         default=None, description="Stiffness of the normal spring; null means twice contact.normal_stiffness."

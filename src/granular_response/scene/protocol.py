@@ -38,7 +38,13 @@ Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
 class Preparation(Description):
-    """How gravity is brought onto the unloaded packing. A rest state with friction remembers it."""
+    """How gravity is brought onto the unloaded packing. A rest state with friction remembers it.
+
+    Examples
+    --------
+    >>> gr.Scene(preparation=gr.Preparation(gravity="slow")).preparation.ramp_time
+    100.0
+    """
 
     gravity: Literal["at-once", "slow", "frictionless"] = Field(
         default="at-once",
@@ -54,7 +60,12 @@ class Preparation(Description):
 
 
 class Protocol(Description):
-    """How equilibrium is reached. Sec. III of the paper, with its values as defaults."""
+    """How equilibrium is reached. Sec. III of the paper, with its values as defaults.
+
+    Examples
+    --------
+    >>> loop = gr.Scene(protocol=gr.Protocol(load_factors=[0.5, 1.0, 0.5, 0.0]))
+    """
 
     replaced: ClassVar[Mapping[str, str]] = {
         "path_tolerance": "is gone, must be left out: a path is exact from one contact event to the next",

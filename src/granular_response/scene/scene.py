@@ -17,17 +17,18 @@ from ..inputs import read_text
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PACKING_KINDS, Description
-from .errors import Problem, SceneError, from_validation, show, show_key, suggestion
+from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, check_disk
 from .material import Contact, Wall
+from .poured import PouredPacking
 from .protocol import Preparation, Protocol
 from .table import FilePacking
 
 
 def _check_kind(value: Any) -> Any:
     """Say what is wrong with the kind before pydantic's tagged union looks at it."""
-    if isinstance(value, (SlabPacking, PilePacking, FilePacking, ArrayPacking)):
+    if isinstance(value, (SlabPacking, PilePacking, PouredPacking, FilePacking, ArrayPacking)):
         return value
     choices = " or ".join(PACKING_KINDS)
     if not isinstance(value, Mapping):
@@ -51,10 +52,16 @@ class Scene(Description):
 
     Every way to make a scene, the constructor included, raises SceneError with a message of one line that
     names the key, the value and what is allowed.
+
+    Examples
+    --------
+    >>> scene = gr.Scene(packing=gr.Slab(layers=10), contact=gr.Contact(friction=0.5))
+    >>> scene.updated({"loads.0.force": [0.0, -4.0]}).loads[0].force
+    (0.0, -4.0)
     """
 
     packing: Annotated[
-        Annotated[SlabPacking | PilePacking | FilePacking | ArrayPacking, Field(discriminator="kind")],
+        Annotated[SlabPacking | PilePacking | PouredPacking | FilePacking | ArrayPacking, Field(discriminator="kind")],
         BeforeValidator(_check_kind),
     ] = Field(default_factory=SlabPacking, description="The disks before gravity acts, and the box.")
     contact: Contact = Field(default_factory=Contact, description="Contact law between disks.")
@@ -130,11 +137,13 @@ class Scene(Description):
         return self
 
     def __repr__(self) -> str:
-        """What differs from the paper's scene."""
-        named = self.model_dump(mode="json", exclude_defaults=True)
-        if "packing" in named:
-            named = shortened({**named, "packing": {"kind": self.packing.kind, **named["packing"]}})
-        return f"Scene.from_dict({named})" if named else "Scene()"
+        """The packing, friction and loads, and what else differs from the paper's scene."""
+        named, whole = self.model_dump(mode="json", exclude_defaults=True), self.to_dict()
+        main = {key: whole["packing"][key] for key in ("kind", "layers", "disks_per_row") if key in whole["packing"]}
+        loads = [load.model_dump(mode="json", exclude_defaults=True) for load in self.loads]
+        named["packing"] = {**main, **named.get("packing", {})}
+        named["contact"] = {"friction": self.contact.friction, **named.get("contact", {})}
+        return f"Scene.from_dict({shortened({**named, 'loads': loads})})"
 
     __str__ = __repr__
 
@@ -160,7 +169,13 @@ class Scene(Description):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, folder: str | PathLike[str] | None = None) -> Scene:
-        """A scene from nested mappings; what is left out has its default."""
+        """A scene from nested mappings; what is left out has its default.
+
+        Examples
+        --------
+        >>> gr.Scene.from_dict({"packing": {"kind": "pile", "layers": 5}, "loads": []}).packing.disk_count
+        35
+        """
         try:
             return cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
@@ -216,7 +231,13 @@ class Scene(Description):
 
     @classmethod
     def from_text(cls, text: str, *, folder: str | PathLike[str] | None = None) -> Scene:
-        """A scene from YAML text."""
+        """A scene from YAML text.
+
+        Examples
+        --------
+        >>> gr.Scene.from_text("contact: {friction: 0.5}").contact.friction
+        0.5
+        """
         data = yaml_text.read(text)
         if data is None:
             raise SceneError("the scene is empty, must be a mapping ({} is the paper's scene)")
@@ -224,29 +245,52 @@ class Scene(Description):
 
     @classmethod
     def from_yaml(cls, path: str | PathLike[str]) -> Scene:
-        """A scene from a YAML file; the messages of errors begin with its name."""
+        """A scene from a YAML file; the messages of errors begin with its name.
+
+        Raises
+        ------
+        SceneFileError
+            If the file cannot be read.
+        SceneError
+            For what it holds.
+
+        Examples
+        --------
+        >>> scene = gr.Scene.from_yaml("examples/slab.yaml")
+        """
         path = Path(path)
         try:
             return cls.from_text(read_text(path), folder=path.parent.absolute())
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from None
         except FileNotFoundError:
-            raise SceneError(f"{path}: no such file") from None
+            raise SceneFileError(f"{path}: no such file") from None
         except UnicodeDecodeError:
             raise SceneError(f"{path}: is not a text file in UTF-8") from None
         except OSError as error:
-            raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+            raise SceneFileError(f"{path}: cannot be read: {error.strerror}") from None
         except ValueError as error:  # no name of a file
-            raise SceneError(f"{str(path)!r}: cannot be read: {error}") from None
+            raise SceneFileError(f"{str(path)!r}: cannot be read: {error}") from None
 
     def to_dict(self) -> dict[str, Any]:
-        """All keys as nested dicts, lists, numbers and text."""
+        """All keys as nested dicts, lists, numbers and text.
+
+        Examples
+        --------
+        >>> gr.Scene().to_dict()["contact"]["stiffness_ratio"]
+        0.8
+        """
         return self.model_dump(mode="json")
 
     def to_yaml(self) -> str:
         """All keys in a fixed order; ``from_text`` makes an equal scene of it.
 
         The path of a packing from a file is kept as it was given, so such a scene is read in ``folder``.
+
+        Examples
+        --------
+        >>> gr.Scene.from_text(gr.Scene().to_yaml()) == gr.Scene()
+        True
         """
         return yaml_text.write(self.to_dict())
 
@@ -262,12 +306,23 @@ class Scene(Description):
         ------
         SceneError
             If a value is named twice, in different spellings, or is not allowed: the copy is validated.
+
+        Examples
+        --------
+        >>> gr.Scene().updated({"packing.layers": 8, "wall": gr.Wall(friction=0.5)}).packing.layers
+        8
         """
         folders = [value.folder for value in changes.values() if isinstance(value, FilePacking)]
         return type(self).from_dict(self.merged(changes), folder=(folders or [self.folder])[0])
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """The data of ``updated`` as nested mappings, not validated yet."""
+        """The data of ``updated`` as nested mappings, not validated yet.
+
+        Examples
+        --------
+        >>> gr.Scene().merged({"contact.friction": 0.5})["contact"]["friction"]
+        0.5
+        """
         named: dict[str, Any] = {}
         # Descriptions first, so that paths lead into them.
         for key, value in sorted(changes.items(), key=lambda item: not isinstance(item[1], Description)):

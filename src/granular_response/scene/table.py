@@ -42,6 +42,12 @@ class FilePacking(Description):
     x. These stand where the file says: tables without a box have the floor ``z = 0`` and the left wall ``x = 0``. A box
     that follows its disks, or does not say what it is, is not taken for them: then ``width`` and ``origin`` are given.
     Lengths, the width too, are rescaled to a mean radius of 1, masses to a mean of 1.
+
+    Examples
+    --------
+    >>> packing = gr.File(path="disks.csv", width=10.0)
+    >>> gr.Scene(packing=packing).packing.sides
+    'walls'
     """
 
     kind: Literal["file"] = Field(default="file", description="Disks from a file.")

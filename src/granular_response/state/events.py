@@ -25,7 +25,12 @@ class Event:
     leads to the next one) or ``"bifurcation"`` (it is unstable, and the motion leads to one of the branches). Lengths
     are in mean disk radii.
 
-    >>> event = Event(0.25, "opens", first=3, second=1, x=2.0, z=1.0)
+    Examples
+    --------
+    >>> opening = result.events.of("opens")[0]
+    >>> opening.kind, 0.0 < opening.load_factor < 1.0
+    ('opens', True)
+    >>> event = gr.Event(0.25, "opens", first=3, second=1, x=2.0, z=1.0)
     >>> event.lost, event.where
     (False, 'disks 3 and 1')
     """

@@ -20,6 +20,11 @@ class Certificate:
     ``loose_disks``: disks with fewer than two contacts. ``unbalanced_part``: largest unbalanced force on a disk as a
     part of what it bears, its weight or its largest contact force (nan: not measured, in files from before).
     ``rolling_excess``: largest rolling force beyond its limit.
+
+    Examples
+    --------
+    >>> result.certificate.stable, result.certificate.force_residual < 1e-9
+    (True, True)
     """
 
     force_residual: float

@@ -75,7 +75,14 @@ class Contacts:
 
 @dataclass(frozen=True, repr=False)
 class State:
-    """Positions, motion and contacts of n disks at one load."""
+    """Positions, motion and contacts of n disks at one load.
+
+    Examples
+    --------
+    >>> state = result.loaded[-1]
+    >>> state.position.shape, len(state.pair_force()) == len(state.pairs.first)
+    ((34, 2), True)
+    """
 
     position: FloatArray  #: (n, 2) disk centres x, z
     angle: FloatArray  #: (n,) rotation since the start of the preparation

@@ -18,6 +18,7 @@ import xarray as xr
 from ..state import Certificate, Event, status
 from ..state.box import FARTHEST, WALL_MEANINGS
 from . import files
+from .labels import labelled
 from .result import (
     ADDED_LATER,
     EVENT_KINDS,
@@ -25,6 +26,7 @@ from .result import (
     ResultError,
     described_events,
     described_forces,
+    floor_force_change,
     indexed,
     load_coordinates,
     state_from,
@@ -140,32 +142,43 @@ def checked(dataset: xr.Dataset) -> xr.Dataset:
     if any(name in dataset for name in _CERTIFICATE):
         for name in sorted(_CERTIFICATE - (ADDED_LATER - set(dataset.variables))):
             _check_variable(dataset, name, ("state",), _REAL, finite=False)
-    several = ("load",) if states > 2 else ()
-    for name in ("floor_force", "floor_response"):  # nan under a load of nothing
-        _check_variable(dataset, name, (*several, "floor_disk"), _REAL, finite=False)
+    dataset = _along_load(dataset)
+    for name in ("floor_force", "floor_force_change", "floor_response"):  # nan under a load of nothing
+        _check_variable(dataset, name, ("load", "floor_disk"), _REAL, finite=False)
     if states > 1:
-        _check_variable(dataset, "total_force", several, _REAL)
+        _check_variable(dataset, "total_force", ("load",), _REAL)
     for name, (dimensions, kinds) in _ROLLING.items():
         if name in dataset:
             _check_variable(dataset, name, dimensions, kinds)
             if name.endswith("status"):
                 _check_range(dataset, name, len(status.MEANINGS))
     if "reaction" in dataset:
-        _check_variable(dataset, "reaction", (*several, "load_point", "axis"), _REAL)
-    if several and dataset.sizes["load"] != states - 1:
+        _check_variable(dataset, "reaction", ("load", "load_point", "axis"), _REAL)
+    if dataset.sizes["load"] != states - 1:
         _fail(f"dimension load: must have {states - 1} entries, one less than state")
     dataset = _with_events(dataset)
     if "event" in dataset.dims or any(name in dataset for name in _EVENTS):
         _check_events(dataset)
     _check_attributes(dataset.attrs)
-    return indexed(_renewed(dataset) if older else dataset)
+    if older:
+        dataset = dataset.assign(described_forces([state_from(dataset, k) for k in range(states)]))
+    return indexed(labelled(dataset))
 
 
-def _renewed(dataset: xr.Dataset) -> xr.Dataset:
-    """A result of the layout before, with what has been added since."""
-    states = [state_from(dataset, k) for k in range(dataset.sizes["state"])]
-    coordinates = load_coordinates([state.load_factor for state in states[1:]])
-    return dataset.assign_coords(coordinates).assign(described_forces(states))
+def _along_load(dataset: xr.Dataset) -> xr.Dataset:
+    """A result of versions before, which had no branches, and no dimension ``load`` for one load or none."""
+    if "branch" in dataset.variables:
+        return dataset
+    count = dataset.sizes["state"] - 1
+    dataset = dataset.drop_vars(["load", "load_factor", "step"], errors="ignore")
+    if count < 2:
+        names = [name for name in ("floor_force", "floor_response", "total_force", "reaction") if name in dataset]
+        alone = {name: dataset.variables[name] for name in names if "load" not in dataset.variables[name].dims}
+        dataset = dataset.assign({name: one.set_dims(("load", *one.dims))[:count] for name, one in alone.items()})
+    dataset = dataset.assign_coords(load_coordinates(dataset["state_load_factor"].values[1:].tolist()))
+    if "floor_force" not in dataset or dataset["floor_force"].dims != ("load", "floor_disk"):
+        return dataset  # which is refused
+    return dataset.assign(floor_force_change(dataset["floor_force"].values, dataset["floor_force_rest"].values))
 
 
 def _with_events(dataset: xr.Dataset) -> xr.Dataset:

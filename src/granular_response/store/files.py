@@ -162,6 +162,8 @@ def _check(path: Path, group: str, dataset: xr.Dataset) -> None:
     for name, variable in dataset.variables.items():
         where = f"variable {group + '/' if group else ''}{name}"
         for label in ("long_name", "units"):
+            if label == "units" and "description" in variable.attrs:
+                continue  # text, codes, and what has components in several units
             value = variable.attrs.get(label)
             if not isinstance(value, str) or not value.strip():
                 raise _error(path, f"{where} needs the attribute {label} (units: '1' in reduced units)")

@@ -1,7 +1,7 @@
 """Solutions as labelled datasets, and states back from them.
 
 A dataset is in reduced units: lengths in mean disk radii, masses in mean disk masses, forces in mean disk
-weights; ``units`` is "1" throughout and ``long_name`` names the normalisation.
+weights. Results have them in ``units`` (``labels.py``); datasets of studies have "1", and the unit in ``long_name``.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ from ..state import (
     box,
     status,
 )
+from .labels import labelled
 
 LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
 
@@ -280,28 +281,47 @@ def _reached_from(one: xr.Dataset) -> dict[str, Any]:
 
 
 def load_coordinates(factors: Sequence[float]) -> dict[str, xr.Variable]:
-    """Coordinates along ``load``: its index, ``load_factor`` and ``step``; a lone ``load_factor`` for one load.
+    """Coordinates along ``load``: its index, ``load_factor``, ``step`` and ``branch``.
 
-    Factors may repeat: ``sel(load=0.5)`` then gives every step at half the loads.
+    Factors may repeat: ``sel(load=0.5)`` then gives every step at half the loads, which ``branch`` tells apart.
     """
     text = "multiplier of the scene's loads"
     values = np.asarray(factors, float)
-    if len(values) < 2:
-        return {"load_factor": variable((), values[0], text)} if len(values) else {}
     return {
         "load": variable("load", values, f"index: {text}"),
         "load_factor": variable("load", values, text),
         "step": variable("load", np.arange(1, len(values) + 1), "step of the load programme"),
+        "branch": variable("load", np.array(branches(factors), str), "branch of the load programme"),
     }
 
 
-COORDINATES = frozenset({"axis", "component", "floor_disk", "load", "load_factor", "step", "x"})
+def branches(factors: Sequence[float]) -> list[str]:
+    """The branch of a load programme that each factor ends, from 0 on.
+
+    "loading" beyond all loads of the same sign before, "reloading" up to the largest of them, "unloading" towards 0. A
+    factor that repeats the one before is on its branch.
+    """
+    found: list[str] = []
+    before, largest = 0.0, {True: 0.0, False: 0.0}
+    for factor in factors:
+        side = factor > 0.0
+        if factor == before:
+            found.append(found[-1] if found else "loading")
+        elif abs(factor) > largest[side]:
+            found.append("loading")
+        else:
+            grows = abs(factor) > abs(before) or (factor != 0.0 and side != (before > 0.0))
+            found.append("reloading" if grows else "unloading")
+        largest[side] = max(largest[side], abs(factor))
+        before = factor
+    return found
+
+
+COORDINATES = frozenset({"axis", "branch", "component", "floor_disk", "load", "load_factor", "step", "x"})
 
 
 def indexed(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with ``sel(load_factor=...)``, or ``sel(step=...)`` where load factors repeat."""
-    if "load" not in dataset.dims or "load_factor" not in dataset.coords:
-        return dataset
     unique = len(set(dataset["load_factor"].values.tolist())) == dataset.sizes["load"]
     return dataset.set_xindex("load_factor" if unique else "step")
 
@@ -351,8 +371,9 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     """The labelled dataset of a solved scene.
 
     Dimension ``state``: at rest first, then one entry for each load factor, which ``state_load_factor`` gives.
-    ``floor_force``, ``floor_response``, ``total_force`` and, where loads displace disks, ``reaction`` have a dimension
-    ``load`` only when there is more than one load factor; its coordinates are those of :func:`load_coordinates`.
+    ``floor_force``, ``floor_force_change``, ``floor_response``, ``total_force`` and, where loads displace disks,
+    ``reaction`` have the dimension ``load``, however many load factors there are; its coordinates are those of
+    :func:`load_coordinates`.
     """
     problem = solution.problem
     packing = problem.packing
@@ -365,8 +386,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     by = np.argsort(x, kind="stable")
     disks, x = disks[by], x[by]
     at_rest = floor_force(rest, disks)
-    forces = np.stack([floor_force(s, disks) for s in loaded] or [at_rest])
-    applied = np.array([solution.applied_force(state) for state in solution.loaded] or [np.nan])
+    forces = np.array([floor_force(s, disks) for s in loaded]).reshape(len(loaded), len(disks))
+    applied = np.array([solution.applied_force(state) for state in solution.loaded], float)
     response = (forces - at_rest) / np.where(applied > 0, applied, np.nan)[:, None]
     of_states = _states(states, "state")
     data = {
@@ -375,11 +396,12 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         **described_forces(states),
         **load_coordinates(solution.load_factors),
         "floor_force_rest": variable("floor_disk", at_rest, f"vertical floor force at rest {FORCE}"),
-        "floor_force": _by_load(forces, ("floor_disk",), f"vertical floor force under load {FORCE}"),
-        "floor_response": _by_load(
+        "floor_force": variable(("load", "floor_disk"), forces, f"vertical floor force under load {FORCE}"),
+        **floor_force_change(forces, at_rest),
+        "floor_response": variable(
+            ("load", "floor_disk"),
             response,
-            ("floor_disk",),
-            "vertical floor force that the load adds, per total magnitude of the applied forces",
+            "vertical floor force that the load adds, per total magnitude of the applied forces (NaN without any)",
         ),
         "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
         "mass": variable("disk", packing.mass, "disk mass in mean disk masses"),
@@ -388,7 +410,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "applied_load": variable(
             ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
         ),
-        "total_force": _by_load(applied, (), f"total magnitude of the applied forces {FORCE}"),
+        "total_force": variable("load", applied, f"total magnitude of the applied forces {FORCE}"),
         **(_reaction(solution) if loaded and len(problem.held) else {}),
         **_listed(own, states),
         **_certificates(states, "state"),
@@ -419,7 +441,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "settled": _verdict([s.reached.settled is not False for s in states]),
         "units": UNITS,
     }
-    return indexed(_dataset(data, COORDINATES, attributes))
+    return indexed(labelled(_dataset(data, COORDINATES, attributes)))
 
 
 def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
@@ -462,13 +484,13 @@ def _reaction(solution: Solution) -> dict[str, xr.Variable]:
     """What holds displaced disks, under each load."""
     values = np.stack([solution.reaction(state) for state in solution.loaded])
     text = f"force x, z with which each load holds its disk at its displacement {FORCE}; 0 along free directions"
-    return {"reaction": _by_load(values, ("load_point", "axis"), text)}
+    return {"reaction": variable(("load", "load_point", "axis"), values, text)}
 
 
-def _by_load(values: np.ndarray, dims: tuple[str, ...], long_name: str) -> xr.Variable:
-    """What was measured under each load, along ``load``; without it where there is one load or none."""
-    made = variable(("load", *dims), values, long_name)
-    return made if len(values) > 1 else made[0]
+def floor_force_change(under_load: np.ndarray, at_rest: np.ndarray) -> dict[str, xr.Variable]:
+    """What loads add to the force on each floor disk, defined after unloading too."""
+    text = f"vertical floor force that the load adds {FORCE}"
+    return {"floor_force_change": variable(("load", "floor_disk"), under_load - at_rest, text)}
 
 
 def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:

@@ -60,7 +60,7 @@ def as_data(path: str | PathLike[str]) -> dict[str, Any]:
         | {"events": dict(Counter(event.kind for state, event in events if state == k))}
         for k in range(result.sizes["state"])
     ]
-    for name in ("x", "total_force", "floor_response", "reaction"):
+    for name in ("x", "branch", "total_force", "floor_response", "floor_force_change", "reaction"):
         if name in result:
             found[name] = _json(result[name].values)
     return found
@@ -206,25 +206,28 @@ def _reaction(result: xr.Dataset) -> Table:
     table = _titled("at load factor", "disk", "x", "z")
     values = result["reaction"].values
     factors = result["state_load_factor"].values[1:]
-    for factor, forces in zip(factors, values.reshape(-1, *values.shape[-2:]), strict=True):
+    for factor, forces in zip(factors, values, strict=True):
         for disk, force in zip(result["loaded_disk"].values, forces, strict=True):
             table.add_row(f"{factor:g}", str(disk), *(f"{part:.6g}" for part in force))
     return table
 
 
 def _response(result: xr.Dataset) -> Table:
-    table = _titled("total force", "sum", "at x = 0", "largest", "at x")
+    table = _titled("load factor", "total force", "sum", "at x = 0", "largest", "at x", "largest change")
     x = result["x"].values
-    responses = np.atleast_2d(result["floor_response"].values)
-    forces = np.atleast_1d(result["total_force"].values) if "total_force" in result else np.full(len(responses), np.nan)
-    for force, response in zip(forces, responses, strict=True):
+    for load in range(result.sizes["load"]):
+        here = result.isel(load=load)
+        response = here["floor_response"].values
+        change = here["floor_force_change"].values
+        row = [f"{float(here['load_factor']):g}", f"{float(here['total_force']):g}"]
         if np.isnan(response).all():
-            table.add_row("none", *["-"] * 4)
-            continue
-        peak = np.nanmax(response)
-        places = ", ".join(f"{round(place, 9) + 0.0:.3g}" for place in x[np.isclose(response, peak, rtol=1e-6, atol=0)])
-        middle = response[np.argmin(np.abs(x))]
-        table.add_row(f"{force:g}", f"{response.sum():.9f}", f"{middle:.5f}", f"{peak:.5f}", places)
+            row += ["-"] * 4
+        else:
+            peak = np.nanmax(response)
+            places = x[np.isclose(response, peak, rtol=1e-6, atol=0)]
+            row += [f"{response.sum():.9f}", f"{response[np.argmin(np.abs(x))]:.5f}", f"{peak:.5f}"]
+            row.append(", ".join(f"{round(place, 9) + 0.0:.3g}" for place in places))
+        table.add_row(*row, f"{change[np.abs(change).argmax()]:.5g}" if change.size else "-")
     return table
 
 

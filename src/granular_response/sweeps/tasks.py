@@ -73,6 +73,11 @@ def map_tasks(
     SweepError
         If a task raises (the message names its item), if workers keep dying at one task, if something cannot be sent
         to a worker or back, or if the cluster cannot be reached or is lost.
+
+    Examples
+    --------
+    >>> gr.map_tasks(abs, [-1, 2], workers=1)
+    [1, 2]
     """
     given = current()
     workers, progress = given.workers if workers is None else workers, progress or given.progress

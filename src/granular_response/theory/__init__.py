@@ -3,4 +3,13 @@
 ``moduli`` holds the elastic constants every other module takes; ``lattice`` computes them for the spring
 lattice of Sec. V.C and measures them on a periodic one; ``half_plane``, ``slab`` and ``rays`` predict the
 pressure under a localized force. Everything is two-dimensional and static.
+
+Examples
+--------
+>>> gr.theory.half_plane.pressure([0.0], 10.0, gr.theory.moduli.Moduli.isotropic(0.3)).round(4)
+array([0.0637])
 """
+
+from . import crossover, half_plane, lattice, moduli, rays, slab
+
+__all__ = ["crossover", "half_plane", "lattice", "moduli", "rays", "slab"]

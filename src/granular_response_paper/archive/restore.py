@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import lzma
+import shutil
 import stat
+import tempfile
+import urllib.request
 import zipfile
 import zlib
+from collections.abc import Iterator
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from granular_response.inputs import check_regular
@@ -14,6 +19,25 @@ from granular_response.store import atomic
 from granular_response.store import files as store
 from granular_response_paper.archive import ArchiveError, lock
 from granular_response_paper.archive.lock import Item
+
+
+@contextlib.contextmanager
+def local(archive: str) -> Iterator[Path]:
+    """The archive as a file: downloaded for as long as it is needed where ``archive`` is an address.
+
+    Raises ArchiveError if it cannot be downloaded. What is downloaded is checked as any other file is.
+    """
+    if "://" not in archive:
+        yield Path(archive)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "archive.zip")
+        try:
+            with urllib.request.urlopen(archive, timeout=60.0) as found, path.open("wb") as file:
+                shutil.copyfileobj(found, file)
+        except (OSError, ValueError) as error:
+            raise ArchiveError(f"{archive}: cannot be downloaded: {getattr(error, 'reason', error)}") from error
+        yield path
 
 
 def restore(archive: Path, root: Path = Path(".")) -> list[str]:

@@ -13,6 +13,7 @@
   one.
 * ``.events.csv``: the events of the load path, one a line, all of them or those on the way to one state. ``.vtu`` has
   them as field data; the other formats leave them out.
+* ``.contacts.csv``: the closed contacts of one state, a line each, with place, status and forces.
 
 Disks lie in the plane of the screen: file coordinates are (x, z, 0); YADE's are (x, 0, z), where gravity points to -z.
 Units are those of the result: mean disk radius, mean disk mass, g.
@@ -38,6 +39,7 @@ from .frames import PREFIXES, contact_force_sums
 
 #: For each suffix its module, and the states of its file: the one asked for, every one, or either as frames.
 _WRITERS = {
+    ".contacts.csv": ("contacts_table", "one"),
     ".events.csv": ("events_table", "frames"),
     ".gsd": ("gsd_file", "frames"),
     ".pvd": ("vtk", "every"),
@@ -63,12 +65,14 @@ class ExportError(GranularError):
     """A result that cannot be exported. The message is one line."""
 
 
-def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, state: int | None = None) -> Path:
+def export(
+    result: str | os.PathLike[str] | xr.Dataset, output: str | os.PathLike[str], *, state: int | None = None
+) -> Path:
     """Write a stored result as a file for another program; returns its path.
 
     Parameters
     ----------
-    result : netCDF file that ``granular-response run`` made.
+    result : netCDF file that ``granular-response run`` made, or the dataset of a result.
     output : file to make; what its name ends with (one of ``SUFFIXES``) is the format.
     state : index of the only state to write, 0 at rest, -1 the last one; if None all of them, or the last one in a file
         of one state.
@@ -93,21 +97,22 @@ def export(result: str | os.PathLike[str], output: str | os.PathLike[str], *, st
         raise ExportError(
             f"state = {state}: {output} is a series of all states, must be left out (.vtu holds one state)"
         )
-    dataset = read_result(result, sealed=False)
+    read = [] if isinstance(result, xr.Dataset) else [result]
+    dataset = result if isinstance(result, xr.Dataset) else read_result(result, sealed=False)
     count = dataset.sizes["state"]
     if state is not None and not -count <= state < count:
-        raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, {result} holds {count} states")
+        raise ExportError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
     # the first state stays: what a load adds is the difference from it
     chosen = chosen_states(dataset, [0, -1 if state is None else state]) if states == "one" else dataset
     only = {} if states != "frames" or state is None else {"only": state % count}
     try:
-        atomic.check_output(output, [result])
+        atomic.check_output(output, read)
         output.parent.mkdir(parents=True, exist_ok=True)
         atomic.check_writable(output)
         writer: Writer = import_module(f".{name}", __name__).files
         made = writer(chosen, output, **only)
         for path in made:
-            atomic.check_writable(path, [result])
+            atomic.check_writable(path, read)
         for path, content in made.items():
             atomic.write_bytes(path, content)
     except ModuleNotFoundError as error:

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..scene.laboratory import FORCE, LENGTH
 from ..state import FloatArray, State
 from ..state.box import WALL_MEANINGS
 from ..state.status import MEANINGS
 
-LENGTH, FORCE = "mean disk radius", "mean disk weight"
 #: Units of the columns that have one.
 UNITS = {"x": LENGTH, "z": LENGTH, "normal_force": FORCE, "tangential_force": FORCE}
 
