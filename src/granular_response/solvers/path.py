@@ -185,6 +185,8 @@ class _Path:
 
     def to(self, start: State, target: float) -> State:
         """The state at load factor ``target`` on the way from ``start``."""
+        if target == start.load_factor and start.reached.certificate is not None and start.certificate.stable:
+            return replace(start, reached=replace(start.reached, events=()))
         self.begun = len(self.record.events)
         self.target, self.direction = target, 1.0 if target >= start.load_factor else -1.0
         self.jump = self.options.jump / self.unit
@@ -212,6 +214,7 @@ class _Path:
         del self.record.events[self.begun :]
         self.singly_until = start.load_factor
         point = self._balanced(point)
+        returned = 0  #: times that the equilibrium at the target was unstable
         while True:
             still = 0  #: points in turn at one load
             while point.factor != self.target:
@@ -229,6 +232,9 @@ class _Path:
                 return replace(state, reached=replace(state.reached, events=tuple(self.record.events[self.begun :])))
             if not watched:
                 return self._followed(self._at(start), start, watched=True)
+            returned += 1
+            if returned > self.options.still:
+                raise PathError(f"the equilibrium at load factor {self.target:g} is unstable, and motion returns to it")
             point = self._by_motion(point, "bifurcation", "unstable", None)
 
     def _first_unstable(self, before: Point, point: Point) -> Point:
