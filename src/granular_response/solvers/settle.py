@@ -41,11 +41,10 @@ class HandOver:
 
 #: Rest under gravity, and loads by dynamics: the fall is long, and a wait costs little of it.
 PROTOCOL = HandOver(tries=8, wait=20.0, nudged=True)
-#: The end of a branch on a path: each further try has a hundredth of the energy.
-CROSSING = HandOver(tries=3, cooling=1e-2)
-#: Kinetic energy per disk at the first try of a crossing. Motion sets out with 1e-10, where no try succeeds; at 1e-11
-#: nine of ten do.
-CROSSING_STOP = 1e-11
+#: The end of a branch on a path: the first try is early, and each further one has a hundredth of the energy.
+CROSSING = HandOver(tries=4, cooling=1e-2)
+#: Kinetic energy per disk at the first try of a crossing.
+CROSSING_STOP = 1e-9
 
 
 def settle(

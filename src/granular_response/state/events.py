@@ -10,8 +10,8 @@ from .box import WALL_MEANINGS
 CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
 #: What it does along the rolling.
 ROLLING_EVENTS = ("rolls", "stops rolling", "rolls back")
-#: What happens to an equilibrium that ends: the motion of the disks leads to the next one, or one of several branches
-#: is taken. The first kind stands in files of earlier versions alone: an increment with fixed friction bounds led on.
+#: What happens to an equilibrium that ends: a longer increment finds the next one nearby, the motion of the disks leads
+#: to it, or one of several branches is taken.
 LOST_EVENTS = ("stepped over", "jump", "bifurcation")
 
 
@@ -21,9 +21,9 @@ class Event:
 
     ``kind`` is, for a contact, ``"opens"``, ``"closes"``, ``"slides"`` (reaches Coulomb's limit), ``"sticks"`` (leaves
     it) or ``"reverses"`` (slides the other way); where it resists rolling also ``"rolls"`` (reaches the limit of that),
-    ``"stops rolling"`` or ``"rolls back"``. Where an equilibrium is lost it is ``"jump"`` (the motion of the disks
-    leads to the next one) or ``"bifurcation"`` (it is unstable, and the motion leads to one of the branches). Lengths
-    are in mean disk radii.
+    ``"stops rolling"`` or ``"rolls back"``. Where an equilibrium is lost it is ``"stepped over"`` (the next one is
+    near, under a slightly larger load), ``"jump"`` (the motion of the disks leads to it) or ``"bifurcation"`` (it is
+    unstable, and the motion leads to one of the branches). Lengths are in mean disk radii.
 
     Examples
     --------
