@@ -111,6 +111,7 @@ SIGNATURES = {
     "plot.stress": (
         "(result, *, ax=None, state=-1, added=None, component='zz', width=2.0, vmax=None, cmap='RdBu', **mesh)"
     ),
+    "register_law": "(name, law, parameters=<class 'granular_response.scene.material.NoParameters'>)",
     "solve": "(scene, *, load_factors=None, method=None, progress=True)",
     "sweep": (
         "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"

@@ -20,7 +20,7 @@ def test_the_response_to_the_smallest_force_is_the_elastic_one(datasets):
 def test_packings_are_those_of_the_experiment(datasets):
     lattice, disordered = (datasets[f"photoelastic_{k}"] for k in range(2))
     assert [float(one["polydispersity"]) for one in (lattice, disordered)] == [0.0, 0.01]
-    assert all(float(one["friction"]) == 0.94 and float(one["total_force"]) == 5.0 for one in (lattice, disordered))
+    assert all(float(one["friction"]) == 0.94 and one["total_force"].item() == 5.0 for one in (lattice, disordered))
     assert np.ptp(lattice["radius"].values) == 0.0 < np.ptp(disordered["radius"].values)
 
 

@@ -30,7 +30,7 @@ def test_scene(name, num_regression):
     data = to_dataset(solve_scene(SCENES[name]))
     values = {
         "floor_force_rest": data.floor_force_rest.values,
-        "floor_force": data.floor_force.values,
+        "floor_force": data.floor_force.values.ravel(),
         "x": data.position.values[-1, :, 0],
         "z": data.position.values[-1, :, 1],
         "angle": data.angle.values[-1],

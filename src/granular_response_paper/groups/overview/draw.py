@@ -95,7 +95,7 @@ def _overview(slabs: Mapping[str, xr.Dataset]) -> Figure:
 def _photoelastic(packings: list[xr.Dataset]) -> Figure:
     """Side by side, of one material."""
     figure, panels = style.figure(1, len(packings), width=6.2, height=2.95)
-    largest = max(float(slab["total_force"]) for slab in packings)
+    largest = max(float(slab["total_force"].max()) for slab in packings)
     for axes, slab in zip(panels[0], packings, strict=True):
         half = min(NEAR, 0.5 * float(slab.attrs["width"]))
         photoelastic(slab, ax=axes, half_width=half, pixels=PIXELS, fringe=FRINGE * largest)
