@@ -70,8 +70,8 @@ def animate(
     Examples
     --------
     >>> import numpy as np
-    >>> result = gr.solve(scene, load_factors=np.linspace(0.1, 2.0, 20))
-    >>> animation = gr.plot.animate(result, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
+    >>> growing = gr.solve(result.scene, load_factors=np.linspace(0.1, 2.0, 20))
+    >>> animation = gr.plot.animate(growing, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
     """
     for name, value in {"fps": fps, "dpi": dpi}.items():
         if not (np.isfinite(value) and value > 0.0):
