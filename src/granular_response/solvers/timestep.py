@@ -175,11 +175,11 @@ def stability_limit(problem: Problem, integrator: str | None = None, *, smallest
 
 
 def _papers_is_stable(problem: Problem) -> bool:
-    """Whether the paper's step is stable. Without a lattice small disks gather: then all count as the smallest.
+    """Whether the paper's step is stable. Among poured disks small ones gather: there all count as the smallest.
 
     Three small disks that touch in a poured packing of two sizes bear 0.92 of the estimate, and above it never rest.
     """
-    return stability_limit(problem, smallest=problem.packing.left is None) >= PAPERS_TIME_STEP
+    return stability_limit(problem, smallest=problem.scene.packing.kind == "poured") >= PAPERS_TIME_STEP
 
 
 def resolve_time_step(problem: Problem) -> float:
