@@ -256,3 +256,10 @@ def test_a_disk_out_of_balance_by_a_part_of_what_it_bears_is_found(solution):
     found = replace(check(solution, state), relative_residual=1e-3)
     said = contradiction(state, found, rounding_of(solution))
     assert said == "certified as stable with a disk out of balance by 0.001 of what it bears"
+
+
+def test_rolling_resistance_is_not_checked_and_that_is_said():
+    keys = {"contact__friction": 0.3, "contact__rolling_friction": 0.1, "contact__rolling_stiffness_ratio": 0.5}
+    rolls = solve_scene(scene(3, 5, loads=[], **keys))
+    with pytest.raises(ValueError, match="resist rolling"):
+        check(rolls, rolls.rest)

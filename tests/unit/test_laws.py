@@ -1,6 +1,8 @@
 """What every contact law must fulfil, and the 3/2 law by hand (Sec. III.B)."""
 
 import math
+import pickle
+import sys
 
 import numba as nb
 import numpy as np
@@ -12,18 +14,24 @@ from granular_response.cli import scene_reference
 from granular_response.contact import LAWS
 from granular_response.contact.law import elastic_force, energy, stiffness
 from granular_response.scene import Scene, SceneError
-from granular_response.scene.material import LAW_PARAMETERS
+from granular_response.scene.material import LAW_PARAMETERS, OUTSIDE_LAWS
 from granular_response.solvers.problem import Problem
+from granular_response.sweeps.keys import key
 
 #: Those of the package, and one that lives outside.
 NAMES = [*LAWS, "cohesive"]
+
+
+def forget(name):
+    for known in (LAWS, LAW_PARAMETERS, OUTSIDE_LAWS):
+        del known[name]
 
 
 @pytest.fixture(autouse=True)
 def _cohesive():
     gr.register_law("cohesive", Cohesive, Cohesion)
     yield
-    del LAWS["cohesive"], LAW_PARAMETERS["cohesive"]
+    forget("cohesive")
 
 
 def law(name, reduced_radius=0.5, friction=0.2):
@@ -117,8 +125,8 @@ def test_parameters_of_a_law_are_validated_stored_and_listed():
             scene.updated(wrong)
     with pytest.raises(SceneError, match=r"contact\.parameters\.strength = 0\.5: unknown key \(allowed: none\)"):
         Scene().updated({"contact.parameters": {"strength": 0.5}})
-    (key,) = (one for one in scene_reference.every() if one.path == "contact.parameters.strength")
-    assert (key.default, key.unit) == ("0.1", "disk weight") and key.meaning.startswith("Pull")
+    (listed,) = (one for one in scene_reference.every() if one.path == "contact.parameters.strength")
+    assert (listed.default, listed.unit) == ("0.1", "disk weight") and listed.meaning.startswith("Pull")
 
 
 def test_a_disk_hangs_on_the_floor_by_cohesion():
@@ -133,8 +141,41 @@ def test_a_disk_hangs_on_the_floor_by_cohesion():
     assert "lets go at once" in result.to_dataset().attrs["method_reason"]
     with pytest.raises(gr.GranularError):  # beyond the pull the load carries it off
         gr.solve(gr.Scene.from_dict(base).updated({"loads.0.force": [0.0, 1.4]}))
-    with pytest.raises(SceneError, match=r"protocol\.method = path: must be dynamics or auto, a contact that pulls"):
-        gr.solve(gr.Scene.from_dict(base).updated({"protocol.method": "path"}))
+    for method in ("path", "minimise"):
+        said = rf"protocol\.method = {method}: must be dynamics or auto, a contact that pulls"
+        with pytest.raises(SceneError, match=said):
+            gr.solve(gr.Scene.from_dict(base).updated({"contact.friction": 0.0, "protocol.method": method}))
+
+
+MINE = """
+import granular_response as gr
+from demonstration import Cubic
+
+class Mine(Cubic):
+    pass
+
+gr.register_law("mine", Mine)
+"""
+
+
+def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_apart(tmp_path, monkeypatch):
+    """Scenes bring its module, and its file is a part of the key under which results are kept."""
+    file = tmp_path / "law_of_mine.py"
+    file.write_text(MINE)
+    monkeypatch.syspath_prepend(tmp_path)
+    import law_of_mine
+
+    scene = Scene().updated({"contact.law": "mine"})
+    sent, before = pickle.dumps(scene), key(scene)
+    forget("mine")
+    del sys.modules["law_of_mine"]
+    try:
+        received = pickle.loads(sent)
+        assert received == scene and type(Problem.from_scene(received).pair_law).__name__ == law_of_mine.Mine.__name__
+        file.write_text(MINE + "# another force\n")
+        assert key(received) != before
+    finally:
+        forget("mine")
 
 
 @pytest.mark.parametrize(

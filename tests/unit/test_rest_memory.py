@@ -79,6 +79,8 @@ def test_a_minimised_packing_needs_no_stable_time_step(folder, computed):
     [
         {"contact.friction": 0.5},
         {"wall.friction": 0.1},
+        {"contact.rolling_friction": 0.1, "contact.rolling_stiffness_ratio": 0.5},
+        {"wall.friction": 0.1, "wall.rolling_friction": 0.1, "wall.rolling_stiffness_ratio": 0.5},
         {"preparation.gravity": "slow"},
         {"packing.disks_per_row": 8},
         {"protocol.friction_law": "literal"},

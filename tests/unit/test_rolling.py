@@ -216,6 +216,9 @@ def test_a_path_keeps_the_limits_and_its_energy(solution):
 def test_a_result_goes_on_from_its_file_as_if_it_had_not_been_cut(solution, tmp_path):
     dataset = to_dataset(solution)
     assert {"contact_rolling_spring", "wall_rolling_status", "certificate_rolling_excess"} <= set(dataset)
+    units = {"force": "mean_weight", "excess": "mean_weight", "spring": "mean_radius", "status": None}
+    for name in (str(name) for name in dataset.variables if "rolling" in str(name)):
+        assert dataset[name].attrs.get("units") == units[name.rpartition("_")[2]], name
     again = state_from(dataset, 1)
     first = solution.loaded[0]
     for name in ("rolling_force", "rolling_spring", "rolling_status"):

@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 from small_scenes import free_disks, scene
 
+from granular_response.scene import Scene
+from granular_response.scene.protocol import PAPERS_TIME_STEP
 from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
-from granular_response.solvers.timestep import UnstableTimeStep, oscillator_limit, resolve_time_step, stability_limit
+from granular_response.solvers.timestep import (
+    UnstableTimeStep,
+    oscillator_limit,
+    resolve_time_step,
+    stability_limit,
+    time_step_reason,
+)
 
 
 def test_unstable_time_step_is_one_clear_line():
@@ -91,6 +99,17 @@ def test_the_limit_of_a_tangential_spring_is_the_kernels_own(integrator):
     """Rolling translates and turns the disk: (1 + 2) k_T over the mass is the rate of that one motion."""
     assert twisted(integrator, 0.97) < 1e-3
     assert twisted(integrator, 1.05) > 10.0
+
+
+def test_the_step_is_safe_where_small_disks_gather():
+    """In a poured packing; with the paper's step, near the limit of equal disks, small ones that touch never rest."""
+    poured = Scene.from_dict({"packing": {"kind": "poured", "disks": 100, "width": 18.0, "sizes": [1.0, 1.4]}})
+    problem = Problem.from_scene(poured)
+    assert stability_limit(problem) > PAPERS_TIME_STEP > stability_limit(problem, smallest=True)
+    assert resolve_time_step(problem) == pytest.approx(0.6 * stability_limit(problem, smallest=True))
+    assert time_step_reason(problem).startswith("auto")
+    slab = Problem.from_scene(scene(packing__polydispersity=0.25))
+    assert resolve_time_step(slab) == PAPERS_TIME_STEP and time_step_reason(slab) == "the paper's"
 
 
 def test_one_small_disk_shortens_the_step():

@@ -91,7 +91,14 @@ def audit(
     load : (n, 3) external force and torque on each disk, gravity left out.
     periodic : x and x + width are the same place, and there are no side walls.
     rounding : force that a last digit of a position is worth (mean disk weights).
+
+    Raises
+    ------
+    ValueError
+        For a state whose contacts resist rolling: their couples are not summed here.
     """
+    if state.pairs.rolling or state.walls.rolling:
+        raise ValueError("state: its contacts resist rolling, which is not checked")
     n = len(radius)
     x = state.position
     total = np.array(load, float)

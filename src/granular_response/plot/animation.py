@@ -70,9 +70,8 @@ def animate(
     Examples
     --------
     >>> import numpy as np
-    >>> scene = gr.Scene(packing=gr.Slab(layers=3, disks_per_row=5), loads=[gr.Load(disk="top-centre", force=(0.0, -1.0))])
-    >>> result = gr.solve(scene, load_factors=np.linspace(0.1, 1.0, 3))
-    >>> animation = gr.plot.animate(result, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
+    >>> growing = gr.solve(result.scene, load_factors=np.linspace(0.1, 2.0, 20))
+    >>> animation = gr.plot.animate(growing, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
     """
     for name, value in {"fps": fps, "dpi": dpi}.items():
         if not (np.isfinite(value) and value > 0.0):

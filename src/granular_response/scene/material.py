@@ -25,6 +25,8 @@ class NoParameters(Description):
 
 #: By the name of a contact law, the description of the parameters that it brings.
 LAW_PARAMETERS: dict[str, type[Description]] = {"linear": NoParameters, "hertz": NoParameters}
+#: Laws from outside the package, by their names.
+OUTSIDE_LAWS: dict[str, type] = {}
 
 
 def _check_law(value: Any) -> Any:
@@ -105,6 +107,10 @@ class Contact(Sparse):
     @classmethod
     def _check_parameters(cls, value: Any, info: ValidationInfo) -> Description:
         return law_parameters(info.data.get("law", "linear"), value)
+
+    def __getstate__(self) -> dict[Any, Any]:
+        """With the class of the law: its module, which registers it, is imported where this is unpickled."""
+        return {**super().__getstate__(), "law": OUTSIDE_LAWS.get(self.law)}
 
     @property
     def rolls(self) -> bool:

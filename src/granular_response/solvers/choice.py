@@ -83,8 +83,8 @@ def _load(problem: Problem, only_motion: str) -> Choice:
     if asked == "dynamics":
         return Choice("dynamics", "protocol.method is dynamics")
     if only_motion:
-        if asked == "path":
-            raise SceneError(f"protocol.method = path: must be dynamics or auto, {only_motion}")
+        if asked in ("path", "minimise"):
+            raise SceneError(f"protocol.method = {asked}: must be dynamics or auto, {only_motion}")
         return Choice("dynamics", only_motion)
     if asked == "path":
         return Choice("path", "protocol.method is path")

@@ -8,7 +8,7 @@ from ..contact import LAWS, Law
 from ..errors import GranularError
 from ..scene import SceneError
 from ..scene.base import Description
-from ..scene.material import LAW_PARAMETERS, NoParameters
+from ..scene.material import LAW_PARAMETERS, OUTSIDE_LAWS, NoParameters
 
 #: What a law must have; see :class:`granular_response.contact.law.Law`.
 FIELDS = (
@@ -24,8 +24,8 @@ class LawError(GranularError, ValueError):
 def register_law(name: str, law: type[Law], parameters: type[Description] = NoParameters) -> None:
     """Let scenes name a contact law of one's own: ``contact.law: NAME``, with ``contact.parameters`` of its own.
 
-    Registered where its module is imported, it is known wherever scenes with its parameters are unpickled, in the
-    processes of a sweep too.
+    Registered where its module is imported, it is known wherever scenes with it are unpickled, in the processes of a
+    sweep too.
 
     Parameters
     ----------
@@ -62,4 +62,4 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
         raise LawError(
             f"law = {law.__qualname__}: {error}; parameters must have defaults, and of() take them"
         ) from None
-    LAWS[name], LAW_PARAMETERS[name] = law, parameters
+    LAWS[name], LAW_PARAMETERS[name], OUTSIDE_LAWS[name] = law, parameters, law

@@ -174,6 +174,14 @@ def stability_limit(problem: Problem, integrator: str | None = None, *, smallest
     return min(oscillator_limit(name, direct, damping, spring) for direct, spring, damping in motions)
 
 
+def _papers_is_stable(problem: Problem) -> bool:
+    """Whether the paper's step is stable. Among poured disks small ones gather: there all count as the smallest.
+
+    Three small disks that touch in a poured packing of two sizes bear 0.92 of the estimate, and above it never rest.
+    """
+    return stability_limit(problem, smallest=problem.scene.packing.kind == "poured") >= PAPERS_TIME_STEP
+
+
 def resolve_time_step(problem: Problem) -> float:
     """The scene's time step, or the one that is taken where it gives none (see :func:`time_step_reason`).
 
@@ -183,7 +191,7 @@ def resolve_time_step(problem: Problem) -> float:
         When the given step exceeds the limit.
     """
     step = problem.scene.protocol.time_step
-    if step is None and stability_limit(problem) >= PAPERS_TIME_STEP:
+    if step is None and _papers_is_stable(problem):
         return PAPERS_TIME_STEP
     if step is None or step == "auto":
         return SAFETY * stability_limit(problem, smallest=True)
@@ -203,6 +211,6 @@ def time_step_reason(problem: Problem) -> str:
         return f"auto: {SAFETY:g} of the stability limit"
     if step is not None:
         return "protocol.time_step"
-    if stability_limit(problem) >= PAPERS_TIME_STEP:
+    if _papers_is_stable(problem):
         return "the paper's"
     return f"auto: {SAFETY:g} of the stability limit, as the paper's {PAPERS_TIME_STEP:g} is unstable for this scene"

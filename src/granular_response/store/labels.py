@@ -12,12 +12,13 @@ from ..scene.laboratory import FORCE, LENGTH, MASS, TIME
 
 #: Variables by their unit; all others are plain numbers.
 _VARIABLES = {
-    LENGTH: """position x radius contact_overlap wall_overlap contact_spring wall_spring event_x event_z
-        event_displacement reached_finish_displacement""",
+    LENGTH: """position x radius contact_overlap wall_overlap contact_spring wall_spring contact_rolling_spring
+        wall_rolling_spring event_x event_z event_displacement reached_finish_displacement""",
     MASS: "mass",
-    FORCE: """contact_normal_force contact_tangential_force contact_force wall_normal_force wall_tangential_force
-        wall_force floor_force floor_force_rest floor_force_change total_force reaction certificate_force_residual
-        certificate_coulomb_excess certificate_smallest_normal_force reached_events_within""",
+    FORCE: """contact_normal_force contact_tangential_force contact_rolling_force contact_force wall_normal_force
+        wall_tangential_force wall_rolling_force wall_force floor_force floor_force_rest floor_force_change total_force
+        reaction certificate_force_residual certificate_coulomb_excess certificate_rolling_excess
+        certificate_smallest_normal_force reached_events_within""",
     f"{FORCE} * {LENGTH}": "certificate_torque_residual certificate_kinetic_energy reached_kinetic_energy",
     f"{FORCE} / {MASS}": "reached_mean_acceleration",
     "radian": "angle",

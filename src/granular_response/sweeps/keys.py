@@ -1,8 +1,9 @@
 """Keys made from content: equal values have equal keys in every process, others have others.
 
-A key is the digest of a value written as canonical JSON: a scene by its keys and its table, a dataclass by its fields,
-an array by its bytes, a function or class by its name and the file it stands in. What stands under its name in no file
-(a lambda, a function of a notebook) has no key: nothing is kept under it, and nothing of another value is found.
+A key is the digest of a value written as canonical JSON: a scene by its keys, its table and its law from outside, a
+dataclass by its fields, an array by its bytes, a function or class by its name and the file it stands in. What stands
+under its name in no file (a lambda, a function of a notebook) has no key: nothing is kept under it, and nothing of
+another value is found.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ import numpy as np
 from ..errors import GranularError
 from ..inputs import check_regular
 from ..scene.base import Description
+from ..scene.material import OUTSIDE_LAWS, Contact
 from ..scene.table import FilePacking
 
 _PACKAGE = Path(__file__).parents[1]
@@ -105,7 +107,8 @@ def _parts(value: Any, by_name: Collection[str]) -> list[Any]:
         return plain((value.func, value.args, value.keywords))
     if isinstance(value, Description):
         table = [_table(value)] if isinstance(value, FilePacking) else []
-        return [*plain(getattr(value, name) for name in type(value).model_fields), *table]
+        law = [OUTSIDE_LAWS[value.law]] if isinstance(value, Contact) and value.law in OUTSIDE_LAWS else []
+        return [*plain(getattr(value, name) for name in type(value).model_fields), *table, *plain(law)]
     if dataclasses.is_dataclass(value):
         return plain(getattr(value, field.name) for field in dataclasses.fields(value))
     raise Indistinct(f"a value of class {type(value).__qualname__} cannot be told from others by its content")

@@ -71,6 +71,8 @@ def name(problem: Problem) -> str:
         packing,
         problem.pair_law,
         problem.wall_law,
+        problem.pair_rolling,
+        problem.wall_rolling,
         problem.rule,
         problem.scene.preparation,
         method,
