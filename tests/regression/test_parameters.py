@@ -43,6 +43,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"compared_stiffnesses": [1000.0, 2000.0]}, r"compared_stiffnesses = .*: must be two of"),
     ],
     "hysteresis": [({"cases": [LOOP, LOOP]}, "must have each material once"), ({"cases": []}, "cases")],
+    "network": [({"polydispersities": [0.0]}, r"polydispersities = \[0.0\]: must be above 0")],
     "influence": [({"fitted": [6.0, 1.0]}, r"fitted = \[6.0, 1.0\]: must be two growing numbers")],
     "moduli": [
         (

@@ -57,7 +57,7 @@ def restore(archive: Path, root: Path = Path(".")) -> list[str]:
     check_regular(archive)
     try:
         with zipfile.ZipFile(archive) as file:
-            _check_names(archive, file)
+            check_names(archive, file)
             wanted = [item for item in items if not _is_there(root, item)]
             for item in items:
                 _content(archive, file, item)
@@ -70,7 +70,7 @@ def restore(archive: Path, root: Path = Path(".")) -> list[str]:
     return [item.path for item in wanted]
 
 
-def _check_names(archive: Path, file: zipfile.ZipFile) -> None:
+def check_names(archive: Path, file: zipfile.ZipFile) -> None:
     """Refuse an archive with a member that is no file below the folder where it is unpacked, or is there twice."""
     seen: set[str] = set()
     for member in file.infolist():

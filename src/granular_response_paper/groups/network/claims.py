@@ -1,0 +1,102 @@
+"""Claims B11 to B13, beyond the paper: contact networks against what granular packings are known for (Sec. VI)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ...claims import asked
+from ...claims.bootstrap import over_realizations
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "network"
+CLAIMS = Claims(GROUP)
+#: Contacts per disk at which forces follow from balance alone, in two dimensions.
+FRICTIONLESS, FRICTIONAL = 4.0, 3.0
+
+
+@CLAIMS.add(
+    "B11",
+    "beyond the paper, VI",
+    "coefficient of variation of what normal forces above their mean exceed it by; 1 for an exponential, 0.76 for a "
+    "Gaussian",
+    "normal forces above their mean are distributed exponentially, as in granular packings under pressure",
+)
+def tail(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "statistics", "tail_variation")
+    readings = [
+        Reading(
+            f"δ = {delta:g}, {'at rest' if state == 'rest' else 'under the load'}",
+            *(
+                asked.near(f"friction {mu:g}", quantity, words, "quite well")
+                for mu, quantity in _by_friction(study["tail_variation"].sel(polydispersity=delta, state=state))
+            ),
+        )
+        for state in study["state"].values.tolist()
+        for delta in study["polydispersity"].values.tolist()
+    ]
+    found = [condition.found.value for reading in readings for condition in reading.conditions]
+    return Finding(
+        f"the coefficient of variation is {min(found):.2f} to {max(found):.2f}; 1 for an exponential",
+        readings,
+        "Forces relative to the mean at their height, since they grow with depth",
+    )
+
+
+@CLAIMS.add(
+    "B12",
+    "beyond the paper, VI",
+    "contacts per disk without rattlers at rest, without friction and with the largest",
+    "packings have the isostatic 4 contacts a disk without friction, and with large friction go down to the 3 of "
+    "frictional ones",
+)
+def coordination(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "statistics", "coordination_number").sel(state="rest")
+    readings, numbers = [], []
+    for delta in study["polydispersity"].values.tolist():
+        each = _by_friction(study["coordination_number"].sel(polydispersity=delta))
+        (_, without), (largest, rough) = each[0], each[-1]
+        numbers.append(f"{without.value:.2f} to {rough.value:.2f} (δ = {delta:g})")
+        readings.append(
+            Reading(
+                f"δ = {delta:g}",
+                asked.near("friction 0", without, words, "nearly", FRICTIONLESS),
+                asked.near(f"friction {largest:g}", rough, words, "nearly", FRICTIONAL),
+            )
+        )
+    return Finding(
+        f"contacts per disk from no friction to the largest: {', '.join(numbers)}", readings, "Gravity at once"
+    )
+
+
+@CLAIMS.add(
+    "B13",
+    "beyond the paper, VI",
+    "force components at rest beyond the equations of balance, per equation, with friction",
+    "packings with friction are isostatic once fully mobilized contacts are counted (generalized isostaticity)",
+)
+def isostaticity(data: Data, words: Bounds) -> Finding:
+    study = data.get(GROUP, "statistics", "hyperstaticity").sel(state="rest")
+    readings, found = [], []
+    for delta in study["polydispersity"].values.tolist():
+        conditions: list[Condition] = []
+        for mu, quantity in _by_friction(study["hyperstaticity"].sel(polydispersity=delta)):
+            if mu > 0.0:
+                conditions.append(asked.at_most(f"friction {mu:g}", quantity, words, "nearly", "%"))
+                found.append(quantity.value)
+        readings.append(Reading(f"δ = {delta:g}", *conditions))
+    return Finding(
+        f"with friction there are {min(found):.0%} to {max(found):.0%} more force components than equations", readings
+    )
+
+
+def _by_friction(values: xr.DataArray) -> list[tuple[float, Quantity]]:
+    """Means over realizations, by friction; frictions with fewer than three are left out."""
+    found = []
+    for mu in values["friction"].values.tolist():
+        each = values.sel(friction=mu).values
+        if np.isfinite(each).sum() >= 3:
+            found.append((mu, over_realizations(each, np.mean)))
+    CLAIMS.needs(found, "statistics holds no three realizations of one friction")
+    return found

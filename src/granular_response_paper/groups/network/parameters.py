@@ -1,0 +1,38 @@
+"""Parameters of the statistics of contact networks."""
+
+from __future__ import annotations
+
+from pydantic import Field, model_validator
+
+from granular_response.scene.base import Count, Part, Positive
+from granular_response.scene.errors import Problem
+from granular_response_paper.ensembles.parameters import Case, EnsembleGroup, Spreads
+from granular_response_paper.parameters import Coefficients
+
+
+class Parameters(EnsembleGroup):
+    """Section ``network``."""
+
+    polydispersities: Spreads = Field(description="delta.")
+    frictions: Coefficients = Field(description="Between disks, of floor and walls.")
+    realizations: Count = Field(description="Of each polydispersity and friction.")
+    force: Positive = Field(description="Of the load, in mean disk weights.")
+    band: Positive = Field(description="Height of the bands in which forces are relative to their mean, in radii.")
+    margin: Part = Field(description="Below the Coulomb limit, within which a contact counts as fully mobilized.")
+
+    @property
+    def cases(self) -> dict[tuple[int, int], Case]:
+        """By the places of polydispersity and friction."""
+        start = self.scene.packing.model_dump()["lattice_constant"]
+        return {
+            (d, m): Case(delta, friction, start, (self.force,), self.realizations)
+            for d, delta in enumerate(self.polydispersities)
+            for m, friction in enumerate(self.frictions)
+        }
+
+    @model_validator(mode="after")
+    def _check(self) -> Parameters:
+        if min(self.polydispersities) <= 0.0:
+            rule = "must be above 0: a lattice has one realization"
+            raise Problem(rule, key=("polydispersities",), value=list(self.polydispersities))
+        return self
