@@ -166,6 +166,12 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"scene": SHALLOW, "width": 1e-6, "forces": [1e-3, 1e5],
          "disordered": [{"polydispersity": 0.9, "friction": 0.0, "largest_force": 1e5}]},
     ),
+    "overview": (
+        {"scene": SMALL},
+        {"frictions": [0.2], "forces": [1e-3]},
+        {"scene": SHALLOW, "experiment": {"polydispersities": [0.0], "friction": 0.0, "force": 1e3,
+                                          "stop_kinetic_energy": 1e-9}},
+    ),
     "stability": (
         {"random_scenes": {"number": 1, "chunk": 5, "maximum_steps": 1}},
         {"rolling": {"friction": 0.2, "time_step": 0.0001, "starts": [[0.0, 0.0]]}},
