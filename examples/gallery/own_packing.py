@@ -35,7 +35,7 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# The packing at rest, its disks coloured by their size, and the forces that the load adds: black where it presses the
+# The initial equilibrium, its disks coloured by their size, and the incremental forces: black where the load presses the
 # disks together, red where it takes compression away.
 
 gr.plot.packing(result, state=0, values=result.to_dataset()["radius"], label="radius over mean radius")

@@ -24,7 +24,7 @@ result = gr.solve(scene)
 gr.plot.photoelastic(result, half_width=20.0)
 
 # %%
-# The same with the forces that are there at rest, more sensitive: ``fringe`` is the difference of the principal
+# The same with the forces of the initial equilibrium, more sensitive: ``fringe`` is the difference of the principal
 # stresses from one fringe to the next, in mg per radius.
 
 gr.plot.photoelastic(result, state=0, half_width=20.0, fringe=20.0)

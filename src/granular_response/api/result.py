@@ -381,7 +381,8 @@ class Result:
         ----------
         path : its ending is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView, ``.data``
             and ``.dump`` for LAMMPS, ``.txt`` for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
-        state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last in a file of one.
+        state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
+            in a file of one.
 
         Raises
         ------

@@ -70,7 +70,7 @@ def animate(
     Examples
     --------
     >>> import numpy as np
-    >>> result = gr.solve(scene, load_factors=np.linspace(0.1, 2.0, 20))
+    >>> result = gr.solve("examples/slab.yaml", load_factors=np.linspace(0.1, 2.0, 20))
     >>> animation = gr.plot.animate(result, output="growing.gif")  # in a notebook: HTML(animation.to_jshtml())
     """
     for name, value in {"fps": fps, "dpi": dpi}.items():

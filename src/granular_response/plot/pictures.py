@@ -1,7 +1,8 @@
 """Pictures of a result: its response, forces on the floor and in the packing, contacts, stress, and the packing itself.
 
 Each takes a ``Result`` or the dataset of one (``Result.to_dataset``, or a stored file as xarray opens it). ``state`` is
-0 for the initial equilibrium, then one for each load factor, -1 the last. Without ``ax`` a picture has a figure of its own, made by pyplot.
+0 for the initial equilibrium, then one for each load factor, -1 the last. Without ``ax`` a picture has a
+figure of its own, made by pyplot.
 """
 
 from __future__ import annotations

@@ -25,7 +25,14 @@ def crossovers(datasets: Datasets) -> str:
     """A line for each series of layers of the group ``crossover_scaling``: powers, and what they lead to."""
     slabs, powers = datasets["slabs"], datasets["powers"]
     far = f"two peaks at {powers.attrs['layers']:g} layers, extrapolated"
-    heads = ["friction, lateral prestress", "layers", "two peaks: exponent of N", "region at the floor", "first opening", far]
+    heads = [
+        "friction, lateral prestress",
+        "layers",
+        "two peaks: exponent of N",
+        "region at the floor",
+        "first opening",
+        far,
+    ]
     rows = []
     for series in np.flatnonzero(powers["varied"].values == "layers"):
         one = powers.isel(series=series)
