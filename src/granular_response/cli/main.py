@@ -288,8 +288,8 @@ def export(
     state: Annotated[
         int | None,
         typer.Option(
-            help="Write this state alone: 0 for the initial equilibrium, -1 the last one. If not given all, or the last in "
-            "a file of one.",
+            help="Write this state alone: 0 for the initial equilibrium, -1 the last one. If not given all, or "
+            "the last in a file of one.",
             show_default=False,
         ),
     ] = None,
