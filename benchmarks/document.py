@@ -28,81 +28,78 @@ LARGE, MANY = 50_000, 5_000
 TEXTS = {
     "precision": (
         "Run time against error",
-        "The error is the largest difference of the normalized floor response from the quasi-static limit; times "
-        "include the fall under gravity. Open symbols: without the static finish, at several stopping energies. "
-        "With friction the initial equilibrium depends a little on the fall, so LAMMPS is also compared with its "
-        "own limit.",
+        "Error: largest difference of the normalized floor response from the quasi-static limit; times include "
+        "the fall under gravity. Open symbols: without the static finish. With friction the initial equilibrium "
+        "depends a little on the fall, so LAMMPS is also compared with its own limit.",
     ),
     "nine_points": (
         "Path against dynamics",
-        "From the initial equilibrium, in one run: load path, and dynamics by leapfrog with ramps of 1, 5, 20 and "
-        "100 sqrt(R/g) and a static finish. The error is relative to the path; of dynamics the best-case ramp "
-        "counts.",
+        "From the initial equilibrium: load path, and dynamics by leapfrog with ramps of 1 to 100 sqrt(R/g) and a "
+        "static finish, of which the best-case ramp counts. The error is relative to the path.",
     ),
     "exactness": (
         "Accuracy of the path",
-        "Load paths against the same path in small increments with the return map: the paper's slab under nine "
-        "pairs of friction and force, packings of at most 60 disks, and slabs of 8 to 15 layers. The error is the "
-        "largest difference of a force of the floor or a wall, per load; a path that differs by no more than 1e-8 "
-        "and the error of the increments counts as exact. Paths that lose an equilibrium are not compared.",
+        "Load paths against the same path in small increments with the return map. The error is the largest "
+        "difference of a force of the floor or a wall, per load; up to 1e-8 and the error of the increments it "
+        "counts as exact. Paths that lose an equilibrium are not compared.",
     ),
     "convergence": (
         "Convergence of dynamics to the path",
-        "The difference falls like one over the ramp time. Lines: its symmetric part; dotted: all of it, where that"
-        " is more, since at friction 1 a slow ramp amplifies rounding.",
+        "The difference falls like one over the ramp time. Lines: its symmetric part; dotted: all of it, since at "
+        "friction 1 a slow ramp amplifies rounding.",
     ),
     "trajectory": (
         "Order of the integrators",
-        "Leapfrog's dashpots see the velocity of half a step before. In a fall, contacts that open, close or begin "
-        "to slide limit the order to one.",
+        "Leapfrog's dashpots see the velocity of half a step before. In a fall, contacts that open, close or "
+        "begin to slide limit the order to one.",
     ),
     "kernel": (
         "Time of a step",
-        "Slabs in equilibrium, same time step and dashpots; LAMMPS runs `pair_style gran/hooke/history` in the same"
-        " run.",
+        "Slabs in equilibrium, same time step and dashpots as `pair_style gran/hooke/history` of LAMMPS.",
     ),
     "arena": (
         "Comparison with other codes: a step",
-        "Slabs with friction 0.2; same start, contact law and time step, one core each, interleaved. LAMMPS runs "
-        "`hooke/history` and `granular`, LIGGGHTS `gran model hooke/stiffness tangential history`, YADE "
-        "`Law2_ScGeom_ViscElPhys_Basic`. Processor time, least of all rounds.",
+        "Slabs with friction 0.2; same start, contact law and time step, one core each, interleaved; processor "
+        "time, least of all rounds. LIGGGHTS runs `gran model hooke/stiffness tangential history`, YADE "
+        "`Law2_ScGeom_ViscElPhys_Basic`.",
     ),
     "responses": (
         "Comparison with other codes: a response",
-        "908 disks, the scenes and errors of run time against error; processor time with the fall under gravity. "
-        "The other codes ramp the load between two equilibria.",
+        "Scenes and errors of run time against error; processor time with the fall under gravity. The other codes "
+        "ramp the load between two equilibria.",
     ),
     "bounces": (
         "Single collisions with a frictional wall",
-        "One disk hits a wall with friction 0.5 at several angles. A disk that slides throughout has a closed form "
-        "(dotted). `fix wall/gran hooke/history` of LAMMPS of 2025 gives it too little friction "
-        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE lets no"
-        " contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk; equilibria do not depend on this.",
+        "Against a wall with friction 0.5. A disk that slides throughout has a closed form (dotted), from which "
+        "`fix wall/gran hooke/history` of LAMMPS of 2025 deviates "
+        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE lets "
+        "no contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk; equilibria do not depend on "
+        "this.",
     ),
     "limits": (
         "Roofline",
-        "The goals compare kernels of a step of 908 disks with a loop of independent operations of the same mix, and "
-        "factorisations with LAPACK's matrix product.",
+        "The goals compare kernels of a step of 908 disks with a loop of independent operations of the same mix, "
+        "and factorisations with LAPACK's matrix product.",
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
-        "With friction L U of three unknowns a disk; without, two, symmetric and positive for LAPACK, fronts and "
+        "With friction LU of three unknowns a disk; without, two, symmetric and positive for LAPACK, fronts and "
         "PARDISO; the time of SuperLU has its ordering. One thread each.",
     ),
     "skipping": (
         "Cost of work that is skipped",
-        "The same scene with an unneeded part forced on: rotations without friction, neighbour searches in a "
-        "network that does not change, wall tests for every disk. Results are bitwise the same.",
+        "Rotations without friction, neighbour searches in a network that does not change, wall tests for every "
+        "disk. Results are bitwise the same.",
     ),
     "scale": (
         "Large systems",
-        "Whole processes, `granular-response run` from a scene file to the stored result, on two threads. Slabs are"
-        " four times as wide as deep, and stiffness grows with their size.",
+        "`granular-response run` from a scene file to the stored result, on two threads. Slabs are four times as "
+        "wide as deep, and stiffness grows with their size.",
     ),
     "depth": (
         "The teardrop in deep slabs",
-        "Open region without friction (Fig. 5), in slabs whose stiffness grows with their size; open symbols: it "
-        "has reached the floor.",
+        "Open region without friction (Fig. 5), where stiffness grows with the size; open symbols: it has reached "
+        "the floor.",
     ),
     "shares": (
         "Profile",
@@ -110,11 +107,12 @@ TEXTS = {
     ),
     "startup": (
         "Start-up",
-        "Whole processes, least of five. Compiled kernels are cached.",
+        "Whole processes, least of five, with cached kernels.",
     ),
     "pipeline": (
         "The pipeline",
-        "Every group from nothing, with compiled kernels, one after another on all cores.",
+        "Every group from nothing, with compiled kernels, one after another on all cores (`make figure` lists the "
+        "seconds of each).",
     ),
 }
 
@@ -241,7 +239,7 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
-            "exponent_of_depth": "depth grows as the force to the power", "exponent_of_width": "width",
+            "exponent_of_depth": "exponent of depth in force", "exponent_of_width": "of width",
         }  # fmt: skip
         return [table(metrics["growth"], columns)]
     if benchmark == "startup":
@@ -250,14 +248,10 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
 
 
 def groups(metrics: Metrics) -> str:
-    """Seconds of each figure group, and of those of the paper together."""
-
-    def whole(row: dict[str, Any]) -> float:
-        return row["simulate_seconds"] + row["draw_seconds"]
-
-    each = ", ".join(f"`{row['group']}` {whole(row):.0f}" for row in metrics["runs"])
-    totals = "".join(f" The paper's groups: {whole(row):.0f}." for row in metrics["totals"])
-    return f" Seconds with figures: {each}.{totals}"
+    """Seconds of the paper's figure groups together."""
+    return "".join(
+        f" The paper's groups: {row['simulate_seconds'] + row['draw_seconds']:.0f} s." for row in metrics["totals"]
+    )
 
 
 def out_of_reach(runs: list[dict[str, Any]], scene: str, comparison: dict[str, Any]) -> float | None:
@@ -309,7 +303,7 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
         add("precision", what, value or bound, least, None, times, above)
     points = found.get("nine_points", {}).get("points", [])
     row = next(iter(pick(points, friction=0.2, force=15.0)), {})
-    what = "Path from rest, friction 0.2, force 15, processor time"
+    what = "Path from the initial equilibrium, friction 0.2, force 15, processor time"
     add("nine_points", what, row.get("path"), None, 0.15, lambda v: f"{v:.2g} s")
     runs = found.get("scale", {}).get("runs", [])
     for method, disks, limit, what in (
@@ -324,7 +318,7 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     for method, what in (("minimise", "without friction"), ("path", "with friction")):
         row = next(iter(pick(found.get("scale", {}).get("exponents", []), method=method)), {})
         extent = f", {row['from_disks']:,} to {row['to_disks']:,}" if row else ""
-        what = f"Processor time grows as the number of disks to the power, {what}{extent}"
+        what = f"Exponent of processor time in the number of disks, {what}{extent}"
         add("scale", what, row.get("exponent_of_cpu_seconds"), None, 1.5, lambda v: f"{v:.2f}")
     residuals = [row["force_residual"] for row in runs if row["method"] != "dynamics"]
     add(
@@ -342,7 +336,7 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
         add("limits", what, value, 0.7, None, lambda v: f"{v:.2f}")
     startup = found.get("startup", {}).get("runs", [])
     for index, limit, what in (
-        (0, 40.0, "Every kernel compiled and kept"),
+        (0, 40.0, "Every kernel compiled and cached"),
         (2, 1.2, "`granular-response run`, default scene"),
     ):
         add("startup", what, startup[index]["seconds"] if startup else None, None, limit, seconds)
@@ -356,20 +350,22 @@ def measured_on(metrics: Metrics) -> str:
     return " and ".join(dict.fromkeys(name or "a processor that was not recorded" for name in found))
 
 
+def part(benchmark: str, metrics: Metrics) -> dict[str, Any]:
+    """The section of a benchmark."""
+    title, words = TEXTS[benchmark]
+    return {
+        "title": title,
+        "text": words + (groups(metrics) if benchmark == "pipeline" else ""),
+        "measured_on": measured_on(metrics),
+        "picture": benchmark if benchmark in pictures.DRAWN else None,
+        "tables": tables(benchmark, metrics),
+    }
+
+
 def text(found: dict[str, Metrics]) -> str:
     """The page."""
-    parts = []
-    for benchmark, (title, words) in TEXTS.items():
-        metrics = found.get(benchmark)
-        part = {"title": title, "text": words, "measured_on": "", "picture": None, "tables": []}
-        if metrics is None:
-            part["text"] += " Not measured yet: `make benchmark`."
-        else:
-            part["measured_on"] = measured_on(metrics)
-            part["picture"] = benchmark if benchmark in pictures.DRAWN else None
-            part["tables"] = tables(benchmark, metrics)
-            part["text"] += groups(metrics) if benchmark == "pipeline" else ""
-        parts.append(part)
+    parts = [part(benchmark, found[benchmark]) for benchmark in TEXTS if benchmark in found]
+    missing = [title for benchmark, (title, _) in TEXTS.items() if benchmark not in found]
     environment = Environment(
         loader=FileSystemLoader(HERE),
         trim_blocks=True,
@@ -379,7 +375,7 @@ def text(found: dict[str, Metrics]) -> str:
         keep_trailing_newline=True,
     )
     page = environment.get_template("benchmarks.md.j2")
-    return page.render(goals=goals(found), parts=parts, machine=found.get("machine"))
+    return page.render(goals=goals(found), parts=parts, missing=missing, machine=found.get("machine"))
 
 
 #: Goals that the README quotes, after what the arena has measured.

@@ -24,7 +24,7 @@ X = np.linspace(-40.0, 40.0, 161)  # from the loaded disk, in mean radii
 
 
 def measure(task: tuple[Scene, float | str, int]) -> dict[str, np.ndarray | float]:
-    """One task: a realization, at rest and under the force. All random numbers come from its number."""
+    """One task: a realization, before and under the force. All random numbers come from its number."""
     base, start, realization = task
     scene = base.updated({"packing.lattice_constant": start, "packing.realization": realization})
     solution = solve_scene(scene)

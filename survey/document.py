@@ -24,12 +24,11 @@ ENDS = (0, -1)
 
 def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """A line for each disordered case that starts with the largest disks touching, and for each lattice."""
-    found, others, single = (datasets[name] for name in ("crossovers", "definitions", "realizations"))
+    found, single = datasets["crossovers"], datasets["realizations"]
     widths = found["width"].values.tolist()
-    tolerances = [0.0, 0.05]
     heads = ["δ", "µ", "realizations (collapsed)"]
     for width in widths:
-        heads += [f"w = {width:g}", *(f"dip from {100 * t:g} % on" for t in tolerances), "median of realizations"]
+        heads += [f"w = {width:g}", "median of realizations"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
     usual = found["lattice_constant"].values == found["lattice_constant"].values[0]
     order = np.lexsort((found["friction"].values, found["polydispersity"].values))
@@ -40,20 +39,17 @@ def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
         cells.append(f"{count} ({collapsed})" if collapsed else f"{count}")
         for w in range(len(widths)):
             cells.append(force(found, (w, case)))
-            for tolerance in tolerances:
-                place = int(np.flatnonzero(np.isclose(others["tolerance"].values, tolerance))[0])
-                cells.append(force(others, (w, case, place), interval=False))
             cells.append(number(float(single["median"].values[w, case])))
         lines.append("|" + "".join(f" {cell} |" for cell in cells))
     return lines
 
 
-def force(data: xr.Dataset, place: tuple[int, ...], interval: bool = True) -> str:
+def force(data: xr.Dataset, place: tuple[int, ...]) -> str:
     """A crossover force with its interval, or the bound that is known."""
     value, kind = float(data["force"].values[place]), int(data["kind"].values[place])
     text = {FOUND: "", BELOW: "below ", ABOVE: "above "}[kind] + f"{value:.3g}"
     low, high = (float(data["interval"].values[place][end]) for end in ENDS)
-    if kind != FOUND or not interval or low == high:
+    if kind != FOUND or low == high:
         return text
     return f"{text} ({number(low)} to {number(high)})"
 
@@ -65,7 +61,7 @@ def number(value: float) -> str:
 def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """A line for each polydispersity and start: contacts without friction, and the dips with and without it."""
     data = datasets["starts"]
-    heads = ["δ", "start", "contacts per disk", "horizontal part of the missing ones", "force"]
+    heads = ["δ", "lattice constant", "coordination number", "horizontal part of the missing ones", "force"]
     heads += ["dip, µ = 0", "dip, µ = 0.2", *(f"linear up to, µ = {mu:g}" for mu in FRICTIONS)]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
     place = {
@@ -108,12 +104,12 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
     """Both tables in Markdown. Equal data give equal text."""
     return "\n".join(
         [
-            "Crossover forces in mean disk weights, with 95 % of the bootstrap draws:",
+            "Crossover forces in mg, with 95 % of the bootstrap draws:",
             "",
             *crossovers(datasets),
             "",
-            "Starts, with half the width of the 95 % interval; contacts with walls, dips smoothed with w = 3; the "
-            "linear range (beside smooth walls, 1 % off) with its 95 % interval:",
+            "Initial lattices, with half the width of the 95 % interval; contacts with walls, dips smoothed with w = 3;"
+            " the linear range (beside smooth walls, 1 % off) with its 95 % interval:",
             "",
             *starts(datasets),
         ]

@@ -62,7 +62,7 @@ class Cohesion(Description):
     """Parameters of the law below."""
 
     strength: NonNegative = Field(
-        default=0.1, description="Pull of a contact while it is closed.", json_schema_extra={"unit": "disk weight"}
+        default=0.1, description="Pull of a contact while it is closed.", json_schema_extra={"unit": "mg"}
     )
 
 

@@ -27,7 +27,7 @@ def two_peaks(result: gr.Result) -> bool:
 
 
 bracket = gr.find_event(scene, two_peaks, LOW, HIGH, tolerance=0.01)
-print(f"one peak at {bracket.low:.3f} disk weights, two at {bracket.high:.3f}")
+print(f"one peak at {bracket.low:.3f} mg, two at {bracket.high:.3f}")
 
 # %%
 # The response on both sides.

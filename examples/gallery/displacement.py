@@ -29,7 +29,7 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# The reaction is the force on the disk, in mean disk weights, that holds it where it is.
+# The reaction is the force on the disk, in mg, that holds it where it is.
 
 force = np.concatenate([[0.0], result.reaction.sel(axis="z").squeeze("load_point").values])
 height = 100.0 * RAISED * np.concatenate([[0.0], result.load_factors])
@@ -42,7 +42,7 @@ for part, look, label in (
     (slice(back, None), "^:", "up again"),
 ):
     ax.plot(height[part], force[part], look, markersize=3, label=label)
-ax.set(xlabel="height above rest, in hundredths of a mean radius", ylabel="force, in disk weights")
+ax.set(xlabel="height above rest, in hundredths of a mean radius", ylabel="force, in mg")
 ax.legend()
 
 # %%

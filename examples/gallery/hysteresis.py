@@ -37,7 +37,7 @@ turn, back = 4, 8
 ax.plot([0.0, *force[:turn]], [0.0, *added[:turn]], "o-", label="loading")
 ax.plot(force[turn - 1 : back], added[turn - 1 : back], "s--", label="unloading")
 ax.plot(force[back - 1 :], added[back - 1 :], "^:", label="loading again")
-ax.set(xlabel="force on the top, in disk weights", ylabel="added floor force at x = 0")
+ax.set(xlabel="force on the top, in mg", ylabel="added floor force at x = 0")
 ax.legend()
 
 # %%

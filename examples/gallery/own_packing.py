@@ -35,8 +35,8 @@ result = gr.solve(scene)
 print(result)
 
 # %%
-# The packing at rest, its disks coloured by their size, and the forces that the load adds: black where it presses the
-# disks together, red where it takes compression away.
+# The initial equilibrium, its disks coloured by their size, and the incremental forces: black where they press the
+# disks together, red where they take compression away.
 
 gr.plot.packing(result, state=0, values=result.to_dataset()["radius"], label="radius over mean radius")
 gr.plot.forces(result)

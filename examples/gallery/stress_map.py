@@ -18,7 +18,7 @@ result = gr.solve(scene)
 gr.plot.stress(result)
 
 # %%
-# Over every line across the slab the vertical stress that the load adds sums to the load: 4 disk weights.
+# Over every line across the slab the vertical stress that the load adds sums to the load: 4 mg.
 
 x = np.arange(-80.0, 80.0, 0.25)
 z = np.arange(4.0, 1.6 * LAYERS, 2.0)

@@ -36,4 +36,4 @@ print(frame[1])
 
 columns = np.array([line.split()[1:] for line in frame[1:]], float)
 position, change = columns[:, :3], np.linalg.norm(columns[:, 6:9], axis=1)
-gr.plot.packing(result, values=change, label="change of the contact forces on a disk, in disk weights")
+gr.plot.packing(result, values=change, label="change of the contact forces on a disk, in mg")

@@ -176,7 +176,7 @@ def report(
     output: Annotated[Path, typer.Option("--output", "-o", help="Page to make (HTML).")] = Path("figures/report.html"),
     root: Annotated[Path, typer.Option(help="Folder with figures/ and data/.")] = Path("."),
     notes: Annotated[
-        Path | None, typer.Option(help="Renew the table of readings in this file.", show_default=False)
+        Path | None, typer.Option(help="Renew the table of interpretations in this file.", show_default=False)
     ] = None,
     figures: Annotated[
         Path | None,

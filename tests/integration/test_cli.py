@@ -358,7 +358,7 @@ def test_an_error_of_a_load_names_the_file(tmp_path):
     (tmp_path / "y.yaml").write_text("loads: [{disk: top-centre, force: [0, -1e300]}]\n")
     finished = call("run", "y.yaml", "-o", "a.nc", folder=tmp_path)
     assert finished.returncode == 2
-    assert finished.stderr.startswith("granular-response: y.yaml: loads[0].force: 1e+300 disk weights")
+    assert finished.stderr.startswith("granular-response: y.yaml: loads[0].force: 1e+300 mg")
 
 
 def test_an_interrupted_command_ends_quietly(tmp_path):

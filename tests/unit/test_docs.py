@@ -104,7 +104,7 @@ def test_the_reference_says_what_the_scene_allows():
     assert keys["wall.normal_stiffness"].allowed.endswith(", or null")
     assert Scene.from_text(f"contact: {{normal_stiffness: {keys['contact.normal_stiffness'].default}}}") == Scene()
     assert not keys["loads[].disk"].default and not keys["packing.kind"].default
-    assert keys["loads[].force"].unit == "disk weight"
+    assert keys["loads[].force"].unit == "mg"
     assert keys["loads[].displacement"].unit == "mean radius"
 
 

@@ -126,7 +126,7 @@ def test_parameters_of_a_law_are_validated_stored_and_listed():
     with pytest.raises(SceneError, match=r"contact\.parameters\.strength = 0\.5: unknown key \(allowed: none\)"):
         Scene().updated({"contact.parameters": {"strength": 0.5}})
     (listed,) = (one for one in scene_reference.every() if one.path == "contact.parameters.strength")
-    assert (listed.default, listed.unit) == ("0.1", "disk weight") and listed.meaning.startswith("Pull")
+    assert (listed.default, listed.unit) == ("0.1", "mg") and listed.meaning.startswith("Pull")
 
 
 def test_a_disk_hangs_on_the_floor_by_cohesion():

@@ -122,7 +122,7 @@ def test_a_scene_in_laboratory_units():
 
 def test_help_shows_keys_and_nothing_of_pydantic():
     shown = pydoc.plain(pydoc.render_doc(gr.Contact))
-    assert "normal_stiffness : default 3000.0 [disk weight / mean radius]" in shown
+    assert "normal_stiffness : default 3000.0 [mg / mean radius]" in shown
     assert not {"model_dump", "validator", "Annotated"} & set(re.findall(r"\w+", shown)) and len(shown) < 4000
     assert "friction" in dir(gr.Contact()) and "model_dump" not in dir(gr.Contact())
     assert str(inspect.signature(gr.Contact)).startswith("(*, law='linear', normal_stiffness=3000.0")
@@ -213,7 +213,7 @@ def test_short_texts_for_people(result):
     problem = result._solution.problem
     for value in (result, result.scene, result.rest, result.rest.pairs, problem, problem.packing, result._solution):
         assert 10 < len(repr(value)) < 2000
-    assert "at rest: stable" in repr(result) and "load factor 1: stable" in repr(result)
+    assert "initial equilibrium: stable" in repr(result) and "load factor 1: stable" in repr(result)
     assert "103 disks" in repr(result.rest)
     assert "<table>" in result._repr_html_() and "friction: 0.2" in result.scene._repr_html_()
 

@@ -270,15 +270,15 @@ def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
     store.write(tmp_path / "data" / "sensitivity.nc", {"mu_0.2": study})
     report.renew("notes", notes, tmp_path)
     text = notes.read_text()
-    assert text.startswith("By hand.\n<!-- readings: begin -->\n| reading | choice |")
+    assert text.startswith("By hand.\n<!-- readings: begin -->\n| interpretation | choice |")
     assert text.endswith("<!-- readings: end -->\nBy hand too.\n")
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == count + 2 and {row.count("|") for row in rows} == {5}
     largest = f"{count * 1e-3:.1e}".replace("e-0", "e-")
-    assert f"| how gravity comes | at once | grows over 100 sqrt(R/g) | {largest} |" in rows
+    assert f"| gravity | instantaneous | grows over 100 sqrt(R/g) | {largest} |" in rows
     place = 1 + list(reversed(list(readings.READINGS))).index("stop_1e-9")
     assert f"stopped at 1e-9 per disk: {study['response_sum'].values[place]:.4f} (µ = 0.2)" in text
-    assert "literal rule:" not in text  # its kinetic energy is not stored here
+    assert "as printed:" not in text  # its kinetic energy is not stored here
     report.renew("notes", notes, tmp_path)
     assert notes.read_text() == text
 

@@ -33,7 +33,7 @@ class Events(Sequence[Event]):
 
     def __init__(self, events: Iterable[Event] = (), states: Iterable[int] = ()) -> None:
         self._events = tuple(events)
-        #: For each event the index of the state that it leads to; the state at rest is 0.
+        #: For each event the index of the state that it leads to; 0 is the initial equilibrium.
         self.states = tuple(states)
         if len(self.states) != len(self._events):
             raise ValueError(f"states: {len(self.states)} given, must be one for each of {len(self._events)} events")

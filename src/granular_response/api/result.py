@@ -38,7 +38,7 @@ from .terminal import TerminalProgress
 
 
 class Result:
-    """The states of a scene, at rest and under load, and what is measured on them.
+    """The initial equilibrium of a scene and its states under load, and what is measured on them.
 
     Made by :func:`solve` and :func:`open_result`.
 
@@ -67,7 +67,7 @@ class Result:
 
     @cached_property
     def rest(self) -> State:
-        """The state at rest under gravity."""
+        """The initial equilibrium, under gravity."""
         return self._solution.rest if self._solution else state_from(self._data, 0)
 
     @cached_property
@@ -84,7 +84,7 @@ class Result:
 
     @property
     def certificates(self) -> tuple[Certificate | None, ...]:
-        """What is left unbalanced, and whether it is stable, of each state, the one at rest first.
+        """Unbalanced force and stability of each state, the initial equilibrium first.
 
         None only where a file does not say.
         """
@@ -102,7 +102,7 @@ class Result:
         ``result.events.of("opens")`` has one kind of them, ``result.events.lost`` the lost equilibria,
         ``result.events.to_dataframe()`` a table. Without a path, by dynamics or by minimisation, no contact events are
         known. Where events were taken together, as in packings of many thousand disks, ``reached.events_within`` of a
-        state is the load within which they were (mean disk weights), and ``reached.events_error`` what that leaves out
+        state is the load within which they were (mg), and ``reached.events_error`` what that leaves out
         of a force of the floor or a wall, per load.
         """
         found = [(k, event) for k, state in enumerate((self.rest, *self.loaded)) for event in state.reached.events]
@@ -126,7 +126,7 @@ class Result:
 
     @property
     def floor_force_change(self) -> xr.DataArray:
-        """What each load adds to the vertical force on each floor disk, in mean disk weights; after unloading too.
+        """What each load adds to the vertical force on each floor disk, in mg; after unloading too.
 
         Dimensions as of :attr:`floor_response`.
 
@@ -168,7 +168,7 @@ class Result:
 
     @property
     def reaction(self) -> xr.DataArray:
-        """Force x, z, in mean disk weights, with which each load holds its disk at its displacement.
+        """Force x, z, in mg, with which each load holds its disk at its displacement.
 
         Dimensions ``load``, ``load_point`` and ``axis`` ("x", "z"); 0 along directions that are free. Raises ValueError
         for a scene in which no load displaces a disk.
@@ -199,7 +199,7 @@ class Result:
 
         Parameters
         ----------
-        state : 0 at rest, then one for each load factor; -1 is the last one.
+        state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
 
         Raises
         ------
@@ -225,14 +225,14 @@ class Result:
         added: bool | None = None,
         width: float = 2.0,
     ) -> xr.DataArray:
-        """Coarse-grained stress tensor on a grid, in mean disk weights per mean radius, compression positive.
+        """Coarse-grained stress tensor on a grid, in mg per mean radius, compression positive.
 
         Parameters
         ----------
         x : places from the loaded disk, as in ``floor_response``; every mean radius across the box if left out.
         z : heights above the floor; every mean radius up to the highest disk if left out.
-        state : 0 at rest, then one for each load factor; -1 is the last one.
-        added : the part that the load adds (Fig. 14) rather than the whole stress; True by default but at rest.
+        state : 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
+        added : the part that the load adds (Fig. 14) rather than the whole stress; True by default but there.
         width : of the Gaussian (Sec. V.C: two mean radii).
 
         Returns
@@ -247,7 +247,7 @@ class Result:
             For a ``state`` that is no integer.
         ValueError
             Unless ``x`` and ``z`` are lists of finite numbers and ``width`` is positive, and for the added part of the
-            state at rest.
+            initial equilibrium.
 
         Examples
         --------
@@ -258,7 +258,7 @@ class Result:
         state = self._index(state)
         added = state > 0 if added is None else added
         if added and state == 0:
-            raise ValueError("added: a load adds nothing to the state at rest, must be False for state 0")
+            raise ValueError("added: a load adds nothing to the initial equilibrium, must be False for state 0")
         origin, box = self.origin, self.rest.box
         top = float(self.rest.position[:, 1].max()) + 1.0
         # rounded: the same places in results whose loaded disk is at the same place but for its last digits
@@ -286,7 +286,7 @@ class Result:
 
         Parameters
         ----------
-        state : the one that answers: 0 at rest, then one for each load factor; -1 is the last one.
+        state : the one that answers: 0 for the initial equilibrium, then one for each load factor; -1 is the last one.
         sliding : "refuse" a state with contacts at the Coulomb limit, whose answer depends on the direction of the
             load, or take them to "stick".
 
@@ -336,7 +336,7 @@ class Result:
 
     def _index(self, state: int) -> int:
         if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
-            raise TypeError(f"state = {state!r}: must be an integer, 0 for the state at rest")
+            raise TypeError(f"state = {state!r}: must be an integer, 0 for the initial equilibrium")
         count = len(self.loaded) + 1
         if not -count <= state < count:
             raise IndexError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
@@ -359,7 +359,7 @@ class Result:
         return self._data.copy(deep=True)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Store as netCDF-4, whole or not at all; :func:`open_result` and ``xarray.open_dataset`` read it.
+        """Store as netCDF-4, atomically; :func:`open_result` and ``xarray.open_dataset`` read it.
 
         Raises
         ------
@@ -381,7 +381,8 @@ class Result:
         ----------
         path : its ending is the format: ``.gsd`` and ``.xyz`` for OVITO, ``.vtu`` and ``.pvd`` for ParaView, ``.data``
             and ``.dump`` for LAMMPS, ``.txt`` for YADE, ``.csv`` for disks, ``.contacts.csv`` and ``.events.csv``.
-        state : the only one to write, 0 at rest, -1 the last; if left out all, or the last in a file of one.
+        state : the only one to write, 0 for the initial equilibrium, -1 the last; if left out all, or the last
+            in a file of one.
 
         Raises
         ------
@@ -425,7 +426,7 @@ class Result:
             touching = int(state.pairs.touching.sum())
             change = touching - int(self.rest.pairs.touching.sum())
             contacts = f"{touching} contacts between disks" + (f" ({change:+d})" if change else "")
-            name = f"load factor {state.load_factor:g}" if k else "at rest"
+            name = f"load factor {state.load_factor:g}" if k else "initial equilibrium"
             if certificate is None:
                 rows.append((name, f"no certificate, {contacts}"))
                 continue

@@ -53,11 +53,11 @@ commands = CommandLine(
 StoredResult = Annotated[Path, typer.Argument(help="A stored result (netCDF).", show_default=False)]
 ResultFile = Annotated[Path, typer.Option("--output", "-o", help="Result (netCDF).", show_default=False)]
 AllowUnsettled = Annotated[
-    bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not at rest.")
+    bool, typer.Option("--allow-unsettled", help="Do not fail where states are stored that are not settled.")
 ]
 Threads = Annotated[
     int | None,
-    typer.Option(min=1, help="Threads for large packings, all cores if not given; results have the same bits."),
+    typer.Option(min=1, help="Threads for large packings, all cores if not given; results are bitwise the same."),
 ]
 
 
@@ -248,7 +248,9 @@ def plot(
             show_default=False,
         ),
     ] = None,
-    state: Annotated[int, typer.Option(help="State: 0 at rest, then one for each load factor, -1 the last.")] = -1,
+    state: Annotated[
+        int, typer.Option(help="State: 0 for the initial equilibrium, then one for each load factor, -1 the last.")
+    ] = -1,
     scale: Annotated[str, typer.Option(help="Scale of the forces: linear, sqrt or percentile.")] = "sqrt",
 ) -> None:
     """Draw a result: response, force chains, contacts and stress on one page."""
@@ -286,7 +288,8 @@ def export(
     state: Annotated[
         int | None,
         typer.Option(
-            help="Write this state alone: 0 at rest, -1 the last one. If not given all, or the last in a file of one.",
+            help="Write this state alone: 0 for the initial equilibrium, -1 the last one. If not given all, or "
+            "the last in a file of one.",
             show_default=False,
         ),
     ] = None,

@@ -1,7 +1,8 @@
 """Pictures of a result: its response, forces on the floor and in the packing, contacts, stress, and the packing itself.
 
 Each takes a ``Result`` or the dataset of one (``Result.to_dataset``, or a stored file as xarray opens it). ``state`` is
-0 at rest, then one for each load factor, -1 the last. Without ``ax`` a picture has a figure of its own, made by pyplot.
+0 for the initial equilibrium, then one for each load factor, -1 the last. Without ``ax`` a picture has a
+figure of its own, made by pyplot.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ class Shown:
         if not {"position", "contact_force", "wall_force", "state_load_factor"} <= set(result.variables):
             raise PictureError("result: the dataset holds no states of a packing (open_result reads older files)")
         if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
-            raise PictureError(f"state = {state!r}: must be an integer, 0 for the state at rest")
+            raise PictureError(f"state = {state!r}: must be an integer, 0 for the initial equilibrium")
         count = result.sizes["state"]
         if not -count <= state < count:
             raise PictureError(f"state = {state}: must be from {-count} to {count - 1}, there are {count} states")
@@ -171,11 +172,11 @@ def floor(
 ) -> Axes:
     """The vertical force on each floor disk in mean disk weights, by default the part that the load adds.
 
-    For what has no response: a packing at rest, and loads that are torques alone.
+    For what has no response: an initial equilibrium, and loads that are torques alone.
 
     Parameters
     ----------
-    added : draw what the load adds rather than the whole; by default so but at rest.
+    added : draw what the load adds rather than the whole; by default so for states under load.
     line : goes to ``Axes.plot``.
 
     Examples
@@ -211,7 +212,7 @@ def forces(
     Parameters
     ----------
     added : draw the force that the load adds at each contact, gravity subtracted as a vector (Sec. III.C): black where
-        it presses the disks together, red where it takes compression away. By default so but at rest.
+        it presses the disks together, red where it takes compression away. By default so for states under load.
     scale : of lengths and widths: linear in the force as in the paper, by its square root, which shows the
         chains of a point load beyond its first rows, or by the percentile of the force among all.
     vmax : magnitude that has full length, in mean disk weights; by default that of the largest force. Give several
@@ -314,7 +315,7 @@ def stress(
 
     Parameters
     ----------
-    added : draw what the load adds rather than the whole; by default so but at rest.
+    added : draw what the load adds rather than the whole; by default so for states under load.
     component : indices of the tensor, the force's first.
     width : of the Gaussian in mean radii (Sec. V.C).
     vmax : end of the colour scale, in mean disk weights per mean radius; by default the largest magnitude.

@@ -42,16 +42,14 @@ class ArrayPacking(Description):
     mass: Column | None = Field(
         default=None,
         repr=False,
-        description="Of each disk, in any unit; null takes them in proportion to the square of the radius.",
+        description="Of each disk; null takes them in proportion to the square of the radius.",
     )
     width: Positive | None = Field(
         default=None,
-        description="Distance of the side walls, or the period with periodic sides; null has the right wall touch the "
-        "disk that reaches farthest.",
+        description="Distance of the side walls, or the period; null has the right wall touch the disk that reaches "
+        "farthest.",
     )
-    origin: Vector = Field(
-        default=(0.0, 0.0), description="[x, z] of left wall and floor (with periodic sides x is anywhere)."
-    )
+    origin: Vector = Field(default=(0.0, 0.0), description="[x, z] of left wall and floor.")
     sides: Sides = "walls"
 
     @model_validator(mode="after")

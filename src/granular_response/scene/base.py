@@ -28,21 +28,21 @@ UNITS = {
     "z": "that of x",
     "radius": "that of x",
     "mass": "any",
-    "width": "that of x, z and radius; mean radius for poured disks",
-    "origin": "that of x, z and radius",
-    "normal_stiffness": "disk weight / mean radius",
+    "width": "mean radius, or that of x",
+    "origin": "that of x",
+    "normal_stiffness": "mg / mean radius",
     "stiffness_ratio": "",
     "friction": "",
     "damping_ratio": "",
     "rolling_friction": "",
     "rolling_stiffness_ratio": "",
-    "force": "disk weight",
+    "force": "mg",
     "displacement": "mean radius",
-    "torque": "disk weight × mean radius",
+    "torque": "mg × mean radius",
     "time_step": "sqrt(R/g)",
     "ramp_time": "sqrt(R/g)",
     "load_factors": "",
-    "stop_kinetic_energy": "disk weight × mean radius",
+    "stop_kinetic_energy": "mg × mean radius",
 }
 
 
@@ -161,6 +161,6 @@ Flag = Annotated[bool, Field(strict=True), allowed("must be true or false")]
 Sides = Annotated[
     Literal["walls", "periodic"],
     Field(
-        description="walls: walls at both sides; periodic: the packing goes on at one side where it ends at the other.",
+        description="Side walls, or periodic sides.",
     ),
 ]

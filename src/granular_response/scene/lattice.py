@@ -39,17 +39,15 @@ class LatticePacking(Description):
     )
     lattice_constant: LatticeConstant = Field(
         default=2.0,
-        description="Distance of neighbouring centres before gravity acts, in mean radii. 2 is the "
-        "paper's: with polydispersity, large disks overlap from the start and push each other "
-        "away. touching-largest is 2 / (1 - delta / 2), where two disks of the largest radius "
-        "just touch. The floor and the side walls are half of it away from the centres "
-        "nearest to them.",
+        description="Distance of neighbouring centres in the initial lattice. 2 is the paper's: with polydispersity "
+        "large disks overlap at first and push each other away. touching-largest is 2 / (1 - delta / 2), where two of "
+        "the largest disks just touch. Floor and side walls are half of it from the nearest centres.",
     )
     seed: Index = Field(default=0, description="Seed of the random radii.")
     realization: Index = Field(
         default=0,
-        description="Number of the packing within an ensemble. Seed and realization fix the random numbers, "
-        "the same for every polydispersity.",
+        description="Number of the packing within an ensemble. Seed and realization fix the random numbers for every "
+        "polydispersity.",
     )
 
     @property

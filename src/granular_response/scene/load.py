@@ -51,7 +51,7 @@ Displacement = Annotated[
 
 
 class Load(Description):
-    """A force and a torque on one disk, in mean disk weights (times the mean radius), or a displacement of it.
+    """A force (mg) and a torque (mg × mean radius) on one disk, or a prescribed displacement (mean radii) of it.
 
     A disk that is displaced is held where the displacement says, and the force that this takes is part of the answer.
     A direction that is left free has the force, as rotation has the torque.
@@ -64,21 +64,19 @@ class Load(Description):
     """
 
     disk: Selector = Field(
-        description="The loaded disk: top-centre (the topmost one nearest the middle, chosen when the "
-        "packing is at rest), the index of a disk, or {row: top | bottom | number, offset: "
-        "places from the middle of the row}."
+        description="The loaded disk: the topmost one nearest the middle in the initial equilibrium, an index, or a "
+        "place in a row."
     )
     force: Vector = Field(
         default=(0.0, 0.0),
-        description="Force x, z in mean disk weights; z points up. It must be given unless displacement is, and be 0 "
-        "where that holds the disk.",
+        description="Force; z points up. Must be given unless displacement is, and be 0 where that holds the disk.",
     )
     displacement: Displacement | None = Field(
         default=None,
-        description="Displacement x, z from the rest state, in mean radii, by which the disk is moved and held in "
-        "place of a force: the reaction is the answer. null leaves a direction free.",
+        description="Prescribed displacement from the initial equilibrium in place of a force; null leaves a direction "
+        "free.",
     )
-    torque: Finite = Field(default=0.0, description="Torque in mean disk weights times mean radius, counter-clockwise.")
+    torque: Finite = Field(default=0.0, description="Torque, counter-clockwise.")
 
     @model_validator(mode="after")
     def _check_displacement(self) -> Load:

@@ -58,8 +58,8 @@ class Sparse(Description):
 class Contact(Sparse):
     """Spring and dashpot along the normal, spring and dashpot with a limit along the tangent and along the rolling.
 
-    Sec. III.A and III.B of the paper, with its values as defaults. Reduced units: stiffness in mean disk
-    weights per mean radius. The damping coefficients are absolute: they do not depend on the masses of
+    Sec. III.A and III.B of the paper, with its values as defaults. Reduced units: stiffness in mg
+    per mean radius. The damping coefficients are absolute: they do not depend on the masses of
     the two bodies, and ``damping_ratio`` 0.5 gives the paper's ``sqrt(k)``.
 
     Examples
@@ -70,37 +70,30 @@ class Contact(Sparse):
 
     law: Annotated[str, BeforeValidator(_check_law)] = Field(
         default="linear",
-        description="linear: normal force in proportion to the overlap, as in the paper; hertz: normal force by the "
-        "power 3/2 of the overlap, with normal_stiffness as its stiffness at a normal force of one mean disk weight "
-        "between two mean disks, or a mean disk and the wall. The walls follow the same law.",
+        description="linear: normal force proportional to the overlap, as in the paper; hertz: to its power 3/2, with "
+        "normal_stiffness as the stiffness at a normal force of mg between two mean disks, or a mean disk and the "
+        "wall. The walls follow the same law.",
     )
     normal_stiffness: Stiffness = Field(
         default=3000.0,
-        description="Stiffness k_N of the normal spring, in mean disk weights per mean radius.",
+        description="k_N, stiffness of the normal spring.",
     )
-    stiffness_ratio: Ratio = Field(
-        default=0.8, description="k_T / k_N, stiffness of the tangential spring over that of the normal one."
-    )
-    friction: Ratio = Field(
-        default=0.2, description="Coefficient of friction, the same for a sticking and a sliding contact."
-    )
+    stiffness_ratio: Ratio = Field(default=0.8, description="k_T / k_N, tangential over normal stiffness.")
+    friction: Ratio = Field(default=0.2, description="Coefficient of friction, static and dynamic.")
     damping_ratio: Ratio = Field(
         default=0.5,
-        description="Damping over critical damping 2 sqrt(k) of one contact, for both dashpots, "
-        "each with the stiffness of its own spring.",
+        description="Damping over critical damping 2 sqrt(k) of one contact, for both dashpots.",
     )
     rolling_friction: Ratio = Field(
         default=0.0,
-        description="Coefficient of rolling friction: the limit of the rolling force over the normal force; 0 is no "
-        "rolling resistance. It needs friction, and a rolling_stiffness_ratio.",
+        description="Coefficient of rolling friction, for rolling resistance; needs friction and a "
+        "rolling_stiffness_ratio.",
     )
-    rolling_stiffness_ratio: Ratio = Field(
-        default=0.0, description="k_R / k_N, stiffness of the rolling spring over that of the normal one."
-    )
+    rolling_stiffness_ratio: Ratio = Field(default=0.0, description="k_R / k_N, rolling over normal stiffness.")
     parameters: SerializeAsAny[Description] = Field(
         default=NoParameters(),
         validate_default=True,
-        description="Parameters that the law brings, by their names; {} where it has none.",
+        description="Parameters of a user-defined law, by name.",
     )
 
     @field_validator("parameters", mode="plain")
@@ -158,22 +151,16 @@ class Wall(Sparse):
     """
 
     normal_stiffness: Stiffness | None = Field(
-        default=None, description="Stiffness of the normal spring; null means twice contact.normal_stiffness."
+        default=None, description="Stiffness of the normal spring; null: twice contact.normal_stiffness."
     )
     stiffness_ratio: Ratio | None = Field(
-        default=None, description="Tangential over normal stiffness; null means contact.stiffness_ratio."
+        default=None, description="Tangential over normal stiffness; null: as contact."
     )
-    friction: Ratio = Field(
-        default=0.0, description="Coefficient of friction between a disk and the floor or a side wall."
-    )
-    damping_ratio: Ratio | None = Field(
-        default=None, description="Damping over critical damping; null means contact.damping_ratio."
-    )
-    rolling_friction: Ratio = Field(
-        default=0.0, description="Coefficient of rolling friction between a disk and the floor or a side wall."
-    )
+    friction: Ratio = Field(default=0.0, description="Coefficient of friction at floor and side walls.")
+    damping_ratio: Ratio | None = Field(default=None, description="Damping over critical damping; null: as contact.")
+    rolling_friction: Ratio = Field(default=0.0, description="Coefficient of rolling friction at floor and side walls.")
     rolling_stiffness_ratio: Ratio | None = Field(
-        default=None, description="Rolling over normal stiffness; null means contact.rolling_stiffness_ratio."
+        default=None, description="Rolling over normal stiffness; null: as contact."
     )
 
     def resolved(self, contact: Contact) -> Contact:

@@ -50,16 +50,12 @@ class PouredPacking(Description):
 
     kind: Literal["poured"] = Field(default="poured", description="Disks poured one after the other into a box.")
     disks: Disks = Field(default=500, description="Number of disks.")
-    width: Positive = Field(
-        default=50.0, description="Distance of the side walls, or the period with periodic sides, in mean radii."
-    )
+    width: Positive = Field(default=50.0, description="Distance of the side walls, or the period.")
     sizes: Numbers = Field(default=(1.0,), description="Radii among which each disk has one, relative to each other.")
-    fractions: Numbers | None = Field(
-        default=None, description="Share of the disks that has each of the sizes; null for the same share each."
-    )
+    fractions: Numbers | None = Field(default=None, description="Share of each of the sizes; null for equal shares.")
     polydispersity: Fraction = Field(
         default=0.3,
-        description="delta: each radius is multiplied by a number drawn uniformly from [1 - delta, 1]; all are then "
+        description="delta: each radius is multiplied by a random number, uniform in [1 - delta, 1], then all are "
         "rescaled to a mean of 1.",
     )
     sides: Sides = "walls"

@@ -38,7 +38,7 @@ Integrator = Literal["beeman", "verlet", "leapfrog", "gear"]
 
 
 class Preparation(Description):
-    """How gravity is brought onto the unloaded packing. A rest state with friction remembers it.
+    """How gravity is applied to the unloaded packing. With friction the initial equilibrium depends on it.
 
     Examples
     --------
@@ -48,14 +48,13 @@ class Preparation(Description):
 
     gravity: Literal["at-once", "slow", "frictionless"] = Field(
         default="at-once",
-        description="at-once: gravity acts in full from the start, and the packing falls into its "
-        "contacts, as in the paper; slow: gravity grows linearly from 0 to 1 over ramp_time; "
-        "frictionless: the packing comes to rest without friction, which acts from then on, with "
-        "tangential springs at zero: the rest state is then found by statics in ordered packings of any size.",
+        description="at-once: gravity is applied instantaneously, as in the paper; slow: it grows linearly over "
+        "ramp_time; frictionless: the packing settles without friction, which acts from then on, with tangential "
+        "springs at zero.",
     )
     ramp_time: Positive = Field(
         default=100.0,
-        description="Time over which slow gravity grows, in sqrt(R/g). For slow gravity only.",
+        description="Time over which slow gravity grows.",
     )
 
 
@@ -75,59 +74,54 @@ class Protocol(Description):
 
     method: Method = Field(
         default="auto",
-        description="auto: the cheapest method that is valid for the scene; dynamics: equations of motion "
-        "until rest, as in the paper; path: equilibria under a slowly growing load, "
-        "from one contact event to the next; minimise: the nearest minimum of the energy, for scenes without friction.",
+        description="auto: the cheapest method that is valid for the scene; dynamics: equations of motion, as in the "
+        "paper; path: quasi-static continuation from one contact event to the next; minimise: the nearest minimum of "
+        "the energy, without friction.",
     )
     load_factors: LoadFactors = Field(
         default=(1.0,),
-        description="Load programme: multipliers of the loads at which states are kept, in turn. They may grow, fall, "
-        "change sign and repeat: [0.5, 1, 0.5, 0] loads and unloads. Every method goes on from the state before, but "
-        "dynamics starts each ramp at rest until the programme first turns, as in the paper.",
+        description="Load programme: factors of the loads at which states are kept, in turn; [0.5, 1, 0.5, 0] loads "
+        "and unloads. Each load continues from the state before, but dynamics starts at the initial equilibrium until "
+        "the programme first turns, as in the paper.",
     )
     integrator: Integrator = Field(
         default="beeman",
-        description="Integrator of the equations of motion: Beeman, velocity Verlet, leapfrog (Verlet whose dashpots "
-        "see the velocity half a step earlier, stable for twice the step), or the Gear predictor-corrector with five "
-        "values.",
+        description="Beeman, velocity Verlet, leapfrog (dashpots see the velocity half a step earlier; stable for "
+        "twice the step), or Gear's predictor-corrector with five values.",
     )
     time_step: TimeStep | None = Field(
         default=None,
-        description="Time step in sqrt(R/g); auto takes the largest one that is safe for the scene. Left out, it is "
-        "the paper's 5e-4 where that is stable, and auto else; one that is given is taken at its word.",
+        description="auto takes the largest one that is safe. Left out, it is the paper's 5e-4 where that is stable, "
+        "and auto else.",
     )
-    ramp_time: NonNegative = Field(
-        default=20.0, description="Time over which the loads grow linearly to their values, in sqrt(R/g)."
-    )
+    ramp_time: NonNegative = Field(default=20.0, description="Time over which the loads grow linearly to their values.")
     stop_kinetic_energy: Positive = Field(
         default=1e-13,
-        description="A packing is at rest when its kinetic energy per disk is below this, in m g R (E_stop).",
+        description="Kinetic energy per disk below which a packing counts as settled (E_stop).",
     )
     stop_rule: Literal["instantaneous", "envelope"] = Field(
         default="instantaneous",
-        description="instantaneous: the first time the kinetic energy is below the limit, as in the "
-        "paper; envelope: its largest value over a slow swing must be below the limit.",
+        description="instantaneous: the kinetic energy is below the limit once, as in the paper; envelope: over a slow "
+        "swing.",
     )
     static_finish: Flag = Field(
         default=True,
-        description="Solve the equations of equilibrium from the state at which the dynamics stopped.",
+        description="Solve the equations of equilibrium where the dynamics stopped.",
     )
     friction_law: Literal["cut", "literal", "unloading"] = Field(
         default="cut",
-        description="At the Coulomb limit, cut: spring and dashpot together are cut to friction times "
-        "normal force, and the spring takes what is left; literal: the spring keeps its "
-        "length while it is beyond the limit, which never quite settles; unloading: the same, but slip that "
-        "shortens the spring does so. Neither cuts the force, and both are for dynamics alone.",
+        description="At the Coulomb limit, cut: force of spring and dashpot are cut to the limit, and the spring takes "
+        "what is left; literal, as printed in the paper: the spring is frozen beyond the limit and the force is not "
+        "cut; unloading: the same, but slip may shorten the spring. The last two are for dynamics alone.",
     )
     tensile_dashpot: Flag = Field(
         default=True,
-        description="Whether the normal force may pull for a moment while a contact opens fast, as in the "
-        "paper; false cuts it off at zero.",
+        description="Whether the normal force may pull while a contact opens fast, as in the paper.",
     )
     maximum_steps: Count = Field(
         default=5_000_000,
-        description="Most time steps that one stage, gravity or load, may take to reach rest; on a path, each motion "
-        "from a lost equilibrium to the next one.",
+        description="Most time steps for gravity, for each load, and on a path for each motion from a lost equilibrium "
+        "to the next.",
     )
 
 

@@ -70,9 +70,7 @@ class Scene(Description):
         default_factory=lambda: (Load(disk=TOP_CENTRE, force=(0.0, -15.0)),),
         description="Forces and torques on disks, or displacements of them, beside gravity; [] for none.",
     )
-    preparation: Preparation = Field(
-        default_factory=Preparation, description="How gravity is brought onto the packing."
-    )
+    preparation: Preparation = Field(default_factory=Preparation, description="How gravity is applied.")
     protocol: Protocol = Field(default_factory=Protocol, description="How equilibrium is reached.")
 
     @model_validator(mode="after")

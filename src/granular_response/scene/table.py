@@ -51,21 +51,18 @@ class FilePacking(Description):
     """
 
     kind: Literal["file"] = Field(default="file", description="Disks from a file.")
-    path: FileName = Field(
-        description="File with x, z and radius of each disk. A relative path starts at the folder of the scene file."
-    )
+    path: FileName = Field(description="File with x, z and radius of each disk, from the folder of the scene file.")
     format: Format | None = Field(
-        default=None, description="Format of the file; null goes by the ending of its name, csv for an unknown one."
+        default=None, description="Format of the file; null goes by its ending, csv for an unknown one."
     )
     width: Positive | None = Field(
         default=None,
-        description="Distance of the side walls, or the period with periodic sides, in the unit of length of the file; "
-        "null is the width of its box.",
+        description="Distance of the side walls, or the period, in the file's unit; null is the width of its box.",
     )
     origin: Vector | None = Field(
         default=None,
-        description="[x, z] of left wall and floor (with periodic sides x is anywhere) in coordinates of the file; "
-        "null is the lower left corner of its box.",
+        description="[x, z] of left wall and floor in coordinates of the file; null is the lower left corner of its "
+        "box.",
     )
     sides: Sides = "walls"
 

@@ -227,7 +227,7 @@ class Dynamics:
     def _blow_up(self) -> str:
         load = float(np.abs(self.load[1] * self.problem.load[:, :2]).max(initial=0.0))
         if load > self.problem.stiffness:
-            cure = f"the largest load, {load:.3g} disk weights, is more than the contacts bear: take a smaller one"
+            cure = f"the largest load, {load:.3g} mg, is more than the contacts bear: take a smaller one"
         else:
             cure = "take a smaller protocol.time_step"
         return f"the motion blew up after {self.steps} steps with time_step {self.time_step:g}; {cure}"

@@ -253,7 +253,7 @@ def _cure(problem: Problem) -> str:
     for name, friction in (("contact", problem.pair_law.friction), ("wall", problem.wall_law.friction)):
         if 0.0 < friction < OPTIONS.least_friction:
             return (
-                f"{name}.friction = {friction:g} is so small that contacts slide to and fro at no force: "
+                f"{name}.friction = {friction:g} is so small that contacts slide back and forth at zero force: "
                 f"take 0, or at least {OPTIONS.least_friction:g}"
             )
     return "relax it further first"

@@ -176,7 +176,7 @@ def _check_loads(problem: Problem, factors: Sequence[float]) -> None:
     for k, force in enumerate(np.hypot(problem.load[:, 0], problem.load[:, 1]) * np.abs(factors).max()):
         if force > most:
             raise SceneError(
-                f"loads[{k}].force: {force:.3g} disk weights at the largest load factor, must be at most {most:.3g}, "
+                f"loads[{k}].force: {force:.3g} mg at the largest load factor, must be at most {most:.3g}, "
                 "under which contacts of this stiffness overlap by a radius"
             )
 

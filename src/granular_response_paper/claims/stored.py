@@ -83,8 +83,9 @@ def firmness(found: dict[str, Any]) -> str:
     reproduced = [row["counts"]["reproduced"] for row in found["sensitivity"]]
     moved = {name for row in found["sensitivity"] for name in row["changed"]}
     return (
-        f"With the bound of any one word halved or doubled, {min(reproduced)} to {max(reproduced)} are reproduced "
-        f"({found['counts']['reproduced']} as it stands); {len(moved)} claims change their verdict in some of these."
+        f"If the threshold of any one qualitative term is halved or doubled, {min(reproduced)} to {max(reproduced)} "
+        f"are reproduced ({found['counts']['reproduced']} as it stands); {len(moved)} claims change their verdict in "
+        "some of these."
     )
 
 

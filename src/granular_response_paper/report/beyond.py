@@ -25,7 +25,14 @@ def crossovers(datasets: Datasets) -> str:
     """A line for each series of layers of the group ``crossover_scaling``: powers, and what they lead to."""
     slabs, powers = datasets["slabs"], datasets["powers"]
     far = f"two peaks at {powers.attrs['layers']:g} layers, extrapolated"
-    heads = ["friction, confinement", "layers", "two peaks: power of N", "region at the floor", "first opening", far]
+    heads = [
+        "friction, lateral prestress",
+        "layers",
+        "two peaks: exponent of N",
+        "region at the floor",
+        "first opening",
+        far,
+    ]
     rows = []
     for series in np.flatnonzero(powers["varied"].values == "layers"):
         one = powers.isel(series=series)
@@ -50,7 +57,7 @@ def loops(datasets: Datasets) -> str:
     """A line for each packing of the group ``hysteresis``, of disorder median, least and largest; and the balance."""
     measured, events = datasets["loops"], datasets["events"]
     heads = ["packing", "first opening", "linear up to", "reversible up to", "F", "left on the floor"]
-    heads += ["lost, first loop", "second loop"]
+    heads += ["dissipated, first loop", "second loop"]
     rows = []
     off: dict[str, list[FloatArray]] = {"lattices": [], "disorder": []}
     count = 0

@@ -25,15 +25,15 @@ class Reading:
 
 #: By the variant that tries the other option; the order is that of the table.
 READINGS: Mapping[str, Reading] = {
-    "slow_gravity": Reading("how gravity comes", "at once", "grows over 100 sqrt(R/g)"),
-    "sudden_load": Reading("how the load comes", "ramp of 20 sqrt(R/g)", "at once"),
-    "ramp_80": Reading("how the load comes", "ramp of 20 sqrt(R/g)", "ramp of 80 sqrt(R/g)"),
-    "path": Reading("how the load comes", "ramp of 20 sqrt(R/g)", "quasi-static path"),
-    "no_static_finish": Reading("when to stop", "1e-13 per disk, then Newton", "1e-13 alone"),
-    "stop_1e-9": Reading("when to stop", "1e-13 per disk, then Newton", "1e-9 alone"),
+    "slow_gravity": Reading("gravity", "instantaneous", "grows over 100 sqrt(R/g)"),
+    "sudden_load": Reading("load", "ramp of 20 sqrt(R/g)", "instantaneous"),
+    "ramp_80": Reading("load", "ramp of 20 sqrt(R/g)", "ramp of 80 sqrt(R/g)"),
+    "path": Reading("load", "ramp of 20 sqrt(R/g)", "quasi-static path"),
+    "no_static_finish": Reading("stopping criterion", "1e-13 per disk, then Newton", "1e-13 alone"),
+    "stop_1e-9": Reading("stopping criterion", "1e-13 per disk, then Newton", "1e-9 alone"),
     "damping_halved": Reading("dashpots", "sqrt(k)", "half of it"),
-    "no_tensile_dashpot": Reading("pull of an opening contact", "allowed, as in eq. (2)", "cut off at zero"),
-    "literal_friction": Reading("Coulomb limit under load", "force cut, spring follows", "literal"),
+    "no_tensile_dashpot": Reading("tension of an opening contact", "allowed, as in eq. (2)", "cut off at zero"),
+    "literal_friction": Reading("Coulomb limit under load", "force cut, spring follows", "as printed"),
     "unloading_friction": Reading(
         "Coulomb limit under load", "force cut, spring follows", "spring frozen, free to unload"
     ),
@@ -97,7 +97,7 @@ def _column(data: xr.Dataset, name: str) -> list[tuple[str, Any]]:
 def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     """The table in Markdown, and below it what else the notes quote of the study. Equal data give equal text."""
     shown = table(datasets)
-    heads = ["reading", "choice", "other option", *(f"change, {slab}" for slab in shown.slabs)]
+    heads = ["interpretation", "choice", "other option", *(f"change, {slab}" for slab in shown.slabs)]
     rows, before = [], ""
     for row in shown.rows:
         reading = row.reading
@@ -117,7 +117,7 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
 _QUOTED: tuple[tuple[str, str, Callable[[float], str], str], ...] = (
     ("stop_1e-9", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-9 per disk"),
     ("no_static_finish", "response_sum", "{:.4f}".format, "Sum of the response, stopped at 1e-13 per disk"),
-    ("literal_friction", "kinetic_energy", _short, "Kinetic energy per disk at the end of the literal rule"),
+    ("literal_friction", "kinetic_energy", _short, "Kinetic energy per disk at the end, friction law as printed"),
 )
 
 

@@ -74,8 +74,8 @@ def export(
     ----------
     result : netCDF file that ``granular-response run`` made, or the dataset of a result.
     output : file to make; what its name ends with (one of ``SUFFIXES``) is the format.
-    state : index of the only state to write, 0 at rest, -1 the last one; if None all of them, or the last one in a file
-        of one state.
+    state : index of the only state to write, 0 for the initial equilibrium, -1 the last one; if None all, or the
+        last one in a file of one state.
 
     Raises
     ------
