@@ -168,6 +168,19 @@ def test_a_page_has_what_was_asked_for(result):
         gr.plot.page(result, ["chains"])
 
 
+@pytest.mark.parametrize("what", [None, "photoelastic,forces", "packing"])
+def test_a_page_has_no_blank_margins(result, what):
+    """White beyond the lines and letters: at most a tenth of an inch on every side but the right."""
+    picture = matplotlib.image.imread(io.BytesIO(style.render(gr.plot.page(result, what), dpi=100)))[..., :3]
+    drawn = np.argwhere(picture.min(axis=2) < 0.9)
+    assert (drawn.min(axis=0) <= 10).all() and drawn[:, 0].max() >= picture.shape[0] - 11
+
+
+def test_fringes_stand_on_a_page_too(result):
+    one, other = (gr.plot.page(result, what).axes[0] for what in ("photoelastic", "forces"))
+    assert len(one.images) == 1 and not other.images
+
+
 @pytest.fixture(scope="module")
 def loadless() -> gr.Result:
     return gr.solve({**SCENE, "loads": []})
