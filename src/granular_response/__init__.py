@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from .scene import SceneError as SceneError
     from .scene import SceneFileError as SceneFileError
     from .scene import SlabPacking as Slab  # noqa: F401
+    from .scene import TopSelector as At  # noqa: F401
     from .scene import Wall as Wall
     from .solvers.laws import register_law as register_law
     from .state import Certificate as Certificate
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
 #: Where the public names are: their module, with another name there after a colon; those of "" are modules.
 _HOME = {
     "Arrays": "scene:ArrayPacking",
+    "At": "scene:TopSelector",
     "Bracket": "observe.events",
     "Certificate": "state",
     "Contact": "scene",

@@ -111,7 +111,7 @@ SIGNATURES = {
     "plot.stress": (
         "(result, *, ax=None, state=-1, added=None, component='zz', width=2.0, vmax=None, cmap='RdBu', **mesh)"
     ),
-    "register_law": "(name, law, parameters=<class 'granular_response.scene.material.NoParameters'>)",
+    "register_law": "(name, law, parameters=NoParameters)",
     "solve": "(scene, *, load_factors=None, method=None, progress=True)",
     "sweep": (
         "(scene, axes, measure=floor_response, *, load_factors=None, workers=None, scheduler=None,"
@@ -130,7 +130,7 @@ def parameters(function) -> str:
     signature = inspect.signature(function)
     plain = [one.replace(annotation=inspect.Parameter.empty) for one in signature.parameters.values()]
     text = str(signature.replace(parameters=plain, return_annotation=inspect.Signature.empty))
-    for default in (one.default for one in plain if inspect.isfunction(one.default)):
+    for default in (one.default for one in plain if inspect.isroutine(one.default) or inspect.isclass(one.default)):
         text = text.replace(repr(default), default.__name__)
     return text
 

@@ -102,6 +102,20 @@ def test_drawing_can_measure_too(inputs, tmp_path):
     assert (tmp_path / "figures/metrics/theory.json").read_bytes() == (tmp_path / "alone.json").read_bytes()
 
 
+def test_a_result_is_animated(inputs, tmp_path):
+    shutil.copy(inputs / "result.nc", tmp_path)
+    before = contents(tmp_path)
+    for arguments, said in (
+        ([], "--output or --animate must be given"),
+        (["--animate", "result.nc"], "must be another"),
+    ):
+        refused = call("plot", "result.nc", *arguments, folder=tmp_path)
+        assert (refused.returncode, refused.stderr.count("\n")) == (2, 1) and said in refused.stderr
+    assert contents(tmp_path) == before
+    assert call("plot", "result.nc", "--animate", "growing.gif", folder=tmp_path).returncode == 0
+    assert (tmp_path / "growing.gif").read_bytes().startswith(b"GIF89a")
+
+
 @pytest.mark.parametrize("name", ["r.png", "r", "r.nc.txt"])
 def test_the_name_of_a_result_says_what_it_is(inputs, tmp_path, name):
     for arguments in (["run", inputs / "scene.yaml"], ["continue", inputs / "result.nc", "--to", 2]):

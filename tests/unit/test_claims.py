@@ -762,15 +762,14 @@ def test_stored_table_and_metrics_agree(tmp_path):
     found = table.write(tmp_path / "claims.json", tmp_path / "data")
     stored = json.loads((tmp_path / "claims.json").read_text())
     assert stored == found == stored_table.read(tmp_path / "claims.json")
-    assert [row["id"] for row in stored["table"]] == list(CLAIM) == list(stored["verdicts"])
-    assert all(stored["verdicts"][row["id"]]["verdict"] == row["verdict"] for row in stored["table"])
+    assert [row["id"] for row in stored["table"]] == list(CLAIM)
     others = dict.fromkeys((v.replace(" ", "_") for v in MEANINGS), 0)
     paper = {**others, "reproduced": 3, "not_measured": PAPERS - 3, "total": PAPERS}
     assert stored["counts"] == {**paper, "beyond": BEYOND}
     degrees = dict.fromkeys((kind.replace(" ", "_") for kind in ROBUSTNESS_MEANINGS), 0)
     assert stored["robustness"] == {**degrees, "not_varied": PAPERS}
-    assert stored["verdicts"]["P1"] == {"verdict": "reproduced", "robustness": "not varied", "value": 0.07}
     row = next(row for row in stored["table"] if row["id"] == "P1")
+    assert (row["verdict"], row["robustness"], row["value"]) == ("reproduced", "not varied", 0.07)
     assert (row["interval"], row["interval_kind"]) == ([0.07, 0.08], "range")
     assert [r["outcome"] for r in row["readings"]] == ["holds", "holds"]
     again = (tmp_path / "claims.json").read_bytes()

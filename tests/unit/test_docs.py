@@ -87,7 +87,11 @@ def test_the_reference_has_every_key_of_every_kind_of_scene():
         {"kind": "pile"},
         {"kind": "file", "path": "disks.csv", "width": 9.0},
     )
-    loads = [{"disk": {"row": "top"}, "force": [0.0, -1.0]}, {"disk": 3, "displacement": [None, -0.01]}]
+    loads = [
+        {"disk": {"row": "top"}, "force": [0.0, -1.0]},
+        {"disk": {"x": -4.0}, "force": [0.0, -1.0]},
+        {"disk": 3, "displacement": [None, -0.01]},
+    ]
     scenes = [Scene.from_dict({"packing": packing, "loads": loads}) for packing in packings]
     scenes.append(Scene.from_dict({"packing": {"kind": "poured"}}))
     scenes.append(Scene.from_arrays([1.0], [1.0], 1.0))
@@ -105,7 +109,7 @@ def test_the_reference_says_what_the_scene_allows():
     assert Scene.from_text(f"contact: {{normal_stiffness: {keys['contact.normal_stiffness'].default}}}") == Scene()
     assert not keys["loads[].disk"].default and not keys["packing.kind"].default
     assert keys["loads[].force"].unit == "mg"
-    assert keys["loads[].displacement"].unit == "mean radius"
+    assert keys["loads[].displacement"].unit == keys["loads[].disk.x"].unit == "mean radius"
 
 
 def test_units_are_given_for_keys_that_exist():

@@ -168,6 +168,19 @@ def test_a_page_has_what_was_asked_for(result):
         gr.plot.page(result, ["chains"])
 
 
+@pytest.mark.parametrize("what", [None, "photoelastic,forces", "packing"])
+def test_a_page_has_no_blank_margins(result, what):
+    """White above and below what is drawn: at most a tenth of an inch."""
+    picture = matplotlib.image.imread(io.BytesIO(style.render(gr.plot.page(result, what), dpi=100)))[..., :3]
+    rows = np.flatnonzero((picture.min(axis=2) < 0.9).any(axis=1))
+    assert rows[0] <= 10 and rows[-1] >= len(picture) - 11
+
+
+def test_fringes_stand_on_a_page_too(result):
+    one, other = (gr.plot.page(result, what).axes[0] for what in ("photoelastic", "forces"))
+    assert len(one.images) == 1 and not other.images
+
+
 @pytest.fixture(scope="module")
 def loadless() -> gr.Result:
     return gr.solve({**SCENE, "loads": []})

@@ -203,6 +203,14 @@ def test_stages_have_the_agreed_form(kind, group, definition):
         assert definition["cmd"] == f"granular-response-paper {kind}"
 
 
+def test_plots_are_the_pictures_of_all_groups():
+    """Each declared file is stored, each stored picture declared: ``dvc plots diff`` shows every group."""
+    pictures = [path.relative_to(ROOT).as_posix() for path in sorted(ROOT.glob("figures/*/*.png"))]
+    declared = yaml.load((ROOT / "dvc.yaml").read_text(), LOADER)["plots"]
+    assert declared == pictures
+    assert {path.split("/")[1] for path in declared} == set(NAMES)
+
+
 def test_what_is_derived_comes_after_the_data_that_it_reads():
     for section in PARAMETERS.values():
         for key in {"survey", "survey_file"} & set(section):
@@ -299,8 +307,9 @@ def test_a_group_made_by_the_recipe_runs(tmp_path, monkeypatch):
         said = json.loads(Path("figures/example/captions.json").read_text())["example"]
         assert said["caption"].startswith("Floor response per applied force") and "k_T/k_N = 0.8" in said["caption"]
         assert (said["figure"], said["panels"], said["parameters"]["friction"]) == (None, [], [0.0, 0.5])
-        measured = json.loads(measuring.measure("example").read_text())["numbers"]
-        assert measured["largest_response_0"] != measured["largest_response_0.5"] and min(measured.values()) > 0.0
+        measured = json.loads(measuring.measure("example").read_text())
+        assert set(measured) == {"largest response, friction 0", "largest response, friction 0.5"}
+        assert len(set(measured.values())) == 2 and min(measured.values()) > 0.0
     finally:
         for name in [name for name in sys.modules if name.startswith("granular_response_paper.groups.example")]:
             del sys.modules[name]

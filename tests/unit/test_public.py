@@ -111,10 +111,11 @@ def test_a_result_is_exported(result, tmp_path):
 
 def test_a_scene_in_laboratory_units():
     units = gr.LaboratoryUnits(radius=0.01)
-    loads = [{"disk": "top-centre", "force": [0.0, -15.0 * units.unit("force")], "torque": 0.1 * units.unit("torque")}]
+    loads = [{"disk": {"x": -0.1}, "force": [0.0, -15.0 * units.unit("force")], "torque": 0.1 * units.unit("torque")}]
     protocol = {"ramp_time": 20.0 * units.time, "time_step": "auto", "load_factors": [0.5, 1.0]}
     scene = gr.Scene.from_dict(units.reduced_scene({"loads": loads, "protocol": protocol}))
-    assert scene.loads[0].force[1] == pytest.approx(-15.0) and scene.loads[0].torque == pytest.approx(0.1)
+    assert scene.loads[0].disk == gr.At(x=-10.0) and scene.loads[0].force[1] == pytest.approx(-15.0)
+    assert scene.loads[0].torque == pytest.approx(0.1)
     assert scene.protocol.ramp_time == pytest.approx(20.0) and scene.protocol.load_factors == (0.5, 1.0)
     with pytest.raises(OSError, match="no such file"):
         gr.Scene.from_yaml("nowhere.yaml")

@@ -4,11 +4,14 @@ import pytest
 
 from granular_response.scene import Contact, Load, Scene, SceneError, SlabPacking
 
-CONTACT_KEYS = "law, normal_stiffness, stiffness_ratio, friction, damping_ratio, rolling_friction, rolling_stiffness_ratio, parameters"
+CONTACT_KEYS = (
+    "law, normal_stiffness, stiffness_ratio, friction, damping_ratio, rolling_friction, rolling_stiffness_ratio, "
+    "parameters"
+)
 SCENE_KEYS = "packing, contact, wall, loads, preparation, protocol"
 KINDS = "slab or pile or poured or file or arrays"
 RATIO = "must be a number from 0 to 1e6"
-DISK = "must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"
+DISK = "must be top-centre, the index of a disk, {x: number}, or {row: top | bottom | number, offset: whole number}"
 
 MALFORMED = {
     # Not YAML, or not a mapping.
@@ -94,6 +97,8 @@ MALFORMED = {
     "loads: [{disk: 0, force: [0, 0]}, {disk: 908, force: [0, 0]}]": (
         "loads[1].disk = 908: must be from 0 to 907, the packing has 908 disks"
     ),
+    "loads: [{disk: {x: left}, force: [0, 0]}]": f"loads[0].disk = {{'x': 'left'}}: {DISK}",
+    "loads: [{disk: {row: top, x: 2}, force: [0, 0]}]": f"loads[0].disk = {{'row': 'top', 'x': 2}}: {DISK}",
     "loads: [{disk: {row: 15}, force: [0, 0]}]": (
         "loads[0].disk.row = 15: must be top, bottom or from 0 to 14, the packing has 15 rows"
     ),

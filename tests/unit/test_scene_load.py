@@ -11,8 +11,10 @@ from granular_response.scene import (
     Scene,
     SceneError,
     SlabPacking,
+    TopSelector,
     resolve_disk,
 )
+from granular_response.solvers.problem import Problem
 
 
 def scattered(position, radius, width):
@@ -86,6 +88,35 @@ def test_index_and_row():
     assert resolve_disk(RowSelector(row="top", offset=3), packing, position) == 25
 
 
+def test_a_place_means_the_disk_on_top_nearest_to_it():
+    """In any packing; x counts from the middle, where top-centre is."""
+    slab = SlabPacking(layers=4, disks_per_row=7).build()  # the top row is at x = 2, 4, ..., 12 of 14
+    chosen = [resolve_disk(TopSelector(x=x), slab, slab.position) for x in (-7.0, -5.0, -1.2, 0.0, 1.2, 3.9, 7.0)]
+    assert chosen == [20, 20, 22, 22, 23, 24, 25]
+    assert resolve_disk(TopSelector(x=0.0), slab, slab.position) == resolve_disk("top-centre", slab, slab.position)
+    loose = scattered([(1.0, 1.0), (3.0, 1.0), (2.0, 2.7), (9.0, 1.0)], np.ones(4), 10.0)
+    assert [resolve_disk(TopSelector(x=x), loose, loose.position) for x in (-4.0, -1.0, 4.0)] == [2, 2, 3]
+
+
+def test_a_place_is_found_across_periodic_sides():
+    slab = SlabPacking(layers=3, disks_per_row=8, sides="periodic").build()  # 16 wide
+    middle = resolve_disk("top-centre", slab, slab.position)
+    half = [resolve_disk(TopSelector(x=x), slab, slab.position) for x in (-8.0, 8.0)]
+    assert half[0] == half[1] != middle
+    far = slab.position[half[0], 0] - slab.position[middle, 0]
+    assert abs(far) == pytest.approx(8.0)
+
+
+def test_a_place_beyond_the_sides_says_which_load():
+    problem = Problem.from_scene(
+        Scene.from_text("loads: [{disk: 0, force: [0, 0]}, {disk: {x: 99.0}, force: [0, -1]}]")
+    )
+    with pytest.raises(
+        SceneError, match=r"^loads\[1\]\.disk\.x = 99\.0: must be from -61 to 61, the packing is 122 wide$"
+    ):
+        problem.with_loads(problem.packing.position)
+
+
 @pytest.mark.parametrize(
     ("selector", "message"),
     [
@@ -93,7 +124,8 @@ def test_index_and_row():
         (-1, "disk = -1: must be from 0 to 25, the packing has 26 disks"),
         (RowSelector(row=4), "disk.row = 4: must be top, bottom or from 0 to 3, the packing has 4 rows"),
         (RowSelector(row="top", offset=-3), "disk.offset = -3: must be from -2 to 3, row 3 has 6 disks"),
-        ("top", "disk = 'top': must be top-centre, the index of a disk, or a RowSelector"),
+        (TopSelector(x=7.5), "disk.x = 7.5: must be from -7 to 7, the packing is 14 wide"),
+        ("top", "disk = 'top': must be top-centre, the index of a disk, a TopSelector or a RowSelector"),
     ],
 )
 def test_missing_disks(selector, message):

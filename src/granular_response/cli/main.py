@@ -236,15 +236,18 @@ def show(
     "plot slab.nc -o slab.pdf",
     "plot slab.nc -o chains.png --what forces --scale percentile",
     "plot slab.nc -o rest.png --what packing,forces --state 0",
+    "plot slab.nc --animate growing.gif",
 )
 def plot(
     result: StoredResult,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to make: .pdf, .png or .svg.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Picture to make: .pdf, .png or .svg.", show_default=False)
+    ] = None,
     what: Annotated[
         str | None,
         typer.Option(
-            help="Pictures on the page, among response, floor, forces, contacts, stress, packing; if not given "
-            "response,forces,contacts,stress, with floor for response where no force is applied.",
+            help="Pictures on the page, among response, floor, forces, contacts, stress, packing, photoelastic; if not "
+            "given response,forces,contacts,stress, with floor for response where no force is applied.",
             show_default=False,
         ),
     ] = None,
@@ -252,15 +255,29 @@ def plot(
         int, typer.Option(help="State: 0 for the initial equilibrium, then one for each load factor, -1 the last.")
     ] = -1,
     scale: Annotated[str, typer.Option(help="Scale of the forces: linear, sqrt or percentile.")] = "sqrt",
+    animate: Annotated[
+        Path | None,
+        typer.Option(help="Animation to make: .gif, .webp or .html, a frame for each load.", show_default=False),
+    ] = None,
 ) -> None:
-    """Draw a result: response, force chains, contacts and stress on one page."""
-    from ..plot import pictures
+    """Draw a result: response, force chains, contacts and stress on one page, or an animation of its loads."""
+    from matplotlib.figure import Figure
+
+    from ..plot import animation, pictures
+    from ..store import atomic
     from ..store.checked import read_result
 
     loaded()
 
+    if output is None and animate is None:
+        raise pictures.PictureError("nothing to draw: --output or --animate must be given")
     stored = read_result(result)
-    typer.echo(str(pictures.save(stored, output, what, state=state, scale=scale, inputs=[result])))
+    if output is not None:
+        typer.echo(str(pictures.save(stored, output, what, state=state, scale=scale, inputs=[result])))
+    if animate is not None:
+        atomic.check_output(animate, [result])
+        animation.animate(stored, output=animate, figure=Figure())
+        typer.echo(str(animate))
 
 
 @commands.command("keys", "keys protocol", "keys --page docs/scene-reference.md")

@@ -101,6 +101,7 @@ SECTIONS = (
     Section("Floor and side walls", "wall", scene.Wall),
     Section("Loads", "loads[]", scene.Load, {"disk": "top-centre", "force": (0.0, 0.0)}),
     Section("A disk by its row", "loads[].disk", scene.RowSelector, {"row": "top"}),
+    Section("A disk on top by its place", "loads[].disk", scene.TopSelector, {"x": 0.0}),
     Section("Preparation", "preparation", scene.Preparation),
     Section("Protocol", "protocol", scene.Protocol),
 )

@@ -54,7 +54,10 @@ class Law(Protocol):
     def energy(self, overlap, shape): ...
 
     def shapes(self, first, second) -> NDArray | None:
-        """(m,) shapes of contacts of disks with the radii ``first`` and ``second`` (None: a wall)."""
+        """(m,) geometry factors of contacts of disks with the radii ``first`` and ``second`` (None: a wall).
+
+        None for a law in which radii do not matter.
+        """
         ...
 
     def stiffest(self, force: float) -> float:
@@ -62,7 +65,10 @@ class Law(Protocol):
         ...
 
     def softened(self, part: float) -> Self:
-        """The law with which a packing of ``part`` of the length sinks by the same lengths under gravity."""
+        """The law with which a packing of ``part`` of the height sinks by the same lengths under its own weight.
+
+        For the start of large packings alone: ``part**2`` times the constant for linear springs.
+        """
         ...
 
     def without_friction(self) -> Self:

@@ -410,6 +410,12 @@ def packing(
     return axes
 
 
+def _photoelastic(result: HasDataset | xr.Dataset, **options: Any) -> Axes:
+    from .photoelastic import photoelastic  # which is drawn with what is here
+
+    return photoelastic(result, **options)
+
+
 #: The pictures of a page, by name.
 PICTURES: Mapping[str, Callable[..., Axes]] = {
     "response": response,
@@ -418,6 +424,7 @@ PICTURES: Mapping[str, Callable[..., Axes]] = {
     "contacts": contacts,
     "stress": stress,
     "packing": packing,
+    "photoelastic": _photoelastic,
 }
 #: Those that are curves over the floor, not maps of the packing.
 _GRAPHS = ("response", "floor")
@@ -433,7 +440,7 @@ def page(
 ) -> Figure:
     """One figure with a picture for each of ``what``, in this order.
 
-    ``what`` are names of the functions of this module, as a list or as text with commas.
+    ``what`` are names of the functions of this module or ``photoelastic``, as a list or as text with commas.
 
     By default ``response``, ``forces``, ``contacts`` and ``stress``, with ``floor`` where there is no response.
     ``scale`` is that of :func:`forces`; ``figure`` is drawn into, or a new one of pyplot's.
@@ -473,6 +480,8 @@ def page(
             if what[k] in _GRAPHS and columns > 1:
                 axes.set_box_aspect(0.75)
             style.letter(axes, chr(ord("a") + k), place="above", text=_title(what[k], shown))
+        figure.draw_without_rendering()  # maps keep their shape: what they leave of the estimated height is cut off
+        figure.set_size_inches(style.DOUBLE, figure.get_tightbbox().height + 2.0 * style.MARGIN)
     return figure
 
 

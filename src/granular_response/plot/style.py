@@ -26,6 +26,8 @@ from ..store import atomic
 
 #: Column widths of the journal in inches.
 SINGLE, DOUBLE = 3.4, 7.0
+#: Inches around a page.
+MARGIN = 0.06
 
 #: Categorical colours (Okabe and Ito), told apart with every common kind of colour vision; each with a line
 #: style and a marker of its own, so that they survive a black-and-white print too.

@@ -9,7 +9,7 @@ from .arrays import ArrayPacking
 from .errors import SceneError, SceneFileError
 from .laboratory import LaboratoryUnits
 from .lattice import PilePacking, SlabPacking
-from .load import Load, RowSelector, resolve_disk
+from .load import Load, RowSelector, TopSelector, resolve_disk
 from .material import Contact, Wall
 from .packing import Packing
 from .poured import PouredPacking
@@ -33,6 +33,7 @@ __all__ = [
     "SceneError",
     "SceneFileError",
     "SlabPacking",
+    "TopSelector",
     "Wall",
     "resolve_disk",
 ]

@@ -81,7 +81,9 @@ class Description(BaseModel, metaclass=_Public):
             default = inspect.Parameter.empty if info.is_required() else info.get_default(call_default_factory=True)
             parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default))
             shown = "must be given" if info.is_required() else f"default {default!r}"
-            unit = f" [{UNITS[name]}]" if UNITS.get(name) else ""
+            extra = info.json_schema_extra
+            named = extra.get("unit") if isinstance(extra, dict) else UNITS.get(name)
+            unit = f" [{named}]" if named else ""
             lines += [f"{name} : {shown}{unit}", textwrap.indent(textwrap.fill(info.description or "", 112), "    ")]
         cls.__signature__ = inspect.Signature(parameters)
         text, title, examples = inspect.cleandoc(cls.__doc__ or "").partition("\n\nExamples\n")

@@ -42,6 +42,8 @@ _KEYS: Final = {
     "ramp_time": "time",
     "stop_kinetic_energy": "energy",
 }
+#: The same for the place of a loaded disk.
+_PLACE: Final = {"x": "length"}
 
 
 @dataclass(frozen=True)
@@ -150,9 +152,12 @@ class LaboratoryUnits:
         (3000, -15.0)
         """
 
-        def reduced(value: Any, quantity: str = "") -> Any:
+        def reduced(value: Any, quantity: str = "", keys: Mapping[str, str] = _KEYS) -> Any:
             if isinstance(value, Mapping):
-                return {key: reduced(part, _KEYS.get(key, "")) for key, part in value.items()}
+                return {
+                    key: reduced(part, keys.get(key, ""), _PLACE if key == "disk" else _KEYS)
+                    for key, part in value.items()
+                }
             if isinstance(value, (list, tuple)):
                 return [reduced(part, quantity) for part in value]
             number = quantity and isinstance(value, (int, float, np.number)) and not isinstance(value, bool)

@@ -40,9 +40,27 @@ class RowSelector(Description):
     )
 
 
+class TopSelector(Description):
+    """The disk on top nearest to a place, in any packing; ``top-centre`` is that at ``x = 0``.
+
+    Examples
+    --------
+    >>> gr.Load(disk=gr.At(x=-10.0), force=(0.0, -1.0)).disk.x
+    -10.0
+    """
+
+    x: Finite = Field(
+        description="Distance from the middle of the packing, to the right, in its initial equilibrium. Of two disks "
+        "equally near the one with the lower index.",
+        json_schema_extra={"unit": "mean radius"},
+    )
+
+
 Selector = Annotated[
-    Literal["top-centre"] | Annotated[int, Field(strict=True, ge=0)] | RowSelector,
-    allowed("must be top-centre, the index of a disk, or {row: top | bottom | number, offset: whole number}"),
+    Literal["top-centre"] | Annotated[int, Field(strict=True, ge=0)] | RowSelector | TopSelector,
+    allowed(
+        "must be top-centre, the index of a disk, {x: number}, or {row: top | bottom | number, offset: whole number}"
+    ),
 ]
 Displacement = Annotated[
     tuple[Finite | None, Finite | None],
@@ -64,8 +82,8 @@ class Load(Description):
     """
 
     disk: Selector = Field(
-        description="The loaded disk: the topmost one nearest the middle in the initial equilibrium, an index, or a "
-        "place in a row."
+        description="The loaded disk: the topmost one nearest the middle in the initial equilibrium (top-centre), an index, "
+        "{x: distance from the middle}, or a place in a row."
     )
     force: Vector = Field(
         default=(0.0, 0.0),
@@ -103,7 +121,11 @@ class Load(Description):
 
 
 def resolve_disk(
-    selector: str | int | RowSelector, packing: Packing, position: NDArray[np.float64], *, key: str = "disk"
+    selector: str | int | RowSelector | TopSelector,
+    packing: Packing,
+    position: NDArray[np.float64],
+    *,
+    key: str = "disk",
 ) -> int:
     """Index of the disk that ``selector`` means.
 
@@ -111,15 +133,23 @@ def resolve_disk(
     closer to it horizontally than the sum of their radii stands above it at more than 30 degrees from the
     horizontal. Of the disks on top it is the one nearest to the middle between the walls, and of two
     equally near (within 1e-6) the one with the lower index. In a lattice with a long row at the top this is
-    the middle disk of that row.
+    the middle disk of that row. A ``TopSelector`` means the disk on top nearest to its ``x`` from the middle.
 
     Raises
     ------
     SceneError
-        For a disk or a row that the packing does not have; ``key`` is what the message calls the selector.
+        For a disk or a row that the packing does not have, and an ``x`` beyond its sides; ``key`` is what the message
+        calls the selector.
     """
     if selector == TOP_CENTRE:
-        return _top_centre(packing.radius, packing.middle, np.asarray(position))
+        return _nearest_on_top(packing.radius, packing.middle, np.asarray(position))
+    if isinstance(selector, TopSelector):
+        half = 0.5 * packing.width
+        if not abs(selector.x) <= half:
+            rule = f"must be from {-half:g} to {half:g}, the packing is {packing.width:g} wide"
+            raise SceneError(f"{key}.x = {show(selector.x)}: {rule}")
+        place = np.array([packing.middle + selector.x, 0.0])
+        return _nearest_on_top(packing.radius, 0.0, packing.box.separation(position, place))
     try:
         return check_disk(selector, packing.n, packing.row_count)
     except Problem as problem:
@@ -137,7 +167,7 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
             raise Problem(f"must be from 0 to {n - 1}, the packing has {n} disks", value=selector)
         return int(selector)
     if not isinstance(selector, RowSelector):
-        raise Problem("must be top-centre, the index of a disk, or a RowSelector", value=selector)
+        raise Problem("must be top-centre, the index of a disk, a TopSelector or a RowSelector", value=selector)
     rows = len(row_count)
     if rows == 0:
         rule = "a packing from a file or arrays has no rows, must be top-centre or the index of a disk"
@@ -155,13 +185,13 @@ def check_disk(selector: str | int | RowSelector, n: int, row_count: NDArray[np.
     return int(row_count[:row].sum()) + middle + selector.offset
 
 
-def _top_centre(radius: NDArray[np.float64], middle: float, position: NDArray[np.float64]) -> int:
+def _nearest_on_top(radius: NDArray[np.float64], place: float, position: NDArray[np.float64]) -> int:
     x, z = position[:, 0], position[:, 1]
-    away = np.abs(x - middle)
+    away = np.abs(x - place)
     largest = float(radius.max())
     reach = 4.0 * largest
     while True:
-        # Only disks near the middle are looked at; the band grows in the odd case that none is on top.
+        # Only disks near the place are looked at; the band grows in the odd case that none is on top.
         band = np.flatnonzero(away <= reach)
         if len(band):
             around = np.flatnonzero(away <= reach + 2.0 * largest)

@@ -19,7 +19,7 @@ from .arrays import ArrayPacking, listed, shortened
 from .base import MOST_STIFFNESS, PACKING_KINDS, Description
 from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
-from .load import TOP_CENTRE, Load, check_disk
+from .load import TOP_CENTRE, Load, TopSelector, check_disk
 from .material import Contact, Wall
 from .poured import PouredPacking
 from .protocol import Preparation, Protocol
@@ -125,7 +125,7 @@ class Scene(Description):
         if total := self.packing.disk_count:  # 0: only the file knows
             count = self.packing.row_count() if isinstance(self.packing, LatticePacking) else np.zeros(0, np.int64)
             for place, load in enumerate(self.loads):
-                if load.disk == TOP_CENTRE:
+                if load.disk == TOP_CENTRE or isinstance(load.disk, TopSelector):  # chosen by positions
                     continue
                 try:
                     check_disk(load.disk, total, count)

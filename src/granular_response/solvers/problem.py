@@ -226,7 +226,10 @@ class Problem:
     def with_loads(self, position: FloatArray) -> Problem:
         """The same problem with the scene's loads on disks chosen at the rest ``position`` (n, 2)."""
         loads = self.scene.loads
-        disk = np.array([resolve_disk(load.disk, self.packing, position) for load in loads], np.int64)
+        disk = np.array(
+            [resolve_disk(one.disk, self.packing, position, key=f"loads[{k}].disk") for k, one in enumerate(loads)],
+            np.int64,
+        )
         return replace(
             self,
             load_disk=disk,

@@ -106,16 +106,8 @@ def sensitivity(data: Data, entries: Sequence[Entry]) -> list[dict[str, Any]]:
 def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
     """Everything about the verdicts, as it is stored.
 
-    ``counts``, ``robustness`` and ``verdicts`` are scalars for ``dvc metrics show``, which passes over lists.
+    ``counts`` and ``robustness`` are scalars for ``dvc metrics show``, which passes over lists.
     """
-    verdicts = {
-        entry.claim.id: {
-            "verdict": entry.verdict,
-            "robustness": entry.robustness,
-            **({"value": rounded(entry.finding.quantity.value)} if entry.finding else {}),
-        }
-        for entry in entries
-    }
     own = [entry for entry in entries if not entry.claim.beyond]
     degrees = [entry.robustness for entry in own]
     return {
@@ -125,7 +117,6 @@ def document(data: Data, entries: Sequence[Entry]) -> dict[str, Any]:
             "beyond": len(entries) - len(own),
         },
         "robustness": {key(kind): degrees.count(kind) for kind in ROBUSTNESS_MEANINGS},
-        "verdicts": verdicts,
         "verdict_kinds": [{"verdict": verdict, "meaning": meaning} for verdict, meaning in MEANINGS.items()],
         "robustness_kinds": [{"robustness": kind, "meaning": meaning} for kind, meaning in ROBUSTNESS_MEANINGS.items()],
         "changes": [{"change": change, "sentence": sentence} for change, sentence in CHANGES.items()],

@@ -7,6 +7,7 @@ say, in the reading that this project uses: how other groups bear on it is in th
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -26,11 +27,11 @@ FOLDER = Path("figures") / "metrics"
 
 
 def measure(group: str, data: Path | None = None, output: Path | None = None) -> Path:
-    """Write the numbers of a group as JSON; returns the path of the file.
+    """Write the numbers of a group as JSON, each under a name that says what it is; returns the path of the file.
 
-    ``claims`` maps each claim of the group to its number in the first reading with the ends of its interval, and to
-    what becomes of it there: holds, fails, open or not measured, also where the datasets hold too little for it.
-    ``numbers`` are those of the group's ``numbers.py``.
+    ``holds``, ``fails``, ``open`` and ``not measured`` list the claims of the group by what becomes of each in its
+    first interpretation; then come their numbers there, the lower bound where that is all there is, and those of the
+    group's ``numbers.py``.
 
     Raises
     ------
@@ -45,12 +46,12 @@ def measure(group: str, data: Path | None = None, output: Path | None = None) ->
     if claims is None and numbers is None:
         raise GroupError(f"{group}: has neither claims.py nor numbers.py, so there is nothing to measure")
     path, datasets = stored.datasets(group, data)
-    found: dict[str, Any] = {}
+    found: dict[str, str | float | None] = {}
     if claims is not None:
-        found["claims"] = {claim.id: _claim(claim, group, datasets) for claim in claims}
+        found = _claims(claims, group, datasets)
     if numbers is not None:
         try:
-            found["numbers"] = {name: rounded(value) for name, value in numbers(datasets).items()}
+            found |= {name: rounded(value) for name, value in numbers(datasets).items()}
         except TOO_LITTLE as error:
             problem = " ".join(f"{type(error).__name__}: {error}".split())
             raise GroupError(f"{path}: the numbers of {group} cannot be measured ({problem})") from error
@@ -76,14 +77,22 @@ def _member(group: str, module: str, name: str) -> Any:
         return None
 
 
-def _claim(claim: Claim, group: str, datasets: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    try:
-        finding = judge(claim, Data({group: datasets})).finding
-    except TOO_LITTLE:  # the table of claims, which has all datasets, is not as lenient
-        finding = None
-    if finding is None:
-        return {"outcome": "not measured"}
-    reading = finding.readings[0]
-    found = reading.conditions[0].found
-    values = {"value": found.value, "low": found.low, "high": found.high}
-    return {"outcome": reading.outcome, **{name: rounded(value) for name, value in values.items()}}
+def _claims(claims: Sequence[Claim], group: str, datasets: Mapping[str, xr.Dataset]) -> dict[str, str | float | None]:
+    outcomes: dict[str, list[str]] = {"holds": [], "fails": [], "open": [], "not measured": []}
+    values = {}
+    for claim in claims:
+        try:
+            finding = judge(claim, Data({group: datasets})).finding
+        except TOO_LITTLE:  # the table of claims, which has all datasets, is not as lenient
+            finding = None
+        if finding is None:
+            outcomes["not measured"].append(claim.id)
+            continue
+        reading = finding.readings[0]
+        outcomes[reading.outcome].append(claim.id)
+        condition = reading.conditions[0]
+        quantity = condition.found
+        values[f"{claim.id} {condition.what}"] = rounded(
+            quantity.value if math.isfinite(quantity.value) else quantity.low
+        )
+    return {outcome: " ".join(ids) for outcome, ids in outcomes.items() if ids} | values

@@ -9,13 +9,12 @@ import xarray as xr
 
 
 def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
-    """Of each slab: the largest force that it bears, the response at x = 0 there, and the largest unbalanced force."""
-    return {
-        f"{name}_{what}": float(value)
-        for name, slab in datasets.items()
-        for what, value in (
-            ("largest_force", slab["force"].values[-1]),
-            ("response_at_centre", slab["response_at_centre"].values[-1]),
-            ("force_residual", np.max(slab["certificate_force_residual"].values)),
-        )
-    }
+    """Of each slab: the largest force that it bears and the response at x = 0 there; the largest unbalanced force."""
+    residuals = [np.max(slab["certificate_force_residual"].values) for slab in datasets.values()]
+    found = {"max. unbalanced force": float(max(residuals))}
+    for slab in datasets.values():
+        labels = ("polydispersity", "friction", "stiffness_ratio")
+        name = ", ".join(f"{label.replace('_', ' ')} {float(slab[label]):g}" for label in labels)
+        found[f"largest force, {name}"] = float(slab["force"].values[-1])
+        found[f"response at x = 0, {name}"] = float(slab["response_at_centre"].values[-1])
+    return found

@@ -9,14 +9,19 @@ import xarray as xr
 
 
 def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
-    """Of each case: packings at rest under the largest force with any, and their mean response at x = 0 there."""
+    """Of each case: mean response at x = 0 under the largest force with packings at rest; and these packings in all."""
     averages = datasets["averages"].isel(width=-1)
     middle = int(np.argmin(np.abs(averages["x"].values)))
-    found = {}
+    found = {"packings at rest": 0.0}
     for case in range(averages.sizes["case"]):
         one = averages.isel(case=case)
         last = int(np.flatnonzero(one["count_at_rest"].values)[-1])
-        name = "_".join(f"{one[label].values}" for label in ("polydispersity", "friction", "lattice_constant"))
-        found[f"{name}_at_rest"] = float(one["count_at_rest"][last])
-        found[f"{name}_response_at_centre"] = float(one["mean"][last, middle])
+        labels = (
+            ("polydispersity", "polydispersity"),
+            ("friction", "friction"),
+            ("initial lattice", "lattice_constant"),
+        )
+        name = ", ".join(f"{label} {one[key].values}" for label, key in labels)
+        found["packings at rest"] += float(one["count_at_rest"][last])
+        found[f"response at x = 0, {name}"] = float(one["mean"][last, middle])
     return found

@@ -8,9 +8,9 @@ import xarray as xr
 
 
 def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
-    """Largest difference of the floor response from the reference, by friction and variant."""
+    """Largest difference of the floor response from the reference, by variant and friction."""
     return {
-        f"{name}_{variant}": float(difference)
+        f"{variant}, {name}".replace("_", " ").replace("mu", "friction"): float(difference)
         for name, study in datasets.items()
         for variant, difference in zip(
             study["variant"].values.tolist(), study["largest_difference"].values, strict=True

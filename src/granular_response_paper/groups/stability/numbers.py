@@ -16,7 +16,7 @@ CERTIFIED = 0
 def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
     """Time steps over their predicted limit, outcomes of random scenes, and the largest errors that were found.
 
-    ``stable_step`` is the largest ratio up to which every kick settles, ``unstable_step`` the smallest from which none
+    ``stable step`` is the largest ratio up to which every kick settles, ``unstable step`` the smallest from which none
     does: the predicted limit is to lie between them. Residuals are those of certified scenes, in mean disk weights.
     """
     maps = [study for name, study in datasets.items() if name.startswith("time_step_")]
@@ -27,14 +27,15 @@ def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
     scenes = datasets["random_scenes"]
     certified = scenes["outcome"].values == CERTIFIED
     meanings = re.findall(r"(\d+) ([a-z ]+)", scenes["outcome"].attrs["long_name"])
-    counts = {
-        f"scenes_{meaning.replace(' ', '_')}": float((scenes["outcome"].values == int(code)).sum())
-        for code, meaning in meanings
+    counts = {f"scenes {meaning}": float((scenes["outcome"].values == int(code)).sum()) for code, meaning in meanings}
+    errors = {
+        "max. unbalanced force": "force_residual",
+        "max. unbalanced torque": "torque_residual",
+        "max. Coulomb violation": "coulomb_excess",
     }
-    errors = ("force_residual", "torque_residual", "coulomb_excess")
     return {
-        "stable_step": float(ratio[np.cumprod(every).astype(bool)].max(initial=0.0)),
-        "unstable_step": float(ratio[np.cumprod(none[::-1])[::-1].astype(bool)].min(initial=np.inf)),
+        "stable step": float(ratio[np.cumprod(every).astype(bool)].max(initial=0.0)),
+        "unstable step": float(ratio[np.cumprod(none[::-1])[::-1].astype(bool)].min(initial=np.inf)),
         **counts,
-        **{f"largest_{name}": float(np.nanmax(scenes[name].values[certified], initial=0.0)) for name in errors},
+        **{name: float(np.nanmax(scenes[key].values[certified], initial=0.0)) for name, key in errors.items()},
     }
