@@ -140,6 +140,11 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"ways": [{"name": "at once", "changes": {}}], "parts": [{"friction": 0.0, "to": 0.05}], "forces": [0.05]},
         {"asymmetry": 1e-12, "forces": [200.0], "parts": [{"friction": 0.2, "to": 200.0}]},
     ),
+    "rolling": (
+        {"layers": [1], "rolling_frictions": [0.0], "slab_rolling_frictions": [0.0]},
+        {"most_friction": 0.1, "tolerance": 1.0, "scene": SMALL},
+        {"moved": 1e-9, "slabs": [{"friction": 0.2, "forces": [0.01]}], "shown_force": 0.01, "heights": 1},
+    ),
     "contact_law": (
         {"friction": [0.0], "forces": [1e-3]},
         {"scene": ONE},

@@ -587,6 +587,31 @@ def law_study():
     return {"responses": dataset(forces, difference=(("friction", "force"), np.full((2, 2), 0.1)))}
 
 
+def rolling_study():
+    grid, dims = {"layers": [5, 11], "rolling_friction": [0.0, 0.3]}, ("layers", "rolling_friction")
+    pair = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "z": [0.0, 0.5, 1.0]}
+    response = np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.01])[:, None]
+    couples = np.array([[0.0] * 3, [0.05] * 3])
+    return {
+        "thresholds": dataset(
+            grid,
+            low=(dims, np.array([[0.95, 0.1]] * 2)),
+            high=(dims, np.array([[0.97, 0.12]] * 2)),
+            floor_dip=(dims, np.full((2, 2), -0.01)),
+        ),
+        "piles": dataset(
+            {"layers": [5, 11], "case": ["supported", "free", "resisting"]},
+            floor_dip=(("layers", "case"), np.full((2, 3), -0.01)),
+        ),
+        "slabs": dataset(
+            pair,
+            elastic_response=(("friction", "rolling_friction", "floor_disk"), np.stack([response] * 2)),
+            couple_stress=(("friction", "rolling_friction", "z"), np.stack([couples] * 2)),
+            vertical_stress=(("friction", "rolling_friction", "z"), np.ones((2, 2, 3))),
+        ),
+    }
+
+
 def everything():
     """Datasets in which every claim holds, in every interpretation and every variant."""
     return {
@@ -610,4 +635,5 @@ def everything():
         "peak_width": width_study(),
         "moduli": moduli_study(),
         "contact_law": law_study(),
+        "rolling": rolling_study(),
     }
