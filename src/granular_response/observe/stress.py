@@ -138,9 +138,9 @@ def couple_stress(
         m_b(R) = sum_contacts c d_b integral_0^1 phi(R - r + s d) ds ,     c = M - (R_i - R_j) f_t / 2 ,
 
     where ``M`` is the couple of the rolling resistance on the first disk, reduced radius times rolling force, ``f_t``
-    the force along the tangent, and ``R_j`` is 0 at a wall. Away from walls and loads its divergence is the torque that the
-    tangential forces leave to the two disks, ``-(R_i + R_j) f_t``, half of it at each centre, which the antisymmetric
-    part of the stress shows. Between equal disks without rolling resistance it is 0.
+    the force along the tangent, and ``R_j`` is 0 at a wall. Away from walls and loads its divergence is the torque that
+    the tangential forces leave to the two disks, ``-(R_i + R_j) f_t``, half of it at each centre, which the
+    antisymmetric part of the stress shows. Between equal disks without rolling resistance it is 0.
 
     ``radius`` (n,) is that of the disks; ``width`` and ``cutoff`` as for the stress, with its errors.
     """

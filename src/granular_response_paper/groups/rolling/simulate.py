@@ -52,9 +52,9 @@ class Threshold(Pile):
 
 
 def unsupported(scene: Scene, layers: int, friction: float, rolling: float) -> Scene:
-    """The pile on a floor that goes on at both sides, with the same coefficients of friction everywhere."""
+    """The pile on a floor that goes on at both sides, by its number of layers in radii, with the same coefficients of friction everywhere."""
     packing = scene.updated({"packing.layers": layers}).packing.build()
-    x, room = packing.position[:, 0] + packing.width, 3.0 * packing.width
+    x, room = packing.position[:, 0] + layers, packing.width + 2.0 * layers
     alone = Scene.from_arrays(x, packing.position[:, 1], packing.radius, width=room, scene=scene)
     rolls = {"contact.rolling_friction": rolling, "wall.rolling_friction": rolling}
     return alone.updated({"contact.friction": friction, "wall.friction": friction, **rolls})
