@@ -587,28 +587,23 @@ def law_study():
     return {"responses": dataset(forces, difference=(("friction", "force"), np.full((2, 2), 0.1)))}
 
 
-def rolling_study():
-    grid, dims = {"layers": [5, 11], "rolling_friction": [0.0, 0.3]}, ("layers", "rolling_friction")
-    pair = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "z": [0.0, 0.5, 1.0]}
-    response = np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.01])[:, None]
-    couples = np.array([[0.0] * 3, [0.05] * 3])
+def network_study():
+    """Isostatic packings with exponential forces."""
+    spread = np.array([-0.02, 0.0, 0.01, 0.02])
+
+    def along(values):
+        return ("polydispersity", "friction", "realization", "state"), (
+            np.array(values, float)[None, :, None, None] + spread[:, None] + np.zeros((2, 1, 1, 2))
+        )
+
+    labels = {"polydispersity": [0.1, 0.25], "friction": [0.0, 0.2, 1.0], "state": ["rest", "loaded"]}
     return {
-        "thresholds": dataset(
-            grid,
-            low=(dims, np.array([[0.95, 0.1]] * 2)),
-            high=(dims, np.array([[0.97, 0.12]] * 2)),
-            floor_dip=(dims, np.full((2, 2), -0.01)),
-        ),
-        "piles": dataset(
-            {"layers": [5, 11], "case": ["supported", "free", "resisting"]},
-            floor_dip=(("layers", "case"), np.full((2, 3), -0.01)),
-        ),
-        "slabs": dataset(
-            pair,
-            elastic_response=(("friction", "rolling_friction", "floor_disk"), np.stack([response] * 2)),
-            couple_stress=(("friction", "rolling_friction", "z"), np.stack([couples] * 2)),
-            vertical_stress=(("friction", "rolling_friction", "z"), np.ones((2, 2, 3))),
-        ),
+        "statistics": dataset(
+            labels,
+            tail_variation=along([1.0, 1.0, 0.95]),
+            coordination_number=along([4.0, 3.5, 3.1]),
+            hyperstaticity=along([0.0, 0.05, 0.03]),
+        )
     }
 
 
@@ -635,5 +630,5 @@ def everything():
         "peak_width": width_study(),
         "moduli": moduli_study(),
         "contact_law": law_study(),
-        "rolling": rolling_study(),
+        "network": network_study(),
     }

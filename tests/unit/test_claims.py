@@ -193,6 +193,9 @@ def by_solid(rows):
 #: The second case alone differs from its slab.
 ONE_TOO_FAR = np.array([1.0, 10.0, 1.0])[:, None, None, None, None]
 
+#: Along polydispersities, of which the first one alone differs.
+FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
+
 ENDS = ("low", "high")
 #: The reversible range of the second case alone ends early.
 IRREVERSIBLE = [[[1.0, 1.0]], [[1.0, 0.2]]]
@@ -353,11 +356,6 @@ PLANTED = [
     ("B6", scaled("peak_width", "inside", "interval", 0.5), "contradicted"),
     ("B10", scaled("contact_law", "responses", "difference", [[1.0], [3.0]]), DEPENDS),
     ("B10", scaled("contact_law", "responses", "difference", 3.0), "contradicted"),
-    ("B11", scaled("rolling", "thresholds", "low", 0.5), "undecided"),
-    ("B11", both(*(scaled("rolling", "thresholds", end, 0.5) for end in ENDS)), "contradicted"),
-    ("B12", put("rolling", "piles", "floor_dip", 0.05), DEPENDS),
-    ("B13", scaled("rolling", "slabs", "elastic_response", [[[1.0], [1.5]]]), "contradicted"),
-    ("B14", scaled("rolling", "slabs", "couple_stress", 0.01), "contradicted"),
     ("B6", put("peak_width", "inside", "interval", [0.7, 0.8]), "undecided"),
     ("B7", scaled("peak_width", "floors", "interval", 0.5), "contradicted"),
     ("B4", scaled("moduli", "packings", "difference", 10.0), "contradicted"),
@@ -370,6 +368,13 @@ PLANTED = [
     ("B2", put("hysteresis", "events", "high", NAN), "not measured"),
     ("B3", put("hysteresis", "loops", "slid_again", 0.1), "contradicted"),
     ("B3", scaled("hysteresis", "loops", "floor_repeated", [[[1.0]], [[1e3]]]), DEPENDS),
+    ("B11", scaled("network", "statistics", "tail_variation", 0.75), "contradicted"),
+    ("B11", scaled("network", "statistics", "tail_variation", 0.84), "undecided"),
+    ("B11", scaled("network", "statistics", "tail_variation", [1.0, 0.7]), DEPENDS),
+    ("B12", scaled("network", "statistics", "coordination_number", 1.2), "contradicted"),
+    ("B12", scaled("network", "statistics", "coordination_number", FIRST_CASE), DEPENDS),
+    ("B13", put("network", "statistics", "hyperstaticity", 0.2), "contradicted"),
+    ("B13", scaled("network", "statistics", "hyperstaticity", 2.0), "undecided"),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), DEPENDS),
     ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "undecided"),
