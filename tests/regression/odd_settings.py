@@ -113,11 +113,6 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"scene": SMALL, "margin": 1.0},
         {"fitted": [100.0, 200.0], "separations": [40]},
     ),
-    "network": (
-        {"polydispersities": [0.1], "frictions": [0.0], "realizations": 1, "force": 50.0},
-        {"scene": {"packing.layers": 5}, "polydispersities": [0.25], "frictions": [0.2], "band": 100.0},
-        {"polydispersities": [0.1], "frictions": [0.2], "realizations": 1, "band": 1e-6, "margin": 0.9},
-    ),
     "crossover_scaling": (
         {"series": [{"name": "width", "friction": 0.0, "layers": [5], "disks_per_layer": [3.0, 4.0]}]},
         {"most_forces": 5, "first_force": 0.01, "series": [{"name": "low", "friction": 0.0, "layers": [5, 7]}]},
@@ -165,12 +160,6 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"scene": SMALL},
         {"scene": SHALLOW, "width": 1e-6, "forces": [1e-3, 1e5],
          "disordered": [{"polydispersity": 0.9, "friction": 0.0, "largest_force": 1e5}]},
-    ),
-    "overview": (
-        {"scene": SMALL},
-        {"frictions": [0.2], "forces": [1e-3]},
-        {"scene": SHALLOW, "experiment": {"polydispersities": [0.0], "friction": 0.0, "force": 1e3,
-                                          "stop_kinetic_energy": 1e-9}},
     ),
     "stability": (
         {"random_scenes": {"number": 1, "chunk": 5, "maximum_steps": 1}},

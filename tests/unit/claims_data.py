@@ -587,26 +587,6 @@ def law_study():
     return {"responses": dataset(forces, difference=(("friction", "force"), np.full((2, 2), 0.1)))}
 
 
-def network_study():
-    """Isostatic packings with exponential forces."""
-    spread = np.array([-0.02, 0.0, 0.01, 0.02])
-
-    def along(values):
-        return ("polydispersity", "friction", "realization", "state"), (
-            np.array(values, float)[None, :, None, None] + spread[:, None] + np.zeros((2, 1, 1, 2))
-        )
-
-    labels = {"polydispersity": [0.1, 0.25], "friction": [0.0, 0.2, 1.0], "state": ["rest", "loaded"]}
-    return {
-        "statistics": dataset(
-            labels,
-            tail_variation=along([1.0, 1.0, 0.95]),
-            coordination_number=along([4.0, 3.5, 3.1]),
-            hyperstaticity=along([0.0, 0.05, 0.03]),
-        )
-    }
-
-
 def everything():
     """Datasets in which every claim holds, in every interpretation and every variant."""
     return {
@@ -630,5 +610,4 @@ def everything():
         "peak_width": width_study(),
         "moduli": moduli_study(),
         "contact_law": law_study(),
-        "network": network_study(),
     }

@@ -193,9 +193,6 @@ def by_solid(rows):
 #: The second case alone differs from its slab.
 ONE_TOO_FAR = np.array([1.0, 10.0, 1.0])[:, None, None, None, None]
 
-#: Along polydispersities, of which the first one alone differs.
-FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
-
 ENDS = ("low", "high")
 #: The reversible range of the second case alone ends early.
 IRREVERSIBLE = [[[1.0, 1.0]], [[1.0, 0.2]]]
@@ -368,13 +365,6 @@ PLANTED = [
     ("B2", put("hysteresis", "events", "high", NAN), "not measured"),
     ("B3", put("hysteresis", "loops", "slid_again", 0.1), "contradicted"),
     ("B3", scaled("hysteresis", "loops", "floor_repeated", [[[1.0]], [[1e3]]]), DEPENDS),
-    ("B11", scaled("network", "statistics", "tail_variation", 0.75), "contradicted"),
-    ("B11", scaled("network", "statistics", "tail_variation", 0.84), "undecided"),
-    ("B11", scaled("network", "statistics", "tail_variation", [1.0, 0.7]), DEPENDS),
-    ("B12", scaled("network", "statistics", "coordination_number", 1.2), "contradicted"),
-    ("B12", scaled("network", "statistics", "coordination_number", FIRST_CASE), DEPENDS),
-    ("B13", put("network", "statistics", "hyperstaticity", 0.2), "contradicted"),
-    ("B13", scaled("network", "statistics", "hyperstaticity", 2.0), "undecided"),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), DEPENDS),
     ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "undecided"),

@@ -46,7 +46,7 @@ QUESTIONS: Mapping[str, tuple[str, ...]] = {
         "preparation",
         "symmetry_breaking",
     ),
-    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network"),
+    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer"),
     "What do piles, torques and several forces do?": ("pile_dip", "torque", "superposition", "influence", "hysteresis"),
     "How certain are the numbers?": ("sensitivity", "numerics", "contact_law", "stability"),
 }
