@@ -19,10 +19,13 @@ from granular_response.observe.stress import (
     antisymmetric_part,
     coarse_grained_stress,
     contact_forces,
+    couple_stress,
     grid_points,
     load_forces,
     pressure,
 )
+from granular_response.scene import Scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, State
 
 #: Far enough for the Gaussian to be below rounding, where a test wants the identity itself.
@@ -206,3 +209,33 @@ def test_antisymmetric_part_is_small_when_torques_balance():
     forces = contact_forces(state(s.position, spun, s.walls, width))
     turned = antisymmetric_ratio(coarse_grained_stress(forces, points))
     assert turned.min() > 0.2
+
+
+@pytest.mark.parametrize("w", [0.8, 2.0])
+def test_divergence_of_the_couple_stress_is_the_torque_of_the_tangential_forces(w):
+    """With unequal disks, rolling resistance at disks and walls, and a torque as a load: the torques balance."""
+    rolls = {"friction": 0.4, "rolling_friction": 0.1, "rolling_stiffness_ratio": 0.5}
+    load = {"disk": "top-centre", "force": [0.2, -2.0], "torque": 0.3}
+    packing = {"kind": "slab", "layers": 4, "disks_per_row": 8, "polydispersity": 0.2}
+    solved = solve_scene(Scene.from_dict({"packing": packing, "contact": rolls, "wall": rolls, "loads": [load]}))
+    s, radius = solved.loaded[-1], solved.problem.packing.radius
+    points = grid_points(np.linspace(0.0, 16.0, 7), np.linspace(-0.5, 8.0, 6))
+
+    def field(at: np.ndarray) -> np.ndarray:
+        return couple_stress(s, radius, at, w, WHOLE)
+
+    h = 1e-3
+    steps = enumerate(h * np.eye(2))
+    got = sum((field(points + step)[..., b] - field(points - step)[..., b]) / (2.0 * h) for b, step in steps)
+    on_disk, on_wall = np.zeros_like(s.position), np.zeros((len(s.walls.first), 2))
+    both = 0.5 * (radius[s.pairs.first] + radius[s.pairs.second]) * s.pairs.tangential_force
+    for disk in (s.pairs.first, s.pairs.second):
+        np.add.at(on_disk[:, 0], disk, -both)
+    half = 0.5 * radius[s.walls.first] * s.walls.tangential_force
+    np.add.at(on_disk[:, 0], s.walls.first, -half)
+    on_wall[:, 0] = radius[s.walls.first] * s.walls.rolling_force - half
+    on_disk[solved.problem.load_disk[0], 0] += 0.3
+    at_walls = s.box.on_wall(s.position[s.walls.first], s.walls.second)
+    expected = body_force_density(s.position, on_disk, points, w) + body_force_density(at_walls, on_wall, points, w)
+    assert np.abs(s.pairs.rolling_force).max() > 1e-3
+    np.testing.assert_allclose(got, expected[..., 0], atol=1e-5 * np.abs(expected).max())

@@ -127,6 +127,31 @@ def coarse_grained_stress(
     return stress.reshape(*points.shape[:-1], 2, 2)
 
 
+def couple_stress(
+    state: State, radius: FloatArray, points: FloatArray, width: float = 2.0, cutoff: float = 4.0
+) -> FloatArray:
+    """Couple stress at ``points``, (..., 2) to (..., 2), in mean disk weights, of all touching contacts of a state.
+
+    What contacts hand on of couples, as the stress is what they hand on of forces (Goldhirsch, Granular Matter 12, 239
+    (2010)), with the branch vector ``d`` and the couple about the middle between what both bodies feel,
+
+        m_b(R) = sum_contacts c d_b integral_0^1 phi(R - r + s d) ds ,     c = M - (R_i - R_j) f_t / 2 ,
+
+    where ``M`` is the couple of the rolling resistance on the first disk, reduced radius times rolling force, ``f_t``
+    the force along the tangent, and ``R_j`` is 0 at a wall. Away from walls and loads its divergence is the torque that
+    the tangential forces leave to the two disks, ``-(R_i + R_j) f_t``, half of it at each centre, which the
+    antisymmetric part of the stress shows. Between equal disks without rolling resistance it is 0.
+
+    ``radius`` (n,) is that of the disks; ``width`` and ``cutoff`` as for the stress, with its errors.
+    """
+    pairs, walls = state.pairs, state.walls
+    first, second, at_wall = radius[pairs.first], radius[pairs.second], radius[walls.first]
+    rolled = first * second / (first + second) * pairs.rolling_force, at_wall * walls.rolling_force
+    left = (first - second) * pairs.tangential_force, at_wall * walls.tangential_force
+    pair, wall = (np.stack([m - 0.5 * rest, np.zeros_like(m)], axis=1) for m, rest in zip(rolled, left, strict=True))
+    return coarse_grained_stress(given_forces(state, pair, wall), points, width, cutoff)[..., 0, :]
+
+
 def line_forces(contacts: ContactForces, height: float) -> tuple[FloatArray, FloatArray]:
     """(k,) places along x and vertical forces of the contacts whose branch crosses the horizontal line at ``height``.
 

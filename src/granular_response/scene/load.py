@@ -82,8 +82,8 @@ class Load(Description):
     """
 
     disk: Selector = Field(
-        description="The loaded disk: the topmost one nearest the middle in the initial equilibrium (top-centre), an index, "
-        "{x: distance from the middle}, or a place in a row."
+        description="The loaded disk: the topmost one nearest the middle in the initial equilibrium (top-centre), an "
+        "index, {x: distance from the middle}, or a place in a row."
     )
     force: Vector = Field(
         default=(0.0, 0.0),
