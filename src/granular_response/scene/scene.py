@@ -165,6 +165,11 @@ class Scene(Description):
         """Files that the scene is read from, besides its own."""
         return [self.packing.file] if isinstance(self.packing, FilePacking) else []
 
+    @property
+    def small_disks_gather(self) -> bool:
+        """Whether the smallest disks of the packing may touch each other, as where disks are poured."""
+        return isinstance(self.packing, PouredPacking)
+
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, folder: str | PathLike[str] | None = None) -> Scene:
         """A scene from nested mappings; what is left out has its default.

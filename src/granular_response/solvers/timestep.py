@@ -179,7 +179,7 @@ def _papers_is_stable(problem: Problem) -> bool:
 
     Three small disks that touch in a poured packing of two sizes bear 0.92 of the estimate, and above it never rest.
     """
-    return stability_limit(problem, smallest=problem.scene.packing.kind == "poured") >= PAPERS_TIME_STEP
+    return stability_limit(problem, smallest=problem.scene.small_disks_gather) >= PAPERS_TIME_STEP
 
 
 def resolve_time_step(problem: Problem) -> float:

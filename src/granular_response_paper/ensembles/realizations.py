@@ -113,8 +113,9 @@ class Realization:
 
 
 def _certified(state: State, kind: type) -> dict[str, Any]:
-    """The entries of its certificate for which a record has a field."""
-    return {name: float(getattr(state.certificate, name)) for name in columns(kind) if hasattr(state.certificate, name)}
+    """The entries of its certificate for which a record has a field; nan where one was not determined."""
+    found = {name: getattr(state.certificate, name) for name in columns(kind) if hasattr(state.certificate, name)}
+    return {name: np.nan if value is None else float(value) for name, value in found.items()}
 
 
 def realize(
