@@ -239,7 +239,13 @@ class _Path:
             returned += 1
             if returned > self.options.still:
                 raise PathError(f"the equilibrium at load factor {self.target:g} is unstable, and motion returns to it")
-            point = self._by_motion(point, "bifurcation", "unstable", None)
+            try:
+                point = self._by_motion(point, "bifurcation", "unstable", None)
+            except PathError:  # motion hardly leaves it, and finds nothing beside it
+                direction = self._direction(point.trial, point.sense)
+                if direction is None:
+                    raise
+                point = self._by_motion(point, "bifurcation", "unstable", direction)
 
     def _first_unstable(self, before: Point, point: Point) -> Point:
         """``point``, if it is stable with the statuses of its increment; else the one that motion leads to.

@@ -42,7 +42,7 @@ class HandOver:
 #: Rest under gravity, and loads by dynamics: the fall is long, and a wait costs little of it.
 PROTOCOL = HandOver(tries=8, wait=20.0, nudged=True)
 #: The end of a branch on a path: the first try is early, and each further one has a hundredth of the energy.
-CROSSING = HandOver(tries=6, cooling=1e-2)
+CROSSING = HandOver(tries=4, cooling=1e-2)
 #: Kinetic energy per disk at the first try of a crossing.
 CROSSING_STOP = 1e-9
 
