@@ -60,7 +60,7 @@ def test_an_experiment_never_ends_in_a_traceback(group, number, tmp_path):
             assert "\n" not in str(error)
         if not data.exists():
             return
-    assert json.loads(metrics.read_text())
+    assert isinstance(json.loads(metrics.read_text()), dict)
     assert len(done) == 3 or not (tmp_path / "figures" / "captions.json").exists()
 
 
