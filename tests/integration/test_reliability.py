@@ -93,7 +93,7 @@ def test_killed_runs_leave_whole_results_or_none(tmp_path, processes):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_run_that_is_told_to_end_leaves_the_old_result(tmp_path, processes, number):
-    endless = {**SCENE, "protocol": {"method": "dynamics", "stop_kinetic_energy": 1e-30, "maximum_steps": 10**9}}
+    endless = {**SCENE, "protocol": {"method": "dynamics", "ramp_time": 1e7, "maximum_steps": 10**12}}
     (tmp_path / "scene.yaml").write_text(yaml.safe_dump(endless))
     (tmp_path / "result.nc").write_bytes(b"old")
     run = processes.Process(target=command, args=(str(tmp_path), ["run", "scene.yaml", "-o", "result.nc"]))
