@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from .animation import animate
 from .photoelastic import photoelastic
+from .pictures import PictureError as PictureError
 from .pictures import contacts, floor, forces, packing, page, response, stress
 
 __all__ = ["animate", "contacts", "floor", "forces", "packing", "page", "photoelastic", "response", "stress"]
