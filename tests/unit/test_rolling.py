@@ -8,7 +8,8 @@ import pytest
 from small_scenes import free_disks, scene, shaken
 from test_statics import dense_tangent, numerical_tangent
 
-from granular_response.contact.rolling import Rolling, rolling_force, rolling_return
+from granular_response.contact.coulomb import return_map
+from granular_response.contact.rolling import Rolling, rolling_force
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.dynamics import Dynamics
 from granular_response.solvers.path import PathRecord, follow
@@ -37,8 +38,8 @@ def test_the_rolling_force_by_hand():
     assert rolling_force(1e-3, 0.01, 10.0, LAW, 0.01) == pytest.approx((-0.65, 1.1e-3))
     assert rolling_force(3e-3, 0.01, 10.0, LAW, 0.0) == pytest.approx((-1.0, 0.9 / 500.0))
     assert rolling_force(-3e-3, 0.0, -10.0, LAW, 0.0) == pytest.approx((1.0, -1.0 / 500.0))
-    assert rolling_return(3e-3, 1.0, LAW) == pytest.approx((-1.0, 2e-3, -1.0))
-    assert rolling_return(1e-3, 1.0, LAW) == pytest.approx((-0.5, 1e-3, 0.0))
+    assert return_map(3e-3, 1.0, LAW.stiffness) == pytest.approx((-1.0, 2e-3, -1.0))
+    assert return_map(1e-3, 1.0, LAW.stiffness) == pytest.approx((-0.5, 1e-3, 0.0))
 
 
 def test_keys_that_do_nothing_together_are_refused_and_absent_ones_are_not_written():

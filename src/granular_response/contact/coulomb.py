@@ -67,11 +67,14 @@ def tangential(spring, slip_velocity, force_normal, law, rule, time_step):
 
 
 @kernel
-def return_map(trial, limit, law):
-    """Force, spring and sense of sliding (0: sticks) for a spring stretched to ``trial`` under a Coulomb ``limit``."""
-    force = -law.tangential_stiffness * trial
+def return_map(trial, limit, stiffness):
+    """Force, spring and sense of sliding (0: sticks) for a spring stretched to ``trial`` under a Coulomb ``limit``.
+
+    Along the rolling too, where the limit is that of rolling and the sense that in which the contact rolls.
+    """
+    force = -stiffness * trial
     if abs(force) <= limit:
         return force, trial, 0.0
     sense = 1.0 if force > 0.0 else -1.0
     force = sense * limit
-    return force, -force / law.tangential_stiffness, sense
+    return force, -force / stiffness, sense

@@ -42,13 +42,3 @@ def rolling_force(spring, rolled, normal, rolling, time_step):
         return force, trial
     cut = limit if force > 0.0 else -limit
     return cut, -(cut + damping) / rolling.stiffness
-
-
-@kernel
-def rolling_return(spring, limit, rolling):
-    """Rolling force, spring and sense of rolling (0: held) for a spring turned to ``spring`` under a ``limit``."""
-    force = -rolling.stiffness * spring
-    if abs(force) <= limit:
-        return force, spring, 0.0
-    sense = 1.0 if force > 0.0 else -1.0
-    return sense * limit, -sense * limit / rolling.stiffness, sense

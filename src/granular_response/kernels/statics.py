@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from ..contact.coulomb import return_map
 from ..contact.law import elastic_force, energy, stiffness
-from ..contact.rolling import rolling_return
 from ..machine.machine_code import kernel
 from ..state.status import OPEN, SLIDING, STICKING
 
@@ -187,12 +186,9 @@ def _rub(
     """
     form = _shape_at(shape, c)
     fn = elastic_force(law, xi, form)
-    share = 1.0 if overlap0[c] >= 0.0 or xi <= 0.0 else xi / (xi - overlap0[c])
+    share = _closed_part(overlap0[c], xi)
     limit = law.friction * fn if limits is None else limits[c]
-    if fixed is None:
-        ft, s, sense = return_map(spring0[c] + share * slip, limit, law)
-    else:
-        ft, s, sense = _as_it_is(fixed[c], spring0[c] + share * slip, limit, law)
+    ft, s, sense = _returned(c, spring0[c] + share * slip, limit, law.tangential_stiffness, fixed)
     out.status[c] = SLIDING if sense != 0.0 else STICKING
     if tangent is not None:
         k = stiffness(law, xi, form)
@@ -210,12 +206,20 @@ def _rub(
 
 
 @kernel(forceinline=True)
-def _as_it_is(status, spring, limit, law):
-    """Tangential force, spring and direction of sliding of a contact that keeps its status."""
-    if abs(status) == SLIDING:
-        sense = 1.0 if status > 0 else -1.0
-        return sense * limit, -sense * limit / law.tangential_stiffness, sense
-    return -law.tangential_stiffness * spring, spring, 0.0
+def _closed_part(before, overlap):
+    """Part of an increment from the overlap ``before`` in which a contact is closed."""
+    return 1.0 if before >= 0.0 or overlap <= 0.0 else overlap / (overlap - before)
+
+
+@kernel(forceinline=True)
+def _returned(c, spring, limit, stiffness, fixed):
+    """Force, spring and sense of contact ``c``: by the return map, or of the status that it keeps."""
+    if fixed is None:
+        return return_map(spring, limit, stiffness)
+    if abs(fixed[c]) == SLIDING:
+        sense = 1.0 if fixed[c] > 0 else -1.0
+        return sense * limit, -sense * limit / stiffness, sense
+    return -stiffness * spring, spring, 0.0
 
 
 @kernel(forceinline=True)
@@ -331,16 +335,9 @@ def _roll(c, i, j, nx, nz, xi, k, q, q0, n, arm, rolling, known, overlap0, sprin
     turned = q[a] - q0[a]
     if i != j:
         turned -= q[b] - q0[b]
-    share = 1.0 if overlap0[c] >= 0.0 or xi <= 0.0 else xi / (xi - overlap0[c])
-    spring = spring0[c] + share * arm[c] * turned
+    share = _closed_part(overlap0[c], xi)
     limit = rolling.friction * known.normal[c] if limits is None else limits[c]
-    if fixed is None:
-        found, new, sense = rolling_return(spring, limit, rolling)
-    elif abs(fixed[c]) == SLIDING:
-        sense = 1.0 if fixed[c] > 0 else -1.0
-        found, new = sense * limit, -sense * limit / rolling.stiffness
-    else:
-        found, new, sense = -rolling.stiffness * spring, spring, 0.0
+    found, new, sense = _returned(c, spring0[c] + share * arm[c] * turned, limit, rolling.stiffness, fixed)
     out.force[c], out.spring[c] = found, new
     out.status[c] = SLIDING if sense != 0.0 else STICKING
     force[a] += arm[c] * found
