@@ -123,7 +123,7 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
     shift = float(np.mean([place - height for place, (height, *_) in zip(places, at, strict=True)])) if at else 0.0
     look: dict[str, Any] = {"ha": "left", "va": "center", "fontsize": 8, "annotation_clip": False, "linespacing": 1.0}
     look |= {"path_effects": [withStroke(linewidth=1.5, foreground="white")], **text}
-    beside, over = 6.0 if look["ha"] == "left" else 0.0, 3.0 if look["va"] == "bottom" else 0.0
+    beside, over = 6.0 if look["ha"] == "left" else 0.0, {"bottom": 3.0, "top": -3.0}.get(look["va"], 0.0)
     for place, (height, name, x, y, colour) in zip(places, at, strict=True):
         axes.annotate(
             name, (x, y), (beside, place - shift - height + over), textcoords="offset points", color=colour, **look

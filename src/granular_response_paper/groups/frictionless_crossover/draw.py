@@ -228,7 +228,8 @@ def _stiffness(data: xr.Dataset) -> Figure:
     for axes in (centre, size, events):
         axes.set(xscale="log", xlabel=style.STIFFNESS)
     size.set_ylim(top=1.15 * size.get_ylim()[1])
-    label_ends(size, ends, ha="right", va="bottom")
+    label_ends(size, ends[:2], ha="right", va="top")  # right above them lies the width under the larger force
+    label_ends(size, ends[2:], ha="right", va="bottom")
     style.letters(np.array([centre, size, events]), first=next(letters("fig05b_stiffness")), place="above")
     return figure
 

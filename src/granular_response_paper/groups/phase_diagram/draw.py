@@ -100,12 +100,18 @@ def _diagram(crossovers: xr.Dataset) -> Figure:
     for k, (delta, look) in enumerate(family(deltas, of="polydispersity")):
         one = crossovers.isel(case=_of(crossovers, delta))
         friction, force, found = one["friction"].values, one["force"].values, one["kind"].values == FOUND
-        low, high = np.clip(one["interval"].sel(level=list(THICK)).values[found].T, *FORCES)
-        axes.fill_between(friction[found], low, high, color=look["color"], alpha=0.16, linewidth=0.0)
+        low, high = one["interval"].sel(level=list(THICK)).values[found].T
+        known = np.isfinite(high)  # a band to an open interval would say how the bound falls between two frictions
+        axes.fill_between(
+            friction[found], low, np.where(known, high, np.nan), color=look["color"], alpha=0.16, linewidth=0.0
+        )
+        for x, bottom in zip(friction[found][~known], low[~known], strict=True):
+            bar = {"color": look["color"], "linestyle": "-", "linewidth": 1.0, "alpha": 0.6}
+            axes.plot([x, x], [bottom, FORCES[1] / 1.1], marker="^", markevery=[1], markersize=5.0, **bar)
         axes.plot(friction[found], force[found], **look | {"linewidth": 1.4, "markersize": 4.5})
         ends += [(packing(delta), friction[found][-1], force[found][-1], look["color"])] if found.any() else []
         _bounds(axes, one, look["color"], 0.02 * (k - 0.5 * (len(deltas) - 1)), FORCES)
-    for text, x, y in (("two peaks\n(hyperbolic-like)", 0.06, 0.83), ("one peak\n(elastic-like)", 0.62, 0.17)):
+    for text, x, y in (("two peaks\n(hyperbolic-like)", 0.24, 0.83), ("one peak\n(elastic-like)", 0.62, 0.17)):
         axes.text(x, y, text, transform=axes.transAxes, va="center", style="italic", fontsize=10, color=style.MUTED)
     label_ends(axes, ends)
     for text, low, high in EXPERIMENTS:
