@@ -54,6 +54,20 @@ def test_an_event_is_between_the_forces_that_show_it(datasets):
         assert high - low <= 1e-5 * high
 
 
+def test_mobilized_contacts_of_every_slab_stand_beside_its_events(datasets):
+    mobilized, events = datasets["mobilized"], datasets["events"]
+    ordered = mobilized.isel(case=mobilized["polydispersity"].values == 0.0)
+    part = ordered["mobilized_part"].values
+    assert (part[:, 0] <= part[:, 1]).all() and part[2, 0] > 0.0 == part[3, 0]
+    for name in ordered["name"].values:
+        known = events["high"].values[events["name"].values == name]
+        np.testing.assert_array_equal(ordered["force"].sel(name=name), known)
+    disordered = mobilized.isel(case=mobilized["polydispersity"].values > 0.0)
+    assert disordered["realization"].values.tolist() == [0, 1]
+    assert np.isnan(disordered["force"].sel(name="crossover")).all()
+    assert (disordered["force"].sel(name="linear_range") > 0.0).all()
+
+
 def test_a_case_is_what_its_scene_says():
     task = next(t for t in study.tasks(Parameters(**PARAMETERS)).values() if t.args[0] == "slow")
     _, scene, forces, _ = task.args
@@ -65,7 +79,9 @@ def test_a_case_is_what_its_scene_says():
 def test_the_figure_and_the_numbers_show_what_is_stored(datasets, looks_as_stored):
     drawn = figures.draw(datasets)
     looks_as_stored(drawn)
-    (figure,) = drawn.values()
+    figure, against = drawn["preparation"], drawn["preparation_mobilized"]
+    shown = sum(len(line.get_xdata()) for line in against.axes[1].lines)
+    assert shown == datasets["mobilized"].sizes["case"]
     panel = figure.axes[0]
     found = datasets["events"]
     opening = found.isel(event=found["name"].values == "first_opening")

@@ -167,7 +167,16 @@ def preparation_study():
         double_peaked=(("case", "force"), np.array([force > turns[mu] for mu, _, _ in cases], float)),
         **labels("case", cases),
     )
-    return {"response": response, "events": table}
+    # four preparations of one slab: the more mobilized contacts, the sooner everything happens
+    part = np.array([0.0, 0.0, 0.3, 0.6])
+    mobilized = dataset(
+        {"name": ["linear_range", "first_opening", "crossover"], "margin": [0.01, 0.05]},
+        mobilized_part=(("case", "margin"), np.stack([part, part], axis=1)),
+        force=(("case", "name"), np.outer([10.0, 9.0, 2.0, 1.0], [1.0, 2.0, 3.0])),
+        **{name: ("case", np.full(4, value)) for name, value in {
+            "polydispersity": 0.0, "friction": 0.2, "wall_friction": 0.0}.items()},
+    )  # fmt: skip
+    return {"response": response, "events": table, "mobilized": mobilized}
 
 
 def ratio_study():

@@ -193,6 +193,10 @@ def by_solid(rows):
 #: The second case alone differs from its slab.
 ONE_TOO_FAR = np.array([1.0, 10.0, 1.0])[:, None, None, None, None]
 
+#: Along preparations, the first of which differs from the second; along margins, one of which turns the trend round.
+FIRST_CASE_ALONE = np.array([2.0, 1.0, 1.0, 1.0])[:, None]
+ONE_MARGIN = np.array([[1.0, 1.0], [1.0, 1.0], [1.0, 1.0], [1.0, 0.1]])
+
 #: Along polydispersities, of which the first one alone differs.
 FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
 
@@ -374,6 +378,10 @@ PLANTED = [
     ("B12", scaled("network", "statistics", "coordination_number", 1.2), "contradicted"),
     ("B12", scaled("network", "statistics", "coordination_number", FIRST_CASE), DEPENDS),
     ("B13", put("network", "statistics", "hyperstaticity", 0.2), "contradicted"),
+    ("B14", put("preparation", "mobilized", "force", [[10.0], [9.0], [20.0], [30.0]]), "contradicted"),
+    ("B14", put("preparation", "mobilized", "force", [[10.0], [9.0], [2.0], [1.0]]), "reproduced"),
+    ("B14", scaled("preparation", "mobilized", "force", FIRST_CASE_ALONE), "contradicted"),
+    ("B14", scaled("preparation", "mobilized", "mobilized_part", ONE_MARGIN), DEPENDS),
     ("B13", scaled("network", "statistics", "hyperstaticity", 2.0), "undecided"),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), DEPENDS),
@@ -452,7 +460,8 @@ VARIED = [
 @pytest.mark.parametrize(("id_", "change", "expected"), PLANTED, ids=[f"{p[0]}-{p[2]}" for p in PLANTED])
 def test_planted_data_changes_the_verdict(good, id_, change, expected):
     # without other preparations, so that what is planted is all there is
-    entry = judge(CLAIM[id_], Data({k: v for k, v in change(good).items() if k != preparations.GROUP}))
+    kept = {CLAIM[id_].group} | (set(good) - {preparations.GROUP})
+    entry = judge(CLAIM[id_], Data({k: v for k, v in change(good).items() if k in kept}))
     assert (entry.verdict, bool(entry.reason)) == (expected, True), entry.reason
 
 

@@ -21,12 +21,13 @@ from granular_response.store import files as store
 from granular_response.store.result import solution_from, to_dataset
 
 FLOOR = np.arange(13)
+LOAD = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 
 
 @pytest.fixture(scope="module")
 def settled():
     """A small frictional slab at rest, ready to be loaded with unit force."""
-    problem = Problem.from_scene(scene(6, 13, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
+    problem = Problem.from_scene(scene(6, 13, loads=LOAD))
     rest = rest_state(problem)
     return problem.with_loads(rest.position), rest
 
@@ -296,6 +297,22 @@ def prepared(packing, contact, wall, load):
     problem = Problem.from_scene(gr.Scene.from_dict(described | {"protocol": {"time_step": "auto"}}))
     rest = rest_state(problem)
     return problem.with_loads(rest.position), rest
+
+
+@pytest.mark.parametrize("part", [1e-6, 1e-9])
+def test_motion_leaves_a_lost_equilibrium_under_hardly_more_than_it_bears(part):
+    """So little is out of balance there that the packing counts as at rest before it moves."""
+    changes = {"packing__polydispersity": 0.1, "packing__lattice_constant": "touching-largest"}
+    changes |= {"packing__realization": 1, "contact__friction": 0.2, "wall__friction": 0.0, "loads": LOAD}
+    problem = Problem.from_scene(scene(5, 13, **changes))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    (state,) = follow(problem, rest, [1.25])
+    (lost,) = [event for event in state.reached.events if event.lost]
+    (just_beyond,) = follow(problem, rest, [lost.load_factor * (1.0 + part)])
+    assert just_beyond.certificate.balanced and just_beyond.certificate.stable
+    assert [event.kind for event in just_beyond.reached.events if event.lost] == ["jump"]
+    assert just_beyond.reached.events[-1].displacement > 1e-3
 
 
 def test_an_equilibrium_that_is_lost_between_two_events_is_lost_there():

@@ -33,14 +33,14 @@ class HandOver:
 
     tries: int  #: how often statics is tried
     iterations: int = NEWTON_ITERATIONS  #: of Newton's method in a try
-    wait: float = 0.0  #: time of dynamics after the first try
+    wait: float = 20.0  #: time of dynamics between tries, with cooling where the packing is cooler already
     cooling: float = 1.0  #: below 1: in place of a wait, dynamics to this part of the kinetic energy before
     nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
     nudged: bool = False  #: from the third unstable equilibrium on, dynamics starts from it, displaced a little
 
 
 #: Rest under gravity, and loads by dynamics: the fall is long, and a wait costs little of it.
-PROTOCOL = HandOver(tries=8, wait=20.0, nudged=True)
+PROTOCOL = HandOver(tries=8, nudged=True)
 #: The end of a branch on a path: the first try is early, and each further one has a hundredth of the energy.
 CROSSING = HandOver(tries=4, cooling=1e-2)
 #: Kinetic energy per disk at the first try of a crossing.
@@ -121,6 +121,9 @@ def settle(
             break
         if how.cooling < 1.0:
             energy *= how.cooling
+            if kinetic < energy:  # so little is out of balance that motion has hardly begun
+                dynamics.set_ramps(load=held)
+                dynamics.advance(min(round(how.wait / time_step), left().maximum_steps))
             settled = relax(dynamics, replace(left(), kinetic_energy=energy), load=held)
         else:
             dynamics.set_ramps(load=held)

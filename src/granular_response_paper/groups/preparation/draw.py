@@ -1,4 +1,4 @@
-"""When a growing force does what, against friction, for each way to prepare the slab."""
+"""When a growing force does what, for each way to prepare the slab: by friction, and by the contacts at the limit."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import outer, titles
+from granular_response_paper.panels import family, outer, titles
 
 from .parameters import Parameters
 
@@ -28,17 +29,25 @@ PANELS = {
 #: How each way to prepare is named and marked, by how gravity comes; ramps of several times share a colour.
 WAYS = {
     "at-once": ("gravity switched on", style.BLUE, "o"),
-    "slow": ("gravity ramped over", style.VERMILION, "sDv"),
+    "slow": ("gravity ramped over", style.VERMILION, "sDvph"),
     "frictionless": ("prepared frictionless", style.GREEN, "^"),
 }
 #: Of those whose dashpots are weaker or stronger than those of the first way.
 WEAKER, STRONGER = "P", "X"
+#: Below so many per cent of the contacts the axis is linear, so that it shows none.
+LEAST_PART = 0.05
 
 
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
-    """One figure, ``preparation``, from the brackets of the events."""
-    events = datasets["events"]
+    """``preparation`` from the brackets of the events, ``preparation_mobilized`` from the dataset ``mobilized``."""
+    return {
+        "preparation": _onsets(datasets["events"]), "preparation_mobilized": _against_mobilized(datasets["mobilized"])
+    }  # fmt: skip
+
+
+def _onsets(events: xr.Dataset) -> Figure:
+    """A panel for each event, a row for each slab."""
     slabs = sorted(set(zip(events["wall_friction"].values.tolist(), events["friction"].values.tolist(), strict=True)))
     figure, panels = style.figure(2, 3, width="double", height=4.8, sharex=True, sharey=True)
     titles(panels.flat, PANELS.values())
@@ -54,14 +63,50 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
         text: handle for axes in panels.flat for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)
     }
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)
-    return {"preparation": figure}
+    return figure
+
+
+def _against_mobilized(data: xr.Dataset) -> Figure:
+    """A panel for each event: its force against the part of the contacts that are fully mobilized at rest."""
+    names = data["name"].values.tolist()
+    figure, (panels,) = style.figure(1, len(names), width="double", height=3.2, sharex=True, sharey=True)
+    titles(panels, [PANELS[name] for name in names])
+    part, delta = 100.0 * data["mobilized_part"].isel(margin=0), data["polydispersity"].values
+    for axes, name in zip(panels, names, strict=True):
+        force = data["force"].sel(name=name).values
+        for friction, look in family(np.unique(data["friction"].values), of="friction", marked=False):
+            for gravity, (_, _, markers) in WAYS.items():
+                alike = (data["friction"].values == friction) & (data["gravity"].values == gravity)
+                for chosen, face in ((alike & (delta == 0.0), look["color"]), (alike & (delta > 0.0), "none")):
+                    axes.plot(
+                        part[chosen], force[chosen], marker=markers[0], color=look["color"], markerfacecolor=face,
+                        markersize=4.5, linestyle="none",
+                    )  # fmt: skip
+        axes.set_xscale("symlog", linthresh=LEAST_PART)
+        axes.set(yscale="log", xlabel="fully mobilized contacts [%]", xlim=(-0.4 * LEAST_PART, 100.0))
+        axes.set_xticks([0.0, 0.1, 1.0, 10.0, 100.0])
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.yaxis.set_major_formatter("{x:g}")
+    panels[0].set_ylabel(style.FORCE)
+    shown = [
+        (style.equals(style.FRICTION, mu), {"marker": "s", **look})
+        for mu, look in family(np.unique(data["friction"].values), of="friction", marked=False)
+    ]
+    shown += [
+        (text.removesuffix(" over"), {"marker": markers[0], "color": style.BLACK}) for text, _, markers in WAYS.values()
+    ]
+    shown += [("disorder", {"marker": "o", "color": style.BLACK, "markerfacecolor": "none"})]
+    handles = [Line2D([], [], linestyle="none", markersize=4.5, label=text, **look) for text, look in shown]
+    figure.legend(handles=handles, loc="outside lower center", ncols=5)
+    return figure
 
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
     frictions = sorted({part.friction for part in parameters.parts})
     said = of_scene(parameters.scene, force=parameters.forces, friction=frictions, wall_friction=None)
-    return of_group("preparation", {"preparation": said})
+    disorder = sorted({part.polydispersity for part in parameters.parts if part.polydispersity})
+    return of_group("preparation", {"preparation": said, "preparation_mobilized": said | {"polydispersity": disorder}})
 
 
 def _event(axes: Axes, events: xr.Dataset, slabs: list[tuple[float, float]]) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from granular_response.scene import Scene, SceneError
-from granular_response.scene.base import Description, Positive, Ratio
+from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
 from granular_response.scene.errors import Problem
 from granular_response_paper.parameters import UNIT_LOAD, Growing, SceneGroup, over
 
@@ -30,21 +30,25 @@ class Way(Description):
 
 
 class Part(Description):
-    """Slabs of one friction between disks."""
+    """Slabs of one friction between disks, ordered or with one polydispersity."""
 
     friction: Ratio
     walls: Literal["smooth", "rough"] = Field(default="smooth", description="rough: friction of the walls too.")
     ways: tuple[str, ...] = Field(default=(), description="Names of preparations; none: all of them.")
     to: Positive = Field(description="Largest force, in mean disk weights.")
+    polydispersity: Fraction = Field(default=0.0, description="delta; the largest disks touch in the initial lattice.")
+    realizations: Count = Field(default=1, description="Of the disorder.")
 
 
 class Parameters(SceneGroup):
     """Section ``preparation``."""
 
-    scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "wall.friction", "preparation", "loads")] = UNIT_LOAD
+    scene: Annotated[
+        Scene, over(UNIT_LOAD, "packing.polydispersity", "contact.friction", "wall.friction", "preparation", "loads")
+    ] = UNIT_LOAD
     ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
     forces: Growing = Field(description="In mean disk weights.")
-    parts: tuple[Part, ...] = Field(min_length=1)
+    parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
 
     @model_validator(mode="after")
@@ -57,6 +61,8 @@ class Parameters(SceneGroup):
                 self.scene.updated(way.changes)
             except SceneError as error:
                 raise Problem(str(error), key=("ways", str(k))) from None
+        if self.parts[0].polydispersity:
+            raise Problem("must be 0", key=("parts", "0", "polydispersity"), value=self.parts[0].polydispersity)
         for k, part in enumerate(self.parts):
             for name in part.ways:
                 if name not in names:

@@ -2,7 +2,8 @@
 
 In the paper the packing relaxes under gravity, which acts at once (Sec. III.C); with friction the slab at rest
 remembers how it came. Each way to prepare it is loaded by the same forces, on one path. Without friction rest is one
-minimum of the energy, and one way stands for all.
+minimum of the energy, and one way stands for all. How many contacts are fully mobilized at rest, and where the linear
+range ends, is measured on disordered slabs too.
 """
 
 from __future__ import annotations
@@ -10,12 +11,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from granular_response.observe import network
 from granular_response.scene import Scene
+from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.state import FloatArray
 from granular_response.store.result import FORCE
 from granular_response_paper import slab_response as slab
@@ -47,6 +50,7 @@ class Prepared:
 class Rest:
     """The slab at rest."""
 
+    contacts: float = column("contacts of disks at rest")
     level_force: float = column(
         f"mean normal force at rest of touching horizontal contacts in the central third {FORCE}"
     )
@@ -55,12 +59,36 @@ class Rest:
     )
 
 
+@record
+class Mobilized:
+    """Which contacts of a slab at rest are fully mobilized, and which force it bears in what way."""
+
+    polydispersity: float = column("polydispersity")
+    realization: int = column("realization of the disorder")
+    mobilized_part: FloatArray = column(
+        "part of the contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
+        "margin",
+    )
+    force: FloatArray = column(f"force of the event; nan if it does not come {FORCE}", "name")
+
+
+#: The events that are set against it; two peaks are asked of ordered slabs alone.
+AGAINST = ("linear_range", "first_opening", "crossover")
+
+
 @dataclass(frozen=True)
 class Outcome:
     prepared: Prepared
     rest: Rest
     measured: xr.Dataset
     events: list[slab.Event]
+
+    def mobilized(self, polydispersity: float, realization: int) -> Mobilized:
+        high = {event.name: event.high for event in self.events}
+        if polydispersity:
+            high["crossover"] = np.nan
+        part = self.rest.rest_mobilised / self.rest.contacts
+        return Mobilized(polydispersity, realization, part, np.array([high[name] for name in AGAINST]))
 
 
 def compute(way: str, scene: Scene, forces: tuple[float, ...], asymmetry: float) -> Outcome:
@@ -73,16 +101,20 @@ def compute(way: str, scene: Scene, forces: tuple[float, ...], asymmetry: float)
     level_force = float(pairs.normal_force[level].mean()) if level.any() else 0.0
     return Outcome(
         Prepared.of(way, scene),
-        Rest(level_force, np.array(measures.mobilised(path.rest))),
+        Rest(float(pairs.touching.sum()), level_force, np.array(measures.mobilised(path.rest))),
         slab.measured(measures, states),
         slab.locate(path, forces, slab.happenings(measures, states[0], asymmetry)),
     )
 
 
-def tasks(parameters: Parameters) -> dict[tuple[float, float, int, int], partial[Outcome]]:
-    """A task for each part and way, by the friction of its walls, of its disks, and the numbers of way and part."""
+#: Of a slab: polydispersity, friction of its walls and disks, way and part by their numbers, and realization.
+Place = tuple[float, float, float, int, int, int]
+
+
+def tasks(parameters: Parameters) -> dict[Place, partial[Outcome]]:
+    """A task for each part, way and realization."""
     return {
-        (scene.wall.friction, scene.contact.friction, k, p): partial(
+        (part.polydispersity, scene.wall.friction, scene.contact.friction, k, p, realization): partial(
             compute,
             way.name,
             scene,
@@ -92,22 +124,43 @@ def tasks(parameters: Parameters) -> dict[tuple[float, float, int, int], partial
         for p, part in enumerate(parameters.parts)
         for k, way in enumerate(parameters.ways)
         if not part.ways or way.name in part.ways
-        for scene in [_scene(parameters.base, part).updated(way.changes)]
+        for realization in range(part.realizations)
+        for scene in [_scene(parameters.base, part, realization).updated(way.changes)]
     }
 
 
-def _scene(base: Scene, part: Part) -> Scene:
+def _scene(base: Scene, part: Part, realization: int) -> Scene:
     rough = part.walls == "rough"
-    return base.updated({"contact.friction": part.friction, "wall.friction": part.friction if rough else 0.0})
+    changes: dict[str, Any] = {
+        "contact.friction": part.friction, "wall.friction": part.friction if rough else 0.0
+    }  # fmt: skip
+    if part.polydispersity:
+        changes |= {
+            "packing.polydispersity": part.polydispersity,
+            "packing.lattice_constant": TOUCHING_LARGEST,
+            "packing.realization": realization,
+        }
+    return base.updated(changes)
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
-    """Datasets ``response`` (case, force), nan above the last force of a case, and ``events``."""
+    """Datasets ``response`` (case, force), nan above the last force of a case, ``events``, and ``mobilized``.
+
+    The last one has the disordered slabs too.
+    """
     asked = tasks(parameters)
     # the longest ramps of gravity take longest
     found = computed(asked, "prepared slabs", work=lambda place: asked[place].args[1].preparation.ramp_time)
-    outcomes = [found[place] for place in sorted(found)]
-    return labelled({"response": _response(outcomes, parameters.forces), "events": _events(outcomes)}, parameters.base)
+    places = sorted(found)
+    outcomes = [found[place] for place in places if not place[0]]
+    mobilized = table([found[place].mobilized(place[0], place[-1]) for place in places], "case")
+    mobilized = mobilized.assign(table([found[place].prepared for place in places], "case").variables).assign_coords(
+        axes(name=(AGAINST, "event"), margin=(slab.MARGINS, "fraction below the Coulomb limit"))
+    )
+    datasets = {
+        "response": _response(outcomes, parameters.forces), "events": _events(outcomes), "mobilized": mobilized
+    }  # fmt: skip
+    return labelled(datasets, parameters.base)
 
 
 def _response(outcomes: Sequence[Outcome], forces: Sequence[float]) -> xr.Dataset:

@@ -1,0 +1,54 @@
+"""Claim B14, beyond the paper: what the contacts at the Coulomb limit at rest decide (Sec. V)."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "preparation"
+CLAIMS = Claims(GROUP)
+#: Part of the contacts below which none counts as mobilized, and fewest preparations that have a trend.
+NONE, FEWEST = 1e-3, 4
+EVENTS = {"linear_range": "end of the linear range", "first_opening": "first opening", "crossover": "two peaks"}
+
+
+@CLAIMS.add(
+    "B14",
+    "beyond the paper, V",
+    "rank correlation of the force of an event with the part of the contacts that are fully mobilized at rest, over "
+    "preparations of one ordered slab; and largest over smallest force of those without such contacts",
+    "what the preparation changes is decided by the contacts that are fully mobilized at rest",
+)
+def mobilized(data: Data, words: Bounds) -> Finding:
+    """For each slab with :data:`FEWEST` preparations: a falling trend, and one force without mobilized contacts."""
+    study = data.get(GROUP, "mobilized", "mobilized_part", "force", "friction", "wall_friction", "polydispersity")
+    study = study.isel(case=study["polydispersity"].values == 0.0)
+    slabs = list(zip(study["wall_friction"].values.tolist(), study["friction"].values.tolist(), strict=True))
+    readings, trends, spreads = [], [], []
+    for event, text in EVENTS.items():
+        for margin in study["margin"].values.tolist():
+            conditions: list[Condition] = []
+            for slab in dict.fromkeys(slabs):
+                alike = study.isel(case=[one == slab for one in slabs]).sel(name=event, margin=margin)
+                part, force = alike["mobilized_part"].values, alike["force"].values
+                free = force[part < NONE]
+                if np.isnan(force).any() or len(force) < FEWEST or np.ptp(part) == 0.0 or len(free) < 2:
+                    continue
+                trends.append(float(spearmanr(part, force).statistic))
+                spreads.append(float(free.max() / free.min()))
+                where = f"friction {slab[1]:g}{', rough walls' if slab[0] else ''}"
+                trend, none = f"rank correlation, {where}", f"largest over smallest force without them, {where}"
+                falling = Condition(trend, Quantity.exact(trends[-1]), most=words["nearly"] - 1.0, words=("nearly",))
+                conditions += [falling, asked.near(none, spreads[-1], words, "similar")]
+            if conditions:
+                readings.append(Reading(f"{text}, contacts within {margin:.0%} of the limit", *conditions))
+    CLAIMS.needs(readings, f"mobilized holds no slab with {FEWEST} preparations")
+    return Finding(
+        f"the rank correlation is {min(trends):.2f} to {max(trends):.2f}, -1 for a falling trend; without mobilized "
+        f"contacts the forces of one friction differ by a factor of up to {max(spreads):.3g}",
+        readings,
+    )
