@@ -133,8 +133,8 @@ class LoadPath:
         """Where something happens first: after the one force and not after the other.
 
         ``forces`` are neighbours on the path, with known states. The first of them at which it has happened is narrowed
-        to the event of the path between it and the one before, or to ``width`` (per force) within a piece between two
-        events; see :class:`Event` for the ends.
+        by halves to the event of the path between it and the one before, or to ``width`` (per force) within a piece
+        between two events; see :class:`Event` for the ends.
         """
         low, high = first_change(forces, [happening.happened(self.known[force]) for force in forces])
         if not np.isfinite(high):
@@ -149,9 +149,11 @@ class LoadPath:
         for force in sorted({end for event in passed for end in (event.load_factor, event.until)}):
             if ends[-1] + width * high < force < high - width * high:
                 ends.append(force)
-        states = self.through([*ends[1:], high])
-        low, high = first_change([*ends[1:], high], [happening.happened(state) for state in states])
-        low = low or ends[0]
+        ends.append(high)
+        while len(ends) > 2:
+            middle = len(ends) // 2
+            ends = ends[: middle + 1] if happening.happened(self.at(ends[middle])) else ends[middle:]
+        low, high = ends
         if gone := lost([self.known[high]]):  # and no equilibrium from there on
             before = gone[0].load_factor - width * high
             if before <= low or not happening.happened(self.at(before)):
