@@ -386,7 +386,7 @@ class _Path:
             if turn is not None:
                 left, length = turn, np.inf
                 continue
-            bent = self._bent(point, rates, factor, trial)
+            bent = self.stiffest * trial.bend
             if bent > self.options.bent:
                 part = min(0.5, 0.8 * (self.options.bent / bent) ** (1 / 3))
                 left, length = part * abs(factor - point.factor), np.inf
@@ -398,12 +398,6 @@ class _Path:
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
             return Point(factor, trial, rates.sense, self.system.coupled(changed(rates.sense, due, then.what)))
         return None
-
-    def _bent(self, point: Point, rates: Rates, factor: float, trial: Trial) -> float:
-        """Largest force of a spring that sticks from the bend of its contact's way within the increment to a trial."""
-        ahead = abs(factor - point.factor) * rates.velocity
-        way = self.system.along(point.known, trial.configuration.q, ahead, rates.sense)
-        return self.stiffest * float(np.abs(way.spring - point.known.spring).max(initial=0.0))
 
     def _velocity(self, trial: Trial, sense: np.ndarray) -> FloatArray:
         """(dof,) rates at a trial with signed statuses ``sense``; zero where the tangent is singular."""
@@ -461,8 +455,8 @@ class _Path:
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
         before, enough, stalled = np.inf, ENOUGH if event is None else options.passing, False
         for done in range(options.newton):
-            way = system.along(known, q, abs(factor - point.factor) * rates.velocity, rates.sense)
-            trial = system.trial(way, q, fixed=rates.sense, tangent=False)
+            ahead = abs(factor - point.factor) * rates.velocity
+            trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)
             force = trial.contact_force + self._external(factor)
             size = float(np.abs(force).max(initial=0.0))
             left = 0.0 if event is None else self.rates.left(trial, *event)
