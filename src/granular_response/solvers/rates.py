@@ -182,8 +182,9 @@ class RateProblem:
                     rates = found.rate[due]
                     due = due[rates >= OPTIONS.as_bad * rates.max()]
                 now = changed(now, due, found.what)
-                touching = due[np.isin(found.what[due], (events.OPENS, events.CLOSES))]
-                for c in touching[self.system.friction[touching] > 0.0].tolist():
+                for c in due.tolist():
+                    if found.what[c] not in (events.OPENS, events.CLOSES) or not self.system.friction[c] > 0.0:
+                        continue
                     # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
                     had.setdefault(c, {int(sense[c])})
                     now[c] = next((way for way in (now[c], SLIDING, -SLIDING) if int(way) not in had[c]), now[c])
