@@ -38,6 +38,30 @@ def what_is_left(system, trial, c, what) -> float:
     return float(law.friction * trial.normal[c] - np.sign(what) * trial.tangential[c])
 
 
+def fall(system, c, what, q, displacement) -> float:
+    """By how much a displacement lowers the force that is left until contact ``c`` does ``what``."""
+    n, radius = system.problem.n, system.problem.packing.radius
+    return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls, system.rolls)
+
+
+def added_to_tangent(system, q, c, before, after) -> tuple[np.ndarray, int]:
+    """What another status of contact ``c`` adds to the tangent, and in how many columns it is said."""
+    problem = system.problem
+    senses = np.zeros((2, 2 * len(system.friction)), np.int8)
+    senses[:, c] = before, after
+    owner, places = np.zeros(2, np.int64), np.zeros((2, 6), np.int64)
+    left, right = np.zeros((2, 2, 6))
+    count = events.changed_stiffness(
+        np.array([c]), *senses, q, problem.n, problem.packing.radius, problem.freedoms, system.pairs, system.walls,
+        system.rolls, system.pattern.place, owner, places, left, right,
+    )  # fmt: skip
+    added = np.zeros((system.dof, system.dof))
+    for at, p, r in zip(places[:count], left, right, strict=False):
+        np.add.at(added, np.ix_(at, at), np.outer(p, r))
+    assert (owner[:count] == c).all()
+    return added, count
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_what_is_left_falls_at_the_rate_that_is_said(law):
     """Contacts that close and slide either way, pairs and walls; that open, below."""
@@ -55,11 +79,9 @@ def test_what_is_left_falls_at_the_rate_that_is_said(law):
             what = int(found.what[c])
             seen.add((what, c < len(system.first)))
             assert found.left[c] == pytest.approx(what_is_left(system, here, c, what), abs=1e-12)
-            fall = (what_is_left(system, back, c, what) - what_is_left(system, there, c, what)) / (2.0 * h)
-            assert found.rate[c] == pytest.approx(fall, rel=2e-4, abs=1e-2)
-            assert events.fall(
-                c, what, known.q, velocity, system.problem.n, system.problem.packing.radius, system.pairs, system.walls
-            ) == pytest.approx(found.rate[c], rel=1e-12)
+            by_difference = (what_is_left(system, back, c, what) - what_is_left(system, there, c, what)) / (2.0 * h)
+            assert found.rate[c] == pytest.approx(by_difference, rel=2e-4, abs=1e-2)
+            assert fall(system, c, what, known.q, velocity) == pytest.approx(found.rate[c], rel=1e-12)
         # what is first is what comes first as all goes on
         first, length = found.first()
         others = found.left[found.rate > 0.0].clip(0.0) / found.rate[found.rate > 0.0]
@@ -163,16 +185,7 @@ def test_a_changed_stiffness_is_the_difference_of_tangents(law, friction):
                     trial = system.trial(known, known.q, fixed=sense)
                     # the turn of forces is left out of the update: of trials that bear nothing here it is nothing
                     matrices.append(system.tangent(_without_turn(system, trial, c)).toarray())
-                places, left, right = np.zeros((2, 6), np.int64), np.zeros((2, 6)), np.zeros((2, 6))
-                count = events.changed_stiffness(
-                    c, before, after, known.q, problem.n, problem.packing.radius, problem.freedoms,
-                    system.pairs, system.walls, system.pattern.place, places, left, right,
-                )  # fmt: skip
-                added = np.zeros_like(matrices[0])
-                for k in range(count):
-                    for a in range(6):
-                        for b in range(6):
-                            added[places[k, a], places[k, b]] += left[k, a] * right[k, b]
+                added, count = added_to_tangent(system, known.q, c, before, after)
                 assert added == pytest.approx(matrices[1] - matrices[0], abs=1e-7)
                 assert count <= 2 and (count == 0) == (before == after or not np.abs(matrices[1] - matrices[0]).max())
 
@@ -191,6 +204,17 @@ def _without_turn(system, trial, c):
     local = trial.tangent.copy()
     local[c, :2, :2] -= turn
     return replace(trial, tangent=local)
+
+
+def of_all(change):
+    """Columns of several changes, from what gives those of one."""
+
+    def columns(keys):
+        parts = [change(key) for key in keys]
+        owner = np.repeat(keys, [len(part[0]) for part in parts])
+        return owner, *map(np.concatenate, zip(*parts, strict=True))
+
+    return columns
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -218,7 +242,7 @@ def test_solutions_brought_up_to_date_are_those_of_the_changed_matrix(seed):
             rows = int(rng.integers(1, 3))
             places = np.array([rng.choice(n, e, replace=False) for _ in range(rows)])
             known[key] = places, *(rng.normal(0.0, 2.0, (rows, e)) for _ in range(2))
-        assert updated.update(dict(wanted), change)
+        assert updated.update(dict(wanted), of_all(change))
         matrix = dense.copy()
         for k in wanted:
             for at, p, q in zip(*known[k], strict=True):
@@ -239,12 +263,28 @@ def _factor(dense, b):
     return Band(matrix.indptr, matrix.indices).factor(matrix)
 
 
+@pytest.mark.parametrize("b", [0, 1, 9, 40])
+def test_several_right_hand_sides_have_the_digits_that_each_has_alone(b):
+    """Those that begin with zeros too, of which all begin with some in the end."""
+    rng = np.random.default_rng(b)
+    n = 61
+    dense = np.triu(np.tril(rng.normal(size=(n, n)), b), -b) + 9.0 * np.eye(n)
+    factor = _factor(dense, b)
+    right = rng.normal(size=(5, n))
+    for zeros in (0, 3, 30, 60):
+        right[1:, :zeros] = 0.0
+        for rows in (right, right[1:], right[:1]):
+            found = factor.solve(rows)
+            assert np.array_equal(found, [factor.solve(row) for row in rows])
+            assert dense @ found.T == pytest.approx(rows.T, abs=1e-12)
+
+
 def test_more_changes_than_there_is_room_for_are_refused():
     updated = Updated(_factor(np.eye(5) * 2.0, 0), 5, 3, 1)
     two = np.zeros((2, 1), np.int64), np.ones((2, 1)), np.ones((2, 1))
-    assert updated.update({0: 1}, lambda _: two)
-    assert not updated.update({0: 1, 1: 1}, lambda _: two)
-    assert updated.update({1: 2}, lambda _: two)  # the first one goes, so there is room
+    assert updated.update({0: 1}, of_all(lambda _: two))
+    assert not updated.update({0: 1, 1: 1}, of_all(lambda _: two))
+    assert updated.update({1: 2}, of_all(lambda _: two))  # the first one goes, so there is room
 
 
 @pytest.mark.parametrize("held", [1e-12, 1e12])
@@ -253,5 +293,5 @@ def test_a_change_that_takes_hold_of_what_nothing_held_is_not_called_accurate(he
     updated = Updated(_factor(dense, 0), 4, 2, 1)
     one = np.array([[2]]), np.array([[1.0]]), np.array([[-held + 1e-3 if held > 1.0 else 1.0]])
     assert updated.accurate
-    assert updated.update({0: 1}, lambda _: one) and not updated.accurate
-    assert updated.update({}, lambda _: one) and updated.accurate
+    assert updated.update({0: 1}, of_all(lambda _: one)) and not updated.accurate
+    assert updated.update({}, of_all(lambda _: one)) and updated.accurate

@@ -74,13 +74,16 @@ def test_newtons_method_ends_where_its_options_say(monkeypatch):
     equations, external = StaticSystem(problem, state), external_force(problem, 0.0)
     known = equations.start(state)
     assert newton(equations, known, external)[1].residual < equilibrium.OPTIONS.tolerance
-    assert newton(equations, known, external, enough=1.0)[1].iterations == 0
+    usual = equilibrium.OPTIONS
+    monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, enough=1.0))
+    assert newton(equations, known, external)[1].iterations == 0
+    monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, iterations=0))
     with pytest.raises(EquilibriumError, match="within 0 Newton iterations"):
-        finish(problem, state, maximum_iterations=0)
-    monkeypatch.setattr(equilibrium, "OPTIONS", replace(equilibrium.OPTIONS, farthest=0.0))
+        finish(problem, state)
+    monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, farthest=0.0))
     with pytest.raises(EquilibriumError, match="mean radii away"):
         finish(problem, state)
-    monkeypatch.setattr(equilibrium, "OPTIONS", replace(equilibrium.OPTIONS, longest_step=1e-12))
+    monkeypatch.setattr(equilibrium, "OPTIONS", replace(usual, longest_step=1e-12))
     assert not newton(equations, known, external)[1].converged
 
 

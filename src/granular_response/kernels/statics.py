@@ -54,6 +54,14 @@ class Walls(NamedTuple):
     law: Any
 
 
+class Rolls(NamedTuple):
+    """(m + w,) rolling resistance of listed contacts; of stiffness 0 where there is none."""
+
+    arm: Floats  #: reduced radii
+    friction: Floats
+    stiffness: Floats
+
+
 class Response(NamedTuple):
     """Contact forces at a trial configuration, to be filled."""
 
@@ -111,10 +119,11 @@ def _fill_tangent(g, nx, nz, normal, tangential, inverse, k, kt_w_t, kt_w_n, kt_
 
 
 @kernel(forceinline=True)
-def _shape_at(shape, c):
-    if shape is None:
+def _item(values, c):
+    """The number of contact ``c``, or None where no contact has any."""
+    if values is None:
         return None
-    return shape[c]
+    return values[c]
 
 
 @kernel(forceinline=True)
@@ -154,6 +163,24 @@ def _wall_at(q, n, walls, c):
 
 
 @kernel(forceinline=True)
+def _contact_at(c, q, n, pairs, walls):
+    """Disks of contact ``c`` of all listed, pairs before walls, its normal at ``q``, and of the law there:
+
+    normal stiffness, that at the weight of a disk, friction and tangential stiffness. A wall is the disk -1.
+    """
+    m = pairs.first.size
+    if c < m:
+        i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
+        law = pairs.law
+        k = stiffness(law, xi, _item(pairs.shape, c))
+        return i, j, dx / d, dz / d, k, law.normal_stiffness, law.friction, law.tangential_stiffness
+    i, nx, nz, xi = _wall_at(q, n, walls, c - m)
+    at_wall = walls.law
+    k = stiffness(at_wall, xi, _item(walls.shape, c - m))
+    return i, -1, nx, nz, k, at_wall.normal_stiffness, at_wall.friction, at_wall.tangential_stiffness
+
+
+@kernel(forceinline=True)
 def _open(c, rubs, out, tangent):
     out.status[c] = OPEN
     out.normal[c] = 0.0
@@ -165,9 +192,8 @@ def _open(c, rubs, out, tangent):
 
 
 @kernel(forceinline=True)
-def _press(c, xi, nx, nz, inverse, shape, law, out, tangent):
+def _press(c, xi, nx, nz, inverse, form, law, out, tangent):
     """Closed contact without friction; returns the normal force."""
-    form = _shape_at(shape, c)
     fn = elastic_force(law, xi, form)
     out.normal[c] = fn
     out.status[c] = STICKING
@@ -178,17 +204,17 @@ def _press(c, xi, nx, nz, inverse, shape, law, out, tangent):
 
 @kernel(forceinline=True)
 def _rub(
-    c, xi, nx, nz, inverse, slip, mean, distance, slip_n, shape, law, overlap0, spring0, limits, fixed, out, tangent
+    c, xi, nx, nz, inverse, slip, mean, distance, slip_n, form, law, overlap0, spring, limits, fixed, out, tangent
 ):
     """Closed contact with friction; returns normal and tangential force.
 
-    ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal.
+    ``slip`` : of the increment; ``mean / distance``, ``slip_n`` : its derivatives along tangent and normal;
+    ``spring`` : that before the increment.
     """
-    form = _shape_at(shape, c)
     fn = elastic_force(law, xi, form)
     share = _closed_part(overlap0[c], xi)
     limit = law.friction * fn if limits is None else limits[c]
-    ft, s, sense = _returned(c, spring0[c] + share * slip, limit, law.tangential_stiffness, fixed)
+    ft, s, sense = _returned(spring + share * slip, limit, law.tangential_stiffness, _item(fixed, c))
     out.status[c] = SLIDING if sense != 0.0 else STICKING
     if tangent is not None:
         k = stiffness(law, xi, form)
@@ -212,12 +238,12 @@ def _closed_part(before, overlap):
 
 
 @kernel(forceinline=True)
-def _returned(c, spring, limit, stiffness, fixed):
-    """Force, spring and sense of contact ``c``: by the return map, or of the status that it keeps."""
-    if fixed is None:
+def _returned(spring, limit, stiffness, kept):
+    """Force, spring and sense of a contact: by the return map, or of the status ``kept``."""
+    if kept is None:
         return return_map(spring, limit, stiffness)
-    if abs(fixed[c]) == SLIDING:
-        sense = 1.0 if fixed[c] > 0 else -1.0
+    if abs(kept) == SLIDING:
+        sense = 1.0 if kept > 0 else -1.0
         return sense * limit, -sense * limit / stiffness, sense
     return -stiffness * spring, spring, 0.0
 
@@ -229,32 +255,79 @@ def _is_open(fixed, c, xi):
     return fixed[c] == OPEN
 
 
-@kernel
-def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, fixed, out, tangent, force):
-    """Forces of disk-disk contacts at ``q``, one increment after ``q0``, and their local tangents.
+@kernel(forceinline=True)
+def _slip_of_curved_way(q, q0, ahead, n, pairs, c):
+    """Slip of pair ``c`` along a curved way, less mean distance times turn.
 
-    ``pairs`` : :class:`Pairs`, and its ``shape``; ``overlap0``, ``spring0`` (m,) : at ``q0``, no springs (None) without
-    friction; ``limits`` (m,) : fixed Coulomb limits, None for ``mu f_n``; ``fixed`` (m,) : statuses that contacts keep
-    whatever happens, negative where they slide under a negative force, None for the return map; ``out`` :
-    :class:`Response`, filled, and ``tangent`` (m, 3, 3), if not None; the generalised contact force ``force`` (dof,) is
-    added to.
+    On its way from ``q0`` to ``q`` a pair sets out as by ``ahead`` (dof,), the displacement were the rates those of the
+    start, and the rest of its displacement grows as the square of the part done. With a the relative displacement by
+    ``ahead``, w the whole, p the separation and d its length, the integral of distance over angle exceeds mean distance
+    times turn by (a x w) / 6 d - (p x a) ((p x a)^2 + 2 (p . a)^2) / 12 d^5, to third order in the displacement.
     """
+    i = pairs.first[c]
+    j = pairs.second[c]
+    px = pairs.dx[c] + q0[i] - q0[j]
+    pz = pairs.dz[c] + q0[n + i] - q0[n + j]
+    wx = q[i] - q0[i] - (q[j] - q0[j])
+    wz = q[n + i] - q0[n + i] - (q[n + j] - q0[n + j])
+    ax = ahead[i] - ahead[j]
+    az = ahead[n + i] - ahead[n + j]
+    part = 1.0 / pairs.distance[c]
+    along_n = (px * ax + pz * az) * part
+    along_t = (px * az - pz * ax) * part
+    turned = along_t * (along_t * along_t + 2.0 * along_n * along_n)
+    return (ax * wz - az * wx - 0.5 * turned * part) * part / 6.0
+
+
+# Shapes are arguments of their own, beside the contacts that hold them: only of an argument does the compiler know
+# that it is None.
+@kernel
+def contacts(
+    q, q0, ahead, n, radius, pairs, pair_shape, walls, wall_shape, overlap0, pair_spring, wall_spring, limits, fixed,
+    out, tangent, force,
+):  # fmt: skip
+    """Forces of m + w listed contacts at ``q``, one increment after ``q0``, and their local tangents.
+
+    Parameters
+    ----------
+    ahead : (dof,) displacement were the rates those at ``q0``, where the slip of pairs that stick along their curved
+        way is to be counted; else None.
+    pairs, walls : :class:`Pairs` and :class:`Walls`, and their ``shape``.
+    overlap0 : (m + w,) at ``q0``.
+    pair_spring, wall_spring : (m + w,) at ``q0``, None where the contacts have no friction.
+    limits : (m + w,) fixed Coulomb limits, None for ``mu f_n``.
+    fixed : (m + w,) statuses that contacts keep whatever happens, negative where they slide under a negative force,
+        None for the return map.
+    out : :class:`Response`, filled, and ``tangent`` (m + w, 3, 3), if not None.
+    force : (dof,) generalised contact force, added to.
+
+    Returns
+    -------
+    Longest part of a spring that a curved way has made.
+    """
+    m = pairs.first.size
+    bend = 0.0
     law = pairs.law
-    for c in range(pairs.first.size):
+    for c in range(m):
         i, j, ux, uz, dx, dz, d, xi = _pair_at(q, n, pairs, c)
         out.overlap[c] = xi
         if _is_open(fixed, c, xi):
-            _open(c, spring0, out, tangent)
+            _open(c, pair_spring, out, tangent)
             continue
         nx = dx / d
         nz = dz / d
-        if spring0 is None:
-            fn = _press(c, xi, nx, nz, 1.0 / d, shape, law, out, tangent)
+        form = _item(pair_shape, c)
+        if pair_spring is None:
+            fn = _press(c, xi, nx, nz, 1.0 / d, form, law, out, tangent)
             force[i] += fn * nx
             force[n + i] += fn * nz
             force[j] -= fn * nx
             force[n + j] -= fn * nz
         else:
+            spring = pair_spring[c]
+            if ahead is not None and fixed[c] == STICKING:
+                spring += _slip_of_curved_way(q, q0, ahead, n, pairs, c)
+                bend = max(bend, abs(spring - pair_spring[c]))
             wx = ux - (q0[i] - q0[j])
             wz = uz - (q0[n + i] - q0[n + j])
             px = dx - wx
@@ -265,7 +338,7 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, fixe
             roll = radius[i] * (q[2 * n + i] - q0[2 * n + i]) + radius[j] * (q[2 * n + j] - q0[2 * n + j])
             fn, ft = _rub(
                 c, xi, nx, nz, 1.0 / d, mean * turn - roll, mean, d, 0.5 * turn,
-                shape, law, overlap0, spring0, limits, fixed, out, tangent,
+                form, law, overlap0, spring, limits, fixed, out, tangent,
             )  # fmt: skip
             fx = fn * nx - ft * nz
             fz = fn * nz + ft * nx
@@ -275,111 +348,64 @@ def pair_statics(q, q0, n, radius, pairs, shape, overlap0, spring0, limits, fixe
             force[n + j] -= fz
             force[2 * n + i] -= radius[i] * ft
             force[2 * n + j] -= radius[j] * ft
-
-
-@kernel
-def add_slip_of_curved_way(q, q0, ahead, n, pairs, status, spring):
-    """Add to ``spring`` (m,) of pairs that stick the slip along a curved way, less mean distance times turn.
-
-    On its way from ``q0`` to ``q`` a pair sets out as by ``ahead`` (dof,), the displacement were the rates those of the
-    start, and the rest of its displacement grows as the square of the part done. With a the relative displacement by
-    ``ahead``, w the whole, p the separation and d its length, the integral of distance over angle exceeds mean distance
-    times turn by (a x w) / 6 d - (p x a) ((p x a)^2 + 2 (p . a)^2) / 12 d^5, to third order in the displacement.
-    """
-    for c in range(pairs.first.size):
-        if status[c] != STICKING:
-            continue
-        i = pairs.first[c]
-        j = pairs.second[c]
-        px = pairs.dx[c] + q0[i] - q0[j]
-        pz = pairs.dz[c] + q0[n + i] - q0[n + j]
-        wx = q[i] - q0[i] - (q[j] - q0[j])
-        wz = q[n + i] - q0[n + i] - (q[n + j] - q0[n + j])
-        ax = ahead[i] - ahead[j]
-        az = ahead[n + i] - ahead[n + j]
-        part = 1.0 / pairs.distance[c]
-        along_n = (px * ax + pz * az) * part
-        along_t = (px * az - pz * ax) * part
-        turned = along_t * (along_t * along_t + 2.0 * along_n * along_n)
-        spring[c] += (ax * wz - az * wx - 0.5 * turned * part) * part / 6.0
-
-
-@kernel
-def wall_statics(q, q0, n, radius, walls, shape, overlap0, spring0, limits, fixed, out, tangent, force):
-    """As :func:`pair_statics` for disk-wall contacts; ``walls`` : :class:`Walls`."""
-    law = walls.law
-    for c in range(walls.disk.size):
-        i, nx, nz, xi = _wall_at(q, n, walls, c)
+    at_wall = walls.law
+    for k in range(walls.disk.size):
+        i, nx, nz, xi = _wall_at(q, n, walls, k)
+        c = m + k
         out.overlap[c] = xi
         if _is_open(fixed, c, xi):
-            _open(c, spring0, out, tangent)
+            _open(c, wall_spring, out, tangent)
             continue
-        if spring0 is None:
-            fn = _press(c, xi, nx, nz, 0.0, shape, law, out, tangent)
+        form = _item(wall_shape, k)
+        if wall_spring is None:
+            fn = _press(c, xi, nx, nz, 0.0, form, at_wall, out, tangent)
             ft = 0.0
         else:
             slip = (q[n + i] - q0[n + i]) * nx - (q[i] - q0[i]) * nz
             slip -= radius[i] * (q[2 * n + i] - q0[2 * n + i])
             fn, ft = _rub(
-                c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, shape, law, overlap0, spring0, limits, fixed, out, tangent
-            )
+                c, xi, nx, nz, 0.0, slip, 1.0, 1.0, 0.0, form, at_wall, overlap0, wall_spring[c], limits, fixed, out,
+                tangent,
+            )  # fmt: skip
             force[2 * n + i] -= radius[i] * ft
         force[i] += fn * nx - ft * nz
         force[n + i] += fn * nz + ft * nx
-
-
-@kernel(forceinline=True)
-def _roll(c, i, j, nx, nz, xi, k, q, q0, n, arm, rolling, known, overlap0, spring0, limits, fixed, out, tangent, force):
-    """Rolling resistance of a closed contact of disk ``i`` and disk ``j``, or a wall where ``j`` is ``i`` too."""
-    a, b = 2 * n + i, 2 * n + j
-    turned = q[a] - q0[a]
-    if i != j:
-        turned -= q[b] - q0[b]
-    share = _closed_part(overlap0[c], xi)
-    limit = rolling.friction * known.normal[c] if limits is None else limits[c]
-    found, new, sense = _returned(c, spring0[c] + share * arm[c] * turned, limit, rolling.stiffness, fixed)
-    out.force[c], out.spring[c] = found, new
-    out.status[c] = SLIDING if sense != 0.0 else STICKING
-    force[a] += arm[c] * found
-    if i != j:
-        force[b] -= arm[c] * found
-    if tangent is not None:
-        slides = sense * rolling.friction * k * arm[c] if limits is None else 0.0
-        tangent[c, 0] = -slides * nx
-        tangent[c, 1] = -slides * nz
-        tangent[c, 2] = 0.0 if sense != 0.0 else -arm[c] * arm[c] * rolling.stiffness * share
+    return bend
 
 
 @kernel
-def pair_rolling(q, q0, n, arm, rolling, pairs, shape, known, overlap0, spring0, limits, fixed, out, tangent, force):
-    """Rolling resistance of disk-disk contacts of which :func:`pair_statics` has made the rest.
+def rolling(q, q0, n, pairs, walls, rolls, known, overlap0, spring0, limits, fixed, out, tangent, force):
+    """Rolling resistance of contacts of which :func:`contacts` has made the rest.
 
-    ``arm`` (m,) : reduced radii; ``rolling`` : ``contact.rolling.Rolling``; ``known`` : the :class:`Response` there;
-    ``spring0``, ``limits``, ``fixed`` (m,) : as there, along the rolling; ``out`` : :class:`RollingResponse`, filled;
-    ``tangent`` (m, 3), if not None : derivative of the couple on the first disk by relative displacement and rotation.
+    ``rolls`` : :class:`Rolls`; ``known`` : the :class:`Response` there; ``spring0`` (m + w,) : as there, along the
+    rolling; ``limits``, ``fixed`` : as there, those along the rolling behind; ``out`` : :class:`RollingResponse`,
+    filled; ``tangent`` (m + w, 3), if not None : derivative of the couple on the first disk by relative displacement
+    and rotation.
     """
-    for c in range(pairs.first.size):
-        if known.status[c] == OPEN:
+    size = overlap0.size
+    for c in range(size):
+        if known.status[c] == OPEN or rolls.stiffness[c] == 0.0:
             continue
-        i, j, _, _, dx, dz, d, xi = _pair_at(q, n, pairs, c)
-        k = stiffness(pairs.law, xi, _shape_at(shape, c))
-        _roll(
-            c, i, j, dx / d, dz / d, xi, k, q, q0, n, arm, rolling, known, overlap0, spring0, limits, fixed, out,
-            tangent, force,
-        )  # fmt: skip
-
-
-@kernel
-def wall_rolling(q, q0, n, arm, rolling, walls, shape, known, overlap0, spring0, limits, fixed, out, tangent, force):
-    """As :func:`pair_rolling` for disk-wall contacts."""
-    for c in range(walls.disk.size):
-        if known.status[c] == OPEN:
-            continue
-        i, nx, nz, xi = _wall_at(q, n, walls, c)
-        k = stiffness(walls.law, xi, _shape_at(shape, c))
-        _roll(
-            c, i, i, nx, nz, xi, k, q, q0, n, arm, rolling, known, overlap0, spring0, limits, fixed, out, tangent, force
-        )
+        i, j, nx, nz, k, _, _, _ = _contact_at(c, q, n, pairs, walls)
+        a, b = 2 * n + i, 2 * n + j
+        turned = q[a] - q0[a]
+        if j >= 0:
+            turned -= q[b] - q0[b]
+        arm = rolls.arm[c]
+        share = _closed_part(overlap0[c], known.overlap[c])
+        limit = rolls.friction[c] * known.normal[c] if limits is None else limits[size + c]
+        kept = _item(fixed, size + c)
+        found, new, sense = _returned(spring0[c] + share * arm * turned, limit, rolls.stiffness[c], kept)
+        out.force[c], out.spring[c] = found, new
+        out.status[c] = SLIDING if sense != 0.0 else STICKING
+        force[a] += arm * found
+        if j >= 0:
+            force[b] -= arm * found
+        if tangent is not None:
+            slides = sense * rolls.friction[c] * k * arm if limits is None else 0.0
+            tangent[c, 0] = -slides * nx
+            tangent[c, 1] = -slides * nz
+            tangent[c, 2] = 0.0 if sense != 0.0 else -arm * arm * rolls.stiffness[c] * share
 
 
 @kernel
@@ -407,7 +433,7 @@ def spring_forces(overlap, spring, shape, law, out):
         if not xi > 0.0:
             out.status[c] = OPEN
             continue
-        fn = elastic_force(law, xi, _shape_at(shape, c))
+        fn = elastic_force(law, xi, _item(shape, c))
         out.normal[c] = fn
         out.status[c] = STICKING
         if rubs:
@@ -421,14 +447,14 @@ def spring_forces(overlap, spring, shape, law, out):
 def elastic_energies(overlap, shape, law, out):
     """Fill ``out`` (m,) with the elastic energies of the normal parts of contacts."""
     for c in range(overlap.size):
-        out[c] = energy(law, overlap[c], _shape_at(shape, c)) if overlap[c] > 0.0 else 0.0
+        out[c] = energy(law, overlap[c], _item(shape, c)) if overlap[c] > 0.0 else 0.0
 
 
 @kernel
 def stiffnesses(overlap, shape, law, out):
     """Fill ``out`` (m,) with the normal stiffnesses of contacts."""
     for c in range(overlap.size):
-        out[c] = stiffness(law, overlap[c], _shape_at(shape, c)) if overlap[c] > 0.0 else 0.0
+        out[c] = stiffness(law, overlap[c], _item(shape, c)) if overlap[c] > 0.0 else 0.0
 
 
 @kernel

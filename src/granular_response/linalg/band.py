@@ -77,20 +77,26 @@ class BandLU:
         return negative if np.isfinite(self.pivots).all() else max(negative, 1)
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """(n,) the solution; by a factorisation with row exchanges where that without them is no good."""
-        if not self._tried:
+        """The solutions for (n,) or (k, n); with row exchanges where those without them are no good."""
+        rows = np.atleast_2d(right)
+        if self._tried:
+            found = self._solve(rows)
+        else:
             self._tried = True
             # of all unknowns, also of nodes that no other right-hand side reaches
-            probe = np.where(np.arange(len(right)) % 2, 1.0, -1.0)
-            error = np.abs(self._matrix @ self._solve(probe) - probe).max()
+            probe = np.where(np.arange(rows.shape[1]) % 2, 1.0, -1.0)
+            *_, tried = found = self._solve(np.vstack([rows, probe]))
+            error = np.abs(self._matrix @ tried - probe).max()
             if not error <= ACCEPTED:
                 self._exchanged = splu(
                     self._matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.001, options={"SymmetricMode": True}
                 )
-        return self._solve(right) if self._exchanged is None else self._exchanged.solve(right)
+        if self._exchanged is not None:
+            found = np.array([self._exchanged.solve(row) for row in rows])
+        return found[: len(rows)].reshape(right.shape)
 
     def _solve(self, right: FloatArray) -> FloatArray:
-        n, b = len(right), self._b
+        n, b = right.shape[1], self._b
         room = band_lu.padded(right, b)
-        band_lu.solve(self._rows.ravel(), n, b, room)
-        return room[b : b + n]
+        band_lu.solve(self._rows.ravel(), n, b, room.ravel(), room.shape[1])
+        return room[:, b : b + n]

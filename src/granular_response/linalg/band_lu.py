@@ -32,9 +32,9 @@ def rounded(half_width: int) -> int:
 
 
 def padded(right: FloatArray, b: int) -> FloatArray:
-    """A copy of a right-hand side (n,) that kernels overwrite; it begins at place ``b``."""
-    x = np.zeros(len(right) + 2 * b + PADDING)
-    x[b : b + len(right)] = right
+    """A copy of right-hand sides (k, n) that kernels overwrite; each begins at place ``b`` of its row."""
+    x = np.zeros((len(right), right.shape[1] + 2 * b + PADDING))
+    x[:, b : b + right.shape[1]] = right
     return x
 
 
@@ -152,30 +152,49 @@ def eliminate(a, n, b):
 
 
 @kernel
-def solve(a, n, b, x):
-    """Overwrite ``x`` (:func:`padded`) with the solution y of L U y = x."""
+def _first(x, begin, end):
+    """The first number of ``x[begin:end]`` that is not zero, counted from ``begin``."""
+    for k in range(begin, end):
+        if x[k] != 0.0:
+            return k - begin
+    return end - begin
+
+
+@kernel
+def solve(a, n, b, x, length):
+    """Overwrite each row of ``x`` (:func:`padded`, flat, rows of a ``length``) with the solution y of L U y = x.
+
+    Several in one pass of the factors, each with the digits that it has alone. Nothing is eliminated from the zeros
+    that all of them begin with.
+    """
     step = stride(b)
     whole = n - n % 4
-    for k in range(0, whole, 4):
+    begin = n
+    for row in range(0, x.size, length):
+        begin = min(begin, _first(x, row + b, row + b + n))
+    for k in range(begin - begin % 4, whole, 4):
         d0 = step * k + b
         d1, d2, d3 = d0 + step, d0 + 2 * step, d0 + 3 * step
-        s0, s1, s2, s3 = _less_four_rows(a, d0 - b, step - 1, x, k, b)
-        x0 = x[b + k] + s0
-        x1 = x[b + k + 1] + s1 - a[d1 - 1] * x0
-        x2 = x[b + k + 2] + s2 - a[d2 - 2] * x0 - a[d2 - 1] * x1
-        x3 = x[b + k + 3] + s3 - a[d3 - 3] * x0 - a[d3 - 2] * x1 - a[d3 - 1] * x2
-        x[b + k], x[b + k + 1], x[b + k + 2], x[b + k + 3] = x0, x1, x2, x3
-    for k in range(whole, n):
-        x[b + k] = _less_row(x[b + k], a, step * k, x, k, b)
-    for k in range(n - 1, whole - 1, -1):
-        d = step * k + b
-        x[b + k] = _less_row(x[b + k], a, d + 1, x, b + k + 1, b) / a[d]
+        for at in range(b + k, x.size, length):
+            s0, s1, s2, s3 = _less_four_rows(a, d0 - b, step - 1, x, at - b, b)
+            x0 = x[at] + s0
+            x1 = x[at + 1] + s1 - a[d1 - 1] * x0
+            x2 = x[at + 2] + s2 - a[d2 - 2] * x0 - a[d2 - 1] * x1
+            x3 = x[at + 3] + s3 - a[d3 - 3] * x0 - a[d3 - 2] * x1 - a[d3 - 1] * x2
+            x[at], x[at + 1], x[at + 2], x[at + 3] = x0, x1, x2, x3
+    for row in range(0, x.size, length):
+        for k in range(whole, n):
+            x[row + b + k] = _less_row(x[row + b + k], a, step * k, x, row + k, b)
+        for k in range(n - 1, whole - 1, -1):
+            d = step * k + b
+            x[row + b + k] = _less_row(x[row + b + k], a, d + 1, x, row + b + k + 1, b) / a[d]
     for k in range(whole - 4, -1, -4):
         d0 = step * k + b
         d1, d2, d3 = d0 + step, d0 + 2 * step, d0 + 3 * step
-        s0, s1, s2, s3 = _less_four_rows(a, d0 + 4, step - 1, x, b + k + 4, b)
-        x3 = (x[b + k + 3] + s3) / a[d3]
-        x2 = (x[b + k + 2] + s2 - a[d2 + 1] * x3) / a[d2]
-        x1 = (x[b + k + 1] + s1 - a[d1 + 2] * x3 - a[d1 + 1] * x2) / a[d1]
-        x0 = (x[b + k] + s0 - a[d0 + 3] * x3 - a[d0 + 2] * x2 - a[d0 + 1] * x1) / a[d0]
-        x[b + k], x[b + k + 1], x[b + k + 2], x[b + k + 3] = x0, x1, x2, x3
+        for at in range(b + k, x.size, length):
+            s0, s1, s2, s3 = _less_four_rows(a, d0 + 4, step - 1, x, at + 4, b)
+            x3 = (x[at + 3] + s3) / a[d3]
+            x2 = (x[at + 2] + s2 - a[d2 + 1] * x3) / a[d2]
+            x1 = (x[at + 1] + s1 - a[d1 + 2] * x3 - a[d1 + 1] * x2) / a[d1]
+            x0 = (x[at] + s0 - a[d0 + 3] * x3 - a[d0 + 2] * x2 - a[d0 + 1] * x1) / a[d0]
+            x[at], x[at + 1], x[at + 2], x[at + 3] = x0, x1, x2, x3

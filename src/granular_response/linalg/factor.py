@@ -14,7 +14,7 @@ class Factor(Protocol):
     """A factorised matrix."""
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """(n,) the solution for one right-hand side (n,)."""
+        """The solutions for a right-hand side (n,), or for k of them (k, n)."""
         ...
 
 

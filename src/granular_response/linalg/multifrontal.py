@@ -371,7 +371,9 @@ class Multifactor:
         self._pattern, self._fronts = pattern, fronts
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """The solution for one right-hand side, to the precision of the fronts."""
+        """The solutions for a right-hand side (n,), or for k of them (k, n), to the precision of the fronts."""
+        if right.ndim == 2:
+            return np.array([self.solve(row) for row in right])
         pattern, fronts, tree = self._pattern, self._fronts, self._pattern.tree
         kind = fronts.values.dtype
         x = np.array(right, kind)

@@ -39,23 +39,27 @@ class Updated:
     def update(self, wanted: dict[int, int], change) -> bool:
         """Make the changes those of ``wanted``, which says of each key what it is; False where there is no room.
 
-        ``change(key)`` gives the places (r, e) of a change and its columns of P and Q, (r, e) each.
+        ``change(keys)`` gives, for each column that changes add, the key (r,), and places (r, e) and numbers of columns
+        of P and Q, (r, e) each.
         """
         for key in [key for key, (what, _) in self._columns.items() if wanted.get(key) != what]:
             self._free += self._columns.pop(key)[1]
-        for key, what in wanted.items():
-            if key in self._columns:
-                continue
-            places, left, right = change(key)
-            if len(places) > len(self._free):
-                return False
-            columns = [self._free.pop() for _ in places]
-            self._columns[key] = what, columns
-            for r, column in enumerate(columns):
-                one = np.zeros(self._solved.shape[1])
-                np.add.at(one, places[r], left[r])
-                self._solved[column] = self.factor.solve(one)
-                self._places[column], self._right[column] = places[r], right[r]
+        new = [key for key in wanted if key not in self._columns]
+        if not new:
+            self._close()
+            return True
+        owner, places, left, right = change(new)
+        if len(owner) > len(self._free):
+            return False
+        columns = [self._free.pop() for _ in owner]
+        for key in new:
+            of_key = [column for column, its in zip(columns, owner.tolist(), strict=True) if its == key]
+            self._columns[key] = wanted[key], of_key
+        if columns:
+            sparse = np.zeros((len(columns), self._solved.shape[1]))
+            np.add.at(sparse, (np.arange(len(columns))[:, None], places), left)
+            self._solved[columns] = self.factor.solve(sparse)
+            self._places[columns], self._right[columns] = places, right
         self._close()
         return True
 

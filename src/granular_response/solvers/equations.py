@@ -8,7 +8,6 @@ for displacements ``q`` (``[x | z | angle]``) from reference positions, so that 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,12 +18,13 @@ from numpy.typing import NDArray
 
 from ..kernels import statics
 from ..linalg import REMEMBERED, elimination
-from ..state import SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
+from ..state import OPEN, SLIDING, STICKING, Contacts, FloatArray, State, wall_normals
 from .close_pairs import close_pairs
 from .pattern import pattern
 from .problem import Problem
-from .rolling import Rolls
 
+#: Local tangents that were not asked for.
+NO_TANGENT = np.empty((0, 3, 3))
 #: Part of a distance by which rounding may part two disks that touch.
 TOUCHING = 1e-12
 
@@ -62,6 +62,7 @@ class Trial:
     status: np.ndarray  #: (m + w,)
     tangent: FloatArray  #: (m + w, 3, 3); (0, 3, 3) where it was not asked for
     rolled: Rolled | None = None
+    bend: float = 0.0  #: largest part of a spring that the curved way of a contact has made
 
     @cached_property
     def sense(self) -> np.ndarray:
@@ -108,13 +109,21 @@ class Equations:
         self.walls = statics.Walls(
             self.wall_disk, self.wall_normals, self.wall_gap0, problem.wall_shapes(self.wall_disk), problem.wall_law
         )
-        self.rolls = Rolls(self) if problem.rolls else None
+        self.rolls = self._rolls() if problem.rolls else None
         self.held = problem.held.unknowns(problem.n)
         # one order of elimination for all states of a large lattice
         as_built = problem.n > REMEMBERED and problem.packing.ordered
         position = problem.packing.position if as_built else self.reference
         chosen = elimination(position, self.first, self.second, problem.freedoms)
         self.pattern = pattern(chosen, self.first, self.second, self.wall_disk, problem.freedoms, self.held)
+
+    def _rolls(self) -> statics.Rolls:
+        """Rolling resistance of the candidates."""
+        problem, sizes = self.problem, (len(self.first), len(self.wall_disk))
+        kinds = problem.pair_rolling, problem.wall_rolling
+        arm = np.concatenate([problem.pair_arms(self.first, self.second), problem.wall_arms(self.wall_disk)])
+        friction = np.repeat([0.0 if one is None else one.friction for one in kinds], sizes)
+        return statics.Rolls(arm, friction, np.repeat([0.0 if one is None else one.stiffness for one in kinds], sizes))
 
     @property
     def dissected(self) -> bool:
@@ -137,8 +146,13 @@ class Equations:
         return sliding if self.rolls is None else np.concatenate([sliding, self.rolls.friction * trial.normal])
 
     def coupled(self, sense: np.ndarray) -> np.ndarray:
-        """Signed statuses of which those along the rolling, if any, are open where the contact is."""
-        return sense if self.rolls is None else self.rolls.coupled(sense)
+        """Signed statuses of which those along the rolling, if any, are open where the contact is, else not."""
+        if self.rolls is None:
+            return sense
+        contact, roll = np.split(sense, 2)
+        new = np.where(roll == OPEN, STICKING, roll)
+        new = np.where((contact == OPEN) | (self.rolls.stiffness == 0.0), OPEN, new)
+        return np.concatenate([contact, new]).astype(sense.dtype)
 
     def status_keys(self) -> NDArray[np.int64]:
         """One number for what each status belongs to."""
@@ -196,91 +210,63 @@ class Equations:
         *,
         limits: FloatArray | None = None,
         fixed: np.ndarray | None = None,
+        ahead: FloatArray | None = None,
         tangent: bool = True,
     ) -> Trial:
         """Forces at ``q``, one increment after ``known``; none on what is held, where the reaction balances all.
 
         ``limits`` (m + w,) fixes the Coulomb limits in place of ``mu f_n``; ``fixed`` (m + w,) the statuses, as of
-        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any. ``tangent``
-        : whether local tangents are asked for.
+        :func:`signed_status`, in place of the return map; both go on along the rolling where there is any. ``ahead``
+        (dof,), with ``fixed`` : the displacement were the rates those at ``known``, for the slip along a way that
+        curves from there; walls do not turn. ``tangent`` : whether local tangents are asked for.
         """
-        problem = self.problem
-        m, count = len(self.first), len(self.first) + len(self.wall_disk)
+        problem, count = self.problem, len(self.first) + len(self.wall_disk)
         force = np.zeros(self.dof)
-        overlap, normal, tangential, spring = np.zeros((4, count))
-        out = statics.Response(overlap, normal, tangential, spring, np.zeros(count, np.int8))
+        out = statics.Response.empty(count)
         local = np.empty((count, 3, 3)) if tangent else None
-        ways: tuple[tuple[slice, Any, bool, Callable], ...] = (
-            (slice(None, m), self.pairs, problem.pair_friction, statics.pair_statics),
-            (slice(m, None), self.walls, problem.wall_friction, statics.wall_statics),
-        )
-        for part, contacts, friction, add in ways:
-            add(
-                q, known.q, problem.n, problem.packing.radius, contacts, contacts.shape, known.overlap[part],
-                known.spring[part] if friction else None, limits[part] if friction and limits is not None else None,
-                None if fixed is None else fixed[part], statics.Response(*(array[part] for array in out)),
-                None if local is None else local[part], force,
+        bend = statics.contacts(
+            q, known.q, ahead, problem.n, problem.packing.radius, self.pairs, self.pairs.shape, self.walls,
+            self.walls.shape, known.overlap, known.spring if problem.pair_friction else None,
+            known.spring if problem.wall_friction else None, limits, fixed, out, local, force,
+        )  # fmt: skip
+        roll, rolled = None, None
+        if self.rolls is not None:
+            found = statics.RollingResponse.empty(count)
+            couple = np.zeros((count, 3)) if tangent else None
+            statics.rolling(
+                q, known.q, problem.n, self.pairs, self.walls, self.rolls, out, known.overlap, known.roll, limits,
+                fixed, found, couple, force,
             )  # fmt: skip
-        roll, rolled = self._rolled(known, q, limits, fixed, tangent, out, force)
+            couples = NO_TANGENT[:, 0] if couple is None else couple
+            roll, rolled = found.spring, Rolled(found.force, found.status, couples)
         force[self.held] = 0.0
-        tangents = np.empty((0, 3, 3)) if local is None else local
-        return Trial(Configuration(q, spring, overlap, roll), force, normal, tangential, out.status, tangents, rolled)
+        return Trial(
+            Configuration(q, out.spring, out.overlap, roll), force, out.normal, out.tangential, out.status,
+            NO_TANGENT if local is None else local, rolled, bend,
+        )  # fmt: skip
 
-    def _rolled(
-        self, known: Configuration, q: FloatArray, limits, fixed, tangent: bool, out: statics.Response,
-        force: FloatArray,
-    ) -> tuple[FloatArray | None, Rolled | None]:  # fmt: skip
-        """Rolling springs and resistance of a trial, whose couples are added to ``force``; None without."""
-        problem, rolls = self.problem, self.rolls
-        if rolls is None or known.roll is None:
-            return None, None
-        m, count = len(self.first), rolls.count
-        found = statics.RollingResponse.empty(count)
-        local = np.zeros((count, 3)) if tangent else None
-        ways: tuple[tuple[slice, Any, Any, Callable], ...] = (
-            (slice(None, m), self.pairs, problem.pair_rolling, statics.pair_rolling),
-            (slice(m, None), self.walls, problem.wall_rolling, statics.wall_rolling),
-        )
-        for part, contacts, rolling, add in ways:
-            if rolling is not None:
-                add(
-                    q, known.q, problem.n, rolls.arm[part], rolling, contacts, contacts.shape,
-                    statics.Response(*(array[part] for array in out)), known.overlap[part], known.roll[part],
-                    None if limits is None else limits[count:][part], None if fixed is None else fixed[count:][part],
-                    statics.RollingResponse(*(array[part] for array in found)),
-                    None if local is None else local[part], force,
-                )  # fmt: skip
-        return found.spring, Rolled(found.force, found.status, np.empty((0, 3)) if local is None else local)
-
-    def along(self, known: Configuration, q: FloatArray, ahead: FloatArray, sense: np.ndarray) -> Configuration:
-        """``known`` with what its springs collect on the curved way to ``q`` beside what :meth:`trial` counts.
-
-        ``ahead`` (dof,) : the displacement were the rates those at ``known``; ``sense`` (m + w,) : signed statuses, of
-        which those that stick count. Walls do not turn.
-        """
-        if not self.problem.pair_friction:
-            return known
-        spring = known.spring.copy()
-        statics.add_slip_of_curved_way(q, known.q, ahead, self.problem.n, self.pairs, sense, spring)
-        return replace(known, spring=spring)
+    def _stiffness(self, trial: Trial) -> FloatArray:
+        """(e,) entries of -dF/dq as if nothing were held."""
+        places = self.pattern
+        data = np.empty(len(places.indices))
+        pairs, walls = self.split(trial.tangent)
+        statics.assemble(
+            data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius, pairs, places.base,
+            places.stride, self.wall_disk, walls, places.wall_base, places.wall_stride,
+        )  # fmt: skip
+        if trial.rolled is not None:
+            pairs, walls = self.split(trial.rolled.tangent)
+            statics.assemble_rolling(
+                data, pairs, places.base, places.stride, walls, places.wall_base, places.wall_stride
+            )
+        return data
 
     def tangent(self, trial: Trial, shift: float | FloatArray = 0.0) -> sp.csc_array:
         """K = -dF/dq with the unknowns disk by disk (see :meth:`interleave`), those that are held for themselves.
 
         ``shift`` (scalar or (dof,)) is added to the diagonal.
         """
-        places = self.pattern
-        data = np.empty(len(places.indices))
-        statics.assemble(
-            data, self.problem.freedoms, self.first, self.second, self.problem.packing.radius,
-            trial.tangent[: len(self.first)], places.base, places.stride,
-            self.wall_disk, trial.tangent[len(self.first) :], places.wall_base, places.wall_stride,
-        )  # fmt: skip
-        if trial.rolled is not None:
-            statics.assemble_rolling(
-                data, trial.rolled.tangent[: len(self.first)], places.base, places.stride,
-                trial.rolled.tangent[len(self.first) :], places.wall_base, places.wall_stride,
-            )  # fmt: skip
+        places, data = self.pattern, self._stiffness(trial)
         if self.held.size:
             data[places.held_entries] = 0.0
             data[places.held_diagonal] = self.problem.stiffness
@@ -344,23 +330,9 @@ class Equations:
 
     def force_rates(self, trial: Trial, velocity: FloatArray) -> FloatArray:
         """(dof,) rates of the contact forces where displacements grow at the rates ``velocity`` (dof,)."""
-        n, radius = self.problem.n, self.problem.packing.radius
-        v = np.zeros((3, n))
-        v[: self.problem.freedoms] = velocity.reshape(-1, n)
-        v[2] *= radius
-        i, j, k = self.first, self.second, self.wall_disk
-        relative = np.concatenate([(v[:2, i] - v[:2, j]), (v[2, i] + v[2, j])[None]]), v[:, k]
-        total = np.zeros((3, n))
-        pair, wall = (np.einsum("cab,bc->ac", g, w) for g, w in zip(self.split(trial.tangent), relative, strict=True))
-        for axis in (0, 1):
-            total[axis] = np.bincount(i, pair[axis], n) - np.bincount(j, pair[axis], n) + np.bincount(k, wall[axis], n)
-        turning = np.bincount(i, pair[2], n) + np.bincount(j, pair[2], n) + np.bincount(k, wall[2], n)
-        total[2] = -radius * turning
-        if self.rolls is not None and trial.rolled is not None:
-            couple = np.einsum("cb,bc->c", trial.rolled.tangent, self.rolls.relative(velocity))
-            on_pairs, on_walls = self.split(couple)
-            total[2] += np.bincount(i, on_pairs, n) - np.bincount(j, on_pairs, n) + np.bincount(k, on_walls, n)
-        return total[: self.problem.freedoms].ravel()
+        rates = np.empty(self.dof)
+        rates[self.pattern.interleaved] = -(self.pattern.matrix(self._stiffness(trial)) @ self.interleave(velocity))
+        return rates
 
     def without_prestress(self, trial: Trial) -> Trial:
         """The trial with the stiffness of its springs alone: what the turn of contacts adds is left out.

@@ -45,10 +45,6 @@ class NewtonOptions:
 
 OPTIONS = NewtonOptions()
 
-#: For the modules that iterate likewise.
-ENOUGH, FLAT = OPTIONS.enough, OPTIONS.flat
-LONGEST_STEP, NEWTON_ITERATIONS = OPTIONS.longest_step, OPTIONS.iterations
-
 
 class EquilibriumError(SolveError, RuntimeError):
     """No static equilibrium was found near the start."""
@@ -86,19 +82,19 @@ def newton(
     external: FloatArray,
     start: FloatArray | None = None,
     *,
-    tolerance: float = OPTIONS.tolerance,
-    enough: float = OPTIONS.enough,
-    maximum_iterations: int = OPTIONS.iterations,
+    maximum_iterations: int | None = None,
 ) -> tuple[Trial, NewtonReport]:
     """Solve for equilibrium under ``external``, one increment after ``known``.
 
     Steps are halved while the residual grows more than tenfold (a contact changing its status may raise it
     for a moment). A factorisation serves as long as no contact changes its status and the residual falls
     tenfold with it.
-    The end is a residual below ``enough``, or below ``tolerance`` where it falls no further.
+    The end is a residual below ``NewtonOptions.enough``, or below ``tolerance`` where it falls no further.
     Returns the last trial and a report; ``report.converged`` says whether it is a solution,
-    ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``.
+    ``report.iterations`` counts factorisations, of which there are at most ``maximum_iterations``,
+    or ``NewtonOptions.iterations``.
     """
+    tolerance, most = OPTIONS.tolerance, OPTIONS.iterations if maximum_iterations is None else maximum_iterations
     n = system.problem.n
     q = (known.q if start is None else start).copy()
     trial = system.trial(known, q)
@@ -108,7 +104,7 @@ def newton(
     stalled = iterations = 0
     slow = False
     while True:
-        if size < enough or (size < tolerance and stalled):
+        if size < OPTIONS.enough or (size < tolerance and stalled):
             return trial, NewtonReport(True, iterations, size)
         try:
             factor = None if slow else system.kept_factor(trial)
@@ -116,7 +112,7 @@ def newton(
             if factor is not None:
                 step = system.deinterleave(factor.solve(system.interleave(r)))
             else:
-                if iterations == maximum_iterations:
+                if iterations == most:
                     break
                 iterations += 1
                 step = system.step(trial, r)
@@ -259,7 +255,7 @@ def _cure(problem: Problem) -> str:
     return "relax it further first"
 
 
-def finish(problem: Problem, state: State, *, maximum_iterations: int = OPTIONS.iterations) -> State:
+def finish(problem: Problem, state: State) -> State:
     """Bring a nearly settled state to rest by Newton iterations (Sec. III.C), with its certificate.
 
     Springs start from the state's own, so friction remembers what it went through.
@@ -273,7 +269,7 @@ def finish(problem: Problem, state: State, *, maximum_iterations: int = OPTIONS.
     factor = state.load_factor
     system = StaticSystem(problem, state)
     known = system.start(state)
-    trial, report = newton(system, known, external_force(problem, factor), maximum_iterations=maximum_iterations)
+    trial, report = newton(system, known, external_force(problem, factor))
     if not report.converged:
         raise EquilibriumError(
             f"no static equilibrium within {report.iterations} Newton iterations of the state "

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..state import FloatArray
-from .equilibrium import FLAT, LONGEST_STEP, newton
+from .equilibrium import OPTIONS as NEWTON
+from .equilibrium import newton
 from .line_search import shortened
 from .system import Configuration, StaticSystem, Trial
 
@@ -53,7 +54,6 @@ class Work:
 
     increments: int = 0
     factorisations: int = 0
-    rounds: int = 0
 
 
 def solve_increment(
@@ -80,7 +80,6 @@ def solve_increment(
     for done in range(1, OPTIONS.rounds + 1):
         if work.factorisations - before_rounds > OPTIONS.most:
             return None
-        work.rounds += 1
         held = minimise_with_limits(system, known, external, q, limits, work)
         if held is None:
             return None
@@ -129,9 +128,11 @@ def minimise_with_limits(
         length = float(np.abs(step).max())
         if not np.isfinite(length):
             return trial
-        if length > LONGEST_STEP:
-            step *= LONGEST_STEP / length
+        if length > NEWTON.longest_step:
+            step *= NEWTON.longest_step / length
         slope = float(r @ step)
-        step, trial = shortened(system, known, external, q, step, slope, limits=limits, until=FLAT, beyond=FLAT)
+        step, trial = shortened(
+            system, known, external, q, step, slope, limits=limits, until=NEWTON.flat, beyond=NEWTON.flat
+        )
         q = q + step
     return None

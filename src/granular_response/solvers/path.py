@@ -35,7 +35,8 @@ from ..kernels import events
 from ..linalg.updated import Updated
 from ..state import OPEN, ROLLING_EVENTS, SLIDING, STICKING, Event, FloatArray, Reached, State
 from .dynamics import Dynamics, Stop
-from .equilibrium import ENOUGH, LONGEST_STEP, attainable, certify, external_force
+from .equilibrium import OPTIONS as NEWTON
+from .equilibrium import attainable, certify, external_force
 from .increment import Work, solve_increment
 from .problem import Problem
 from .rates import Changes, RateProblem, Rates, changed
@@ -115,7 +116,6 @@ class PathRecord:
 
     work: Work = field(default_factory=Work)
     events: list[Event] = field(default_factory=list)
-    stability_checks: int = 0
 
 
 @dataclass(frozen=True)
@@ -277,7 +277,6 @@ class _Path:
 
     def _direction(self, trial: Trial, sense: np.ndarray) -> FloatArray | None:
         """(dof,) direction in which an equilibrium diverges with signed statuses ``sense``, or None."""
-        self.record.stability_checks += 1
         return divergence(self.system, self.system.trial(trial.configuration, trial.configuration.q, fixed=sense))
 
     def _count(self) -> None:
@@ -386,7 +385,7 @@ class _Path:
             if turn is not None:
                 left, length = turn, np.inf
                 continue
-            bent = self._bent(point, rates, factor, trial)
+            bent = self.stiffest * trial.bend
             if bent > self.options.bent:
                 part = min(0.5, 0.8 * (self.options.bent / bent) ** (1 / 3))
                 left, length = part * abs(factor - point.factor), np.inf
@@ -398,12 +397,6 @@ class _Path:
                 due = due[(changes.rate[due] > 0.0) | (due == contact)]
             return Point(factor, trial, rates.sense, self.system.coupled(changed(rates.sense, due, then.what)))
         return None
-
-    def _bent(self, point: Point, rates: Rates, factor: float, trial: Trial) -> float:
-        """Largest force of a spring that sticks from the bend of its contact's way within the increment to a trial."""
-        ahead = abs(factor - point.factor) * rates.velocity
-        way = self.system.along(point.known, trial.configuration.q, ahead, rates.sense)
-        return self.stiffest * float(np.abs(way.spring - point.known.spring).max(initial=0.0))
 
     def _velocity(self, trial: Trial, sense: np.ndarray) -> FloatArray:
         """(dof,) rates at a trial with signed statuses ``sense``; zero where the tangent is singular."""
@@ -459,10 +452,10 @@ class _Path:
         factor = self.target if at_end else point.factor + self.direction * length
         by, velocity, system = rates.factor, rates.velocity, self.system
         q = system.displaced(known.q + abs(factor - point.factor) * velocity, factor)
-        before, enough, stalled = np.inf, ENOUGH if event is None else options.passing, False
+        before, enough, stalled = np.inf, NEWTON.enough if event is None else options.passing, False
         for done in range(options.newton):
-            way = system.along(known, q, abs(factor - point.factor) * rates.velocity, rates.sense)
-            trial = system.trial(way, q, fixed=rates.sense, tangent=False)
+            ahead = abs(factor - point.factor) * rates.velocity
+            trial = system.trial(known, q, fixed=rates.sense, ahead=ahead, tangent=False)
             force = trial.contact_force + self._external(factor)
             size = float(np.abs(force).max(initial=0.0))
             left = 0.0 if event is None else self.rates.left(trial, *event)
@@ -483,8 +476,8 @@ class _Path:
             before = size
             step = system.deinterleave(by.solve(system.interleave(force)))
             longest = float(np.abs(step[: 2 * self.problem.n]).max(initial=0.0))
-            if longest > LONGEST_STEP:  # a contact of the 3/2 law that has just closed has no stiffness yet
-                step *= LONGEST_STEP / longest
+            if longest > NEWTON.longest_step:  # a contact of the 3/2 law that has just closed has no stiffness yet
+                step *= NEWTON.longest_step / longest
             if event is not None:
                 rate = self.rates.fall(q, *event, velocity)
                 if rate <= 0.0:  # it does not come nearer: on with new rates from here
@@ -606,33 +599,28 @@ class _Path:
 
     def _record(self, point: Point, after: np.ndarray, until: float | None = None) -> None:
         """The events in which contacts get the signed statuses ``after`` (m + w,), at the latest ``until``."""
-        changes = np.flatnonzero(point.sense != after)
         system, n, m = self.system, self.problem.n, len(self.system.first)
         count = m + len(system.wall_disk)
-        # a contact that opens or closes does so along the rolling too
-        changes = changes[(changes < count) | ((point.sense[changes] != OPEN) & (after[changes] != OPEN))]
-        if not len(changes):
-            return
-        contacts = changes % count
-        position = system.reference + point.known.q[: 2 * n].reshape(2, n).T
-        at_wall = contacts >= m
-        pair, wall = contacts[~at_wall], contacts[at_wall] - m
-        first = np.concatenate([system.first[pair], system.wall_disk[wall]])
-        second = np.concatenate([system.second[pair], system.wall[wall]])
-        apart = self.problem.packing.box.separation(position[system.second[pair]], position[system.first[pair]])
-        towards = np.concatenate([apart, -system.wall_normals[wall]])
-        place = position[first] + towards * (self.problem.packing.radius[first] / np.hypot(*towards.T))[:, None]
-        kinds = (
-            kinds if c < count else tuple(map(ROLLING.__getitem__, kinds))
-            for c in changes.tolist()
-            for kinds in [_kinds(int(point.sense[c]), int(after[c]))]
-        )
-        rows = zip(kinds, first.tolist(), second.tolist(), at_wall.tolist(), *place.T.tolist(), strict=True)
-        self.record.events += [
-            Event(point.factor, kind, i, j, wall_contact, x, z, point.factor if until is None else until)
-            for does, i, j, wall_contact, x, z in rows
-            for kind in does
-        ]
+        moved = point.known.q[: 2 * n].reshape(2, n).T
+        for c in np.flatnonzero(point.sense != after).tolist():
+            kinds = _kinds(before := int(point.sense[c]), now := int(after[c]))
+            if c >= count:
+                if OPEN in (before, now):  # a contact that opens or closes does so along the rolling too
+                    continue
+                kinds = tuple(map(ROLLING.__getitem__, kinds))
+            c, at_wall = c % count, c % count >= m
+            i, j = (system.wall_disk, system.wall) if at_wall else (system.first, system.second)
+            first, second = int(i[c - m * at_wall]), int(j[c - m * at_wall])
+            here = system.reference[first] + moved[first]
+            if at_wall:
+                towards = -system.wall_normals[c - m]
+            else:
+                towards = self.problem.packing.box.separation(system.reference[second] + moved[second], here)
+            x, z = here + towards * (self.problem.packing.radius[first] / np.hypot(*towards))
+            until_then = point.factor if until is None else until
+            self.record.events += [
+                Event(point.factor, kind, first, second, at_wall, float(x), float(z), until_then) for kind in kinds
+            ]
 
     def _record_lost(self, kind: str, point: Point, until: float, moved: FloatArray, reason: str) -> None:
         """The loss of the equilibrium ``point``, from which disks have moved by ``moved`` ([x | z]) to the next one."""

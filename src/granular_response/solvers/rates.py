@@ -66,25 +66,16 @@ def next_changes(
 
     ``sense`` (m + w,) : signed statuses; ``force``, ``negligible`` : a force and a rate of a force that are none.
     """
-    rolls, c, n = system.rolls, trial.configuration, system.problem.n
-    count = len(trial.status)
-    found = Changes(np.zeros(count, np.int8), np.empty(count), np.empty(count))
+    c, n = trial.configuration, system.problem.n
+    found = Changes(np.empty(len(sense), np.int8), np.empty(len(sense)), np.empty(len(sense)))
     ties = np.zeros((2, n), np.int64)
     ties[0, system.problem.load_disk] = LOADED
-    if rolls is not None:
-        ties[0] += rolls.ties(sense)
     events.next_changes(
-        c.q, velocity, n, system.problem.packing.radius, system.pairs,
-        system.walls, sense, trial.normal, trial.tangential, c.overlap, force, negligible,
-        ties, found.what, found.left, found.rate,
+        c.q, velocity, n, system.problem.packing.radius, system.pairs, system.walls, system.rolls, sense,
+        trial.normal, trial.tangential, None if trial.rolled is None else trial.rolled.force, c.overlap, force,
+        negligible, ties, found.what, found.left, found.rate,
     )  # fmt: skip
-    if rolls is None or trial.rolled is None:
-        return found
-    rattles = (ties[0] <= system.problem.freedoms) & (ties[1] <= 1)
-    idle = (trial.normal <= force) & (rattles[rolls.first] | (rattles[rolls.second] & rolls.pair))
-    more = rolls.next_changes(c.q, velocity, sense, trial.normal, trial.rolled.force, idle, negligible)
-    along = (found.what, found.left, found.rate)
-    return Changes(*(np.concatenate(both) for both in zip(along, more, strict=True)))
+    return found
 
 
 def changed(sense: np.ndarray, contacts: np.ndarray, what: np.ndarray) -> np.ndarray:
@@ -144,23 +135,21 @@ class RateProblem:
 
     def left(self, trial: Trial, c: int, what: int) -> float:
         """Force that is left (mean weights) until contact ``c`` does ``what``."""
-        rolls = self.system.rolls
-        if rolls is not None and trial.rolled is not None and c >= rolls.count:
-            c -= rolls.count
-            return float(rolls.friction[c] * trial.normal[c] - np.sign(what) * trial.rolled.force[c])
-        law = self.system.problem.pair_law if c < len(self.system.first) else self.system.problem.wall_law
+        system, rolled, sense = self.system, trial.rolled, np.sign(what)
+        c, along_rolling = c % len(trial.normal), c >= len(trial.normal)
+        if along_rolling and rolled is not None and system.rolls is not None:
+            return float(system.rolls.friction[c] * trial.normal[c] - sense * rolled.force[c])
+        law = system.problem.pair_law if c < len(system.first) else system.problem.wall_law
         if what in (events.OPENS, events.CLOSES):
             overlap = law.normal_stiffness * float(trial.configuration.overlap[c])
             return overlap if what == events.OPENS else -overlap
-        return law.friction * float(trial.normal[c]) - np.sign(what) * float(trial.tangential[c])
+        return float(law.friction * trial.normal[c] - sense * trial.tangential[c])
 
     def fall(self, q: FloatArray, c: int, what: int, displacement: FloatArray) -> float:
         """By how much a displacement (dof,) lowers that force."""
         system = self.system
-        if system.rolls is not None and c >= system.rolls.count:
-            return system.rolls.fall(c - system.rolls.count, what, q, displacement)
         n, radius = system.problem.n, system.problem.packing.radius
-        return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls)
+        return events.fall(c, what, q, displacement, n, radius, system.pairs, system.walls, system.rolls)
 
     def solve(self, trial: Trial, sense: np.ndarray) -> Rates | None:
         """Rates at an equilibrium with statuses that do not contradict themselves; None where none are found.
@@ -193,8 +182,9 @@ class RateProblem:
                     rates = found.rate[due]
                     due = due[rates >= OPTIONS.as_bad * rates.max()]
                 now = changed(now, due, found.what)
-                touching = due[np.isin(found.what[due], (events.OPENS, events.CLOSES))]
-                for c in touching[self.system.friction[touching] > 0.0].tolist():
+                for c in due.tolist():
+                    if found.what[c] not in (events.OPENS, events.CLOSES) or not self.system.friction[c] > 0.0:
+                        continue
                     # one that neither opens nor sticks slides, often at no force: pushed by a disk that rolls
                     had.setdefault(c, {int(sense[c])})
                     now[c] = next((way for way in (now[c], SLIDING, -SLIDING) if int(way) not in had[c]), now[c])

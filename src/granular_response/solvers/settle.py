@@ -13,7 +13,7 @@ from ..errors import SolveError
 from ..state import FloatArray, State
 from .dynamics import Dynamics, Ramp, Stop, relax
 from .energy import minimise
-from .equilibrium import NEWTON_ITERATIONS, EquilibriumError, finish
+from .equilibrium import EquilibriumError, finish
 from .problem import Problem
 from .stability import unstable_direction
 from .system import StaticSystem
@@ -32,7 +32,6 @@ class HandOver:
     """How dynamics hands over to statics. Times in sqrt(R/g)."""
 
     tries: int  #: how often statics is tried
-    iterations: int = NEWTON_ITERATIONS  #: of Newton's method in a try
     wait: float = 20.0  #: time of dynamics between tries, with cooling where the packing is cooler already
     cooling: float = 1.0  #: below 1: in place of a wait, dynamics to this part of the kinetic energy before
     nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
@@ -56,8 +55,6 @@ def settle(
     what: str,
     gravity: Ramp = (1.0, 1.0, 0.0),
     load: Ramp = (0.0, 0.0, 0.0),
-    integrator: str | None = None,
-    time_step: float | None = None,
     accept: Callable[[State], bool | None] = lambda state: state.certificate.stable,
     progress: Callable[[int, float], None] | None = None,
     watch: Callable[[Dynamics], None] | None = None,
@@ -71,7 +68,6 @@ def settle(
     how, stop : the hand-over, and when it is first tried.
     what : that the packing comes to rest under, for messages.
     gravity, load : linear ramps ``(from, to, duration)``.
-    integrator, time_step : those of the protocol unless given.
     accept : whether an equilibrium will do; by default, when it is stable.
     progress : called with the steps done and the kinetic energy per disk.
     watch : called with the dynamics as often, and may end it by raising.
@@ -83,8 +79,7 @@ def settle(
     DynamicsError
         When the motion blows up, or a load carries a disk off.
     """
-    integrator = problem.scene.protocol.integrator if integrator is None else integrator
-    time_step = resolve_time_step(problem) if time_step is None else time_step
+    integrator, time_step = problem.scene.protocol.integrator, resolve_time_step(problem)
     dynamics = Dynamics(problem, start, integrator, time_step)
     held = (load[1], load[1], 0.0)
 
@@ -108,7 +103,7 @@ def settle(
         if not settled.reached.settled and (kinetic > how.nearly * energy or settled.load_factor != load[1]):
             break
         try:
-            found = _statics(problem, settled, how)
+            found = _statics(problem, settled)
             if accept(found):
                 return found
             why = ": the equilibrium found is unstable"
@@ -142,10 +137,10 @@ def not_settled(problem: Problem, state: State, what: str) -> str:
     )
 
 
-def _statics(problem: Problem, settled: State, how: HandOver) -> State:
+def _statics(problem: Problem, settled: State) -> State:
     """The equilibrium beside a nearly settled state: without friction the minimum of the energy."""
     if problem.rotations:
-        return finish(problem, settled, maximum_iterations=how.iterations)
+        return finish(problem, settled)
     found = minimise(problem, problem.relisted(settled), load_factor=settled.load_factor)
     return replace(found, reached=found.reached.after(settled.reached))
 

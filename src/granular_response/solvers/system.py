@@ -99,22 +99,19 @@ class StaticSystem(Equations):
             updated, made = self._updated
             wanted = {int(c): int(sense[c]) for c in np.flatnonzero(sense != made)}
 
-            def change(c: int) -> tuple[np.ndarray, FloatArray, FloatArray]:
-                places, left, right = np.zeros((2, 6), np.int64), np.zeros((2, 6)), np.zeros((2, 6))
-                if self.rolls is not None and c >= self.rolls.count:
-                    places, left, right = self.rolls.changed_stiffness(
-                        c - self.rolls.count, int(made[c]), int(sense[c]), known.q, self.pattern.place
-                    )
-                    count = len(places)
-                else:
-                    count = events.changed_stiffness(
-                        c, made[c], sense[c], known.q, self.problem.n, self.problem.packing.radius,
-                        self.problem.freedoms, self.pairs, self.walls, self.pattern.place, places, left, right,
-                    )  # fmt: skip
+            def change(contacts: list[int]) -> tuple[np.ndarray, np.ndarray, FloatArray, FloatArray]:
+                most = 2 * len(contacts)
+                owner, places = np.zeros(most, np.int64), np.zeros((most, 6), np.int64)
+                left, right = np.zeros((2, most, 6))
+                rows = events.changed_stiffness(
+                    np.array(contacts, np.int64), made, sense, known.q, self.problem.n, self.problem.packing.radius,
+                    self.problem.freedoms, self.pairs, self.walls, self.rolls, self.pattern.place, owner, places, left,
+                    right,
+                )  # fmt: skip
                 if self.held.size:
                     held = np.isin(self.pattern.interleaved[places], self.held)
                     left[held], right[held] = 0.0, 0.0
-                return places[:count], left[:count], right[:count]
+                return owner[:rows], places[:rows], left[:rows], right[:rows]
 
             if len(wanted) <= OPTIONS.most_changed and updated.update(wanted, change) and updated.accurate:
                 return updated
