@@ -29,7 +29,6 @@ from .. import __version__
 from ..errors import GranularError
 from ..inputs import check_regular
 from . import atomic
-from .conventions import encoded_attributes, encoded_variables
 
 #: What the name of every file of datasets ends with.
 SUFFIX = ".nc"
@@ -42,6 +41,7 @@ _READ = (FORMAT, "granular_response 1")
 _NO_NAME = "memory"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SEAL = b"granular_response sha256 "
+_PACKED = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
 _GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
 
 
@@ -188,40 +188,14 @@ def _made(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
 
 
 def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, xr.Dataset]) -> None:
+    """Write each dataset as xarray does: the same bytes for the same data."""
     for name, dataset in groups.items():
+        arrays = {key: one.dtype.kind not in "OU" and one.ndim and one.size for key, one in dataset.variables.items()}
         try:
-            _dump(dataset, file.createGroup(name) if name else file)
+            store = NetCDF4DataStore(file.createGroup(name) if name else file)
+            dataset.dump_to_store(store, encoding={key: _PACKED if array else {} for key, array in arrays.items()})
         except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
             raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
-
-
-def _dump(dataset: xr.Dataset, group: netCDF4.Dataset) -> None:
-    """Write a dataset as xarray would, by the CF conventions: the same bytes."""
-    for name, value in encoded_attributes(dataset).items():
-        _set_attribute(group, name, value)
-    variables = encoded_variables(dataset)
-    for variable in variables.values():
-        for dimension, size in zip(variable.dimensions, variable.values.shape, strict=True):
-            if dimension not in group.dimensions:
-                group.createDimension(dimension, size)
-    for name, variable in variables.items():
-        values, labels = variable.values, dict(variable.attributes)
-        numbers = values.dtype.kind != "U"
-        packed = numbers and bool(values.ndim and values.size)
-        written = group.createVariable(
-            name, values.dtype.newbyteorder("=") if numbers else str, variable.dimensions,
-            fill_value=labels.pop("_FillValue", None), zlib=packed, complevel=4, shuffle=True, fletcher32=packed,
-        )  # fmt: skip
-        written.setncatts(labels)
-        written[...] = values if numbers else values.astype(object)
-
-
-def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
-    several = np.asarray(value)
-    if several.dtype.kind in "US" and several.size > 1:
-        group.setncattr_string(name, value)
-    else:
-        group.setncattr(name, value)
 
 
 def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
