@@ -190,10 +190,13 @@ def _made(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
 def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, xr.Dataset]) -> None:
     """Write each dataset as xarray does: the same bytes for the same data."""
     for name, dataset in groups.items():
+        numbers = {key: int(value) for key, value in dataset.attrs.items() if isinstance(value, (bool, np.bool_))}
         arrays = {key: one.dtype.kind not in "OU" and one.ndim and one.size for key, one in dataset.variables.items()}
         try:
             store = NetCDF4DataStore(file.createGroup(name) if name else file)
-            dataset.dump_to_store(store, encoding={key: _PACKED if array else {} for key, array in arrays.items()})
+            dataset.assign_attrs(numbers).dump_to_store(
+                store, encoding={key: _PACKED if array else {} for key, array in arrays.items()}
+            )
         except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
             raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
 
