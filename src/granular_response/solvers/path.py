@@ -613,6 +613,7 @@ class _Path:
         changes = changes[(changes < count) | ((point.sense[changes] != OPEN) & (after[changes] != OPEN))]
         if not len(changes):
             return
+        changes = changes[np.argsort(changes % count >= m, kind="stable")]  # along the rolling pairs come after walls
         contacts = changes % count
         position = system.reference + point.known.q[: 2 * n].reshape(2, n).T
         at_wall = contacts >= m
