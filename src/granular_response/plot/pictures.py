@@ -58,7 +58,7 @@ class Shown:
                 raise TypeError(f"result: must be a Result or its dataset, not {kind} (open_result reads a file)")
             result = result.to_dataset()
         if not {"position", "contact_force", "wall_force", "state_load_factor"} <= set(result.variables):
-            raise PictureError("result: the dataset holds no states of a packing (open_result reads older files)")
+            raise PictureError("result: the dataset holds no states of a packing (open_result reads a file)")
         if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
             raise PictureError(f"state = {state!r}: must be an integer, 0 for the initial equilibrium")
         count = result.sizes["state"]
@@ -83,7 +83,7 @@ class Shown:
 
     @property
     def box(self) -> Box:
-        return Box(float(self.data.attrs["width"]), self.data.attrs.get("sides") == "periodic")
+        return Box.of(self.data.attrs)
 
     @property
     def top(self) -> float:

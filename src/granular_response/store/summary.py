@@ -18,7 +18,8 @@ from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from . import files as store
 from .checked import read_result
-from .result import EVENT_KINDS, NOT_DETERMINED, events_from
+from .result import events_from
+from .variables import EVENT_KINDS, NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
 _HIDDEN = {

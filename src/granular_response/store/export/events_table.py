@@ -9,7 +9,8 @@ from pathlib import Path
 
 import xarray as xr
 
-from ..result import EVENTS, events_from
+from ..result import events_from
+from ..variables import EVENTS
 
 
 def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:

@@ -52,7 +52,7 @@ def contact_force_sums(state: xr.Dataset) -> tuple[FloatArray, np.ndarray]:
 
 def box(dataset: xr.Dataset) -> Box:
     """The box of a result."""
-    return Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic")
+    return Box.of(dataset.attrs)
 
 
 def mark(dataset: xr.Dataset) -> formats.Mark:

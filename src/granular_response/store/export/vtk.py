@@ -16,7 +16,8 @@ import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
 from ...state import OPEN
-from ..result import EVENTS, events_from, state_from
+from ..result import events_from, state_from
+from ..variables import EVENTS
 from .frames import PREFIXES, box, contact_force_sums, in_plane
 
 
