@@ -151,10 +151,13 @@ VARIABLES: dict[str, Stored] = {
         for prefix, along in CONTACTS.items()
     },
     **{
-        f"certificate_{name}": Stored("state", *said, finite=False, optional=name == "rolling_excess")
+        f"certificate_{name}": Stored("state", *said)._replace(finite=False, optional=name == "rolling_excess")
         for name, said in CERTIFICATE.items()
     },
-    **{f"reached_{name}": Stored("state", *said, finite=False, optional=True) for name, said in REACHED.items()},
+    **{
+        f"reached_{name}": Stored("state", *said)._replace(finite=False, optional=True)
+        for name, said in REACHED.items()
+    },
     "load": Stored("load", f"index: {_FACTOR}"),
     "load_factor": Stored("load", _FACTOR),
     "step": Stored("load", "step of the load programme", kinds=WHOLE),
@@ -167,7 +170,8 @@ VARIABLES: dict[str, Stored] = {
     "total_force": Stored("load", f"total magnitude of the applied forces {WEIGHTS}", FORCE),
     "reaction": Stored("load load_point axis", f"{_HOLDS} {WEIGHTS}; 0 along free directions", FORCE, optional=True),
     **{
-        f"event_{name}": Stored("event", *said, finite=name not in "xz", optional=True) for name, said in EVENTS.items()
+        f"event_{name}": Stored("event", *said)._replace(finite=name not in "xz", optional=True)
+        for name, said in EVENTS.items()
     },
     "event_state": Stored("event", "state that the event leads to", kinds=WHOLE, optional=True),
     "axis": Stored("axis", "axis labels", "", TEXT),
