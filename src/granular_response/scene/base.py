@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
@@ -161,3 +161,21 @@ Sides = Annotated[
         description="Side walls, or periodic sides.",
     ),
 ]
+
+
+class PackingDescription(Description):
+    """What all descriptions of packings share."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the sides are periodic."""
+        return getattr(self, "sides", "walls") == "periodic"
+
+    @property
+    def disk_count(self) -> int:
+        """Number of disks; 0 where only a file knows it."""
+        return 0
+
+    def half(self) -> Self | None:
+        """One of the same shape with half as many rows and half as wide; None where there is none."""
+        return None
