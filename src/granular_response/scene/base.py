@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
+from pydantic.fields import FieldInfo
 
 from .errors import Problem, from_validation, suggestion
 
@@ -46,6 +47,12 @@ UNITS = {
 }
 
 
+def unit_of(name: str, info: FieldInfo) -> str:
+    """The unit of a key; a law says those of its parameters itself (``json_schema_extra``)."""
+    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+    return str(extra.get("unit", UNITS.get(name, "")))
+
+
 class _Public(ModelMetaclass):
     """Has ``help`` and ``dir`` list what a description adds, and nothing of pydantic."""
 
@@ -78,9 +85,7 @@ class Description(BaseModel, metaclass=_Public):
             default = inspect.Parameter.empty if info.is_required() else info.get_default(call_default_factory=True)
             parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default))
             shown = "must be given" if info.is_required() else f"default {default!r}"
-            extra = info.json_schema_extra
-            named = extra.get("unit") if isinstance(extra, dict) else UNITS.get(name)
-            unit = f" [{named}]" if named else ""
+            unit = f" [{unit_of(name, info)}]" if unit_of(name, info) else ""
             lines += [f"{name} : {shown}{unit}", textwrap.indent(textwrap.fill(info.description or "", 112), "    ")]
         cls.__signature__ = inspect.Signature(parameters)
         text, title, examples = inspect.cleandoc(cls.__doc__ or "").partition("\n\nExamples\n")
