@@ -14,7 +14,7 @@ from .. import scene
 from ..scene import text as yaml_text
 from ..scene.base import Description, unit_of
 from ..scene.lattice import LatticePacking
-from ..scene.material import LAW_PARAMETERS
+from ..scene.material import KNOWN_LAWS
 from ..store import generated
 
 #: Name of the generated lines.
@@ -93,8 +93,11 @@ SECTIONS = (
 
 def sections() -> list[Section]:
     """All sections, with those of laws that have parameters."""
-    laws = LAW_PARAMETERS.items()
-    own = [Section(f"Parameters of the law {name}", "contact.parameters", of) for name, of in laws if of.model_fields]
+    own = [
+        Section(f"Parameters of the law {name}", "contact.parameters", known.parameters)
+        for name, known in KNOWN_LAWS.items()
+        if known.parameters.model_fields
+    ]
     return [*SECTIONS, *own]
 
 
