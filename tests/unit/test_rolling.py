@@ -79,7 +79,7 @@ def test_a_disk_rolls_to_rest():
     dynamics.advance(20_000)
     assert np.abs(dynamics.v).max() < 1e-3
     assert dynamics.position[0, 0] - 500.0 == pytest.approx(0.75 * speed**2 / 0.3, rel=5e-3)
-    assert dynamics.state().walls.rolling
+    assert dynamics.state().walls.resists_rolling
 
 
 @pytest.mark.parametrize("body", ["disk", "floor"])

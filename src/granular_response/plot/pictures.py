@@ -140,7 +140,7 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     with style.context():
         axes = _axes(ax, 0.36)
         forces = np.atleast_1d(shown.data["total_force"].values)
-        branch = _branches(shown)
+        branch = _load_branches(shown)
         for k, (curve, force) in enumerate(zip(values, forces, strict=True)):
             if np.isnan(curve).all():  # unloaded: floor draws what is left
                 continue
@@ -155,7 +155,7 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     return axes
 
 
-def _branches(shown: Shown) -> list[str]:
+def _load_branches(shown: Shown) -> list[str]:
     """What a legend adds to each load: its branch, where not all are on the first."""
     branch = shown.data["branch"].values.tolist() if "branch" in shown.data.variables else []
     told = any(one != "loading" for one in branch)

@@ -16,8 +16,6 @@ from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .packing import Packing, exact_mean
 
-_FORMATS = " or ".join(formats.SUFFIXES)
-
 
 def _printable(text: str) -> str:
     if not text.strip() or not text.isprintable():
@@ -25,14 +23,10 @@ def _printable(text: str) -> str:
     return text
 
 
-def _known(text: str) -> str:
-    if text not in formats.SUFFIXES:
-        raise Problem("")
-    return text
-
-
 FileName = Annotated[str, Field(strict=True), AfterValidator(_printable), allowed("must be the path of a file")]
-Format = Annotated[str, Field(strict=True), AfterValidator(_known), allowed(f"must be {_FORMATS}")]
+Format = Annotated[
+    Literal["csv", "lammps-data", "lammps-dump", "yade", "gsd"], allowed(f"must be {' or '.join(formats.SUFFIXES)}")
+]
 
 
 class FilePacking(PackingDescription):

@@ -100,7 +100,7 @@ def _states(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
         contacts: list[Contacts] = [getattr(state, _LISTS[prefix]) for state in states]
         data[first] = described(first, contacts[0].first)
         data[second] = described(second, contacts[0].second)
-        rolling = ROLLING if any(one.rolling for one in contacts) else {}
+        rolling = ROLLING if any(one.resists_rolling for one in contacts) else {}
         for name in (*CONTACT, *rolling):
             values = np.stack([getattr(one, name) for one in contacts])
             data[f"{prefix}_{name}"] = described(f"{prefix}_{name}", values, along=along)
@@ -114,7 +114,7 @@ def certificates_dataset(states: Sequence[State], dimension: str = "state") -> x
 
 
 def _certificates(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
-    rolling = any(contacts.rolling for state in states for contacts in (state.pairs, state.walls))
+    rolling = any(contacts.resists_rolling for state in states for contacts in (state.pairs, state.walls))
     found = {}
     for name in CERTIFICATE:
         if name != "rolling_excess" or rolling:
@@ -206,12 +206,12 @@ def load_coordinates(factors: Sequence[float]) -> dict[str, xr.Variable]:
         "load": values,
         "load_factor": values,
         "step": np.arange(1, len(values) + 1),
-        "branch": np.array(branches(factors), str),
+        "branch": np.array(load_branches(factors), str),
     }
     return {name: described(name, one) for name, one in found.items()}
 
 
-def branches(factors: Sequence[float]) -> list[str]:
+def load_branches(factors: Sequence[float]) -> list[str]:
     """The branch of a load programme that each factor ends, from 0 on.
 
     "loading" beyond all loads of the same sign before, "reloading" up to the largest of them, "unloading" towards 0. A
