@@ -10,11 +10,9 @@ from ..scene import SceneError
 from ..scene.base import Description
 from ..scene.material import KNOWN_LAWS, KnownLaw, NoParameters
 
-#: What a law must have; see :class:`granular_response.contact.law.Law`.
-FIELDS = (
-    "normal_stiffness", "normal_damping", "tangential_stiffness", "tangential_damping", "friction", "least_force",
-)  # fmt: skip
-METHODS = ("of", "elastic_force", "stiffness", "energy", "shapes", "stiffest", "softened", "without_friction")
+#: What a law must have: the constants and the methods of the protocol.
+FIELDS = tuple(name for name, part in vars(Law).items() if isinstance(part, property))
+METHODS = tuple(name for name in vars(Law) if name not in FIELDS and not name.startswith("_"))
 
 
 class LawError(GranularError, ValueError):
