@@ -1,6 +1,4 @@
-"""Results as others read them, as the version before wrote them, and sealed files that are no results."""
-
-from pathlib import Path
+"""Results as others read them, and sealed files that are no results."""
 
 import numpy as np
 import pytest
@@ -12,9 +10,7 @@ import granular_response as gr
 from granular_response.solvers.solution import continue_solution, solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
-from granular_response.store.result import ResultError, indexed, load_coordinates, solution_from, state_from, to_dataset
-
-OLDER = Path(__file__).parents[1] / "data" / "result_layout_1.nc"
+from granular_response.store.result import ResultError, indexed, load_coordinates, state_from, to_dataset
 
 
 @pytest.fixture(scope="module")
@@ -52,19 +48,6 @@ def test_load_is_a_dimension_for_any_number_of_loads(solution, factors):
         assert data[name].dims == ("load", "floor_disk") and data.sizes["load"] == len(factors)
     assert data["load_factor"].values.tolist() == factors
     assert checked(data).identical(data)
-    # as versions before wrote it
-    before = data.drop_vars(["load", "load_factor", "step", "branch", "floor_force_change"])
-    if factors:
-        before = before.isel(load=0).assign_coords(load_factor=1.0)
-    else:
-        before = before.drop_dims("load").assign(
-            floor_force=before["floor_force_rest"],
-            floor_response=np.nan * before["floor_force_rest"],
-            total_force=np.nan,
-        )
-    again = checked(before)
-    for name in ("floor_force", "floor_force_change", "floor_response", "total_force", "load", "branch", "step"):
-        xr.testing.assert_equal(again[name], data[name])
 
 
 def test_factors_may_repeat():
@@ -120,22 +103,6 @@ def test_the_record_of_a_state_comes_back(solution, path):
             assert type(getattr(back, name)) is type(getattr(state.reached, name)), name
     shown = call("show", path, folder=path.parent).stdout
     assert "work" in shown and "factorisations" in shown
-
-
-def test_results_of_the_layout_before_are_read(tmp_path):
-    with xr.open_dataset(OLDER) as raw:
-        assert raw["load_factor"].dims == ("state",) and raw.attrs["format"] == "granular_response 1"
-        data = read_result(OLDER)
-        assert data["floor_response"].sel(load_factor=2.0).values.tolist() == raw["floor_response"].values[2].tolist()
-        assert data["state_load_factor"].values.tolist() == raw["load_factor"].values.tolist()
-    assert gr.open_result(OLDER).load_factors == (0.5, 1.0, 2.0)
-    again = to_dataset(solution_from(data))
-    for name in ("position", "contact_force", "wall_force", "load_factor", "floor_response"):
-        np.testing.assert_array_equal(again[name], data[name])
-    assert call("show", OLDER, folder=tmp_path).returncode == 0
-    assert call("continue", OLDER, "--to", 2.5, "-o", "more.nc", folder=tmp_path).returncode == 0
-    with xr.open_dataset(tmp_path / "more.nc") as more:
-        assert more["load_factor"].values.tolist() == [0.5, 1.0, 2.0, 2.5]
 
 
 def test_what_xarray_writes_is_shown_and_exported(solution, tmp_path):
@@ -203,15 +170,6 @@ def test_a_sealed_file_that_is_no_result(solution, tmp_path, damage):
     assert said in str(caught.value)
     with pytest.raises(ResultError):
         gr.open_result(tmp_path / "bad.nc")
-
-
-def test_a_result_without_certificates_is_not_continued(solution, tmp_path):
-    data = to_dataset(solution)
-    store.write(tmp_path / "a.nc", data.drop_vars([name for name in data if str(name).startswith("certificate_")]))
-    assert gr.open_result(tmp_path / "a.nc").certificates == (None,) * 4
-    finished = call("continue", "a.nc", "--to", 3, "-o", "b.nc", folder=tmp_path)
-    assert finished.returncode == 2
-    assert finished.stderr == "granular-response: a.nc: holds no certificates, from which a run goes on\n"
 
 
 def test_commands_say_so_in_one_line(solution, tmp_path):

@@ -216,13 +216,14 @@ def test_too_little_memory_is_said_before_it_is_taken(tmp_path):
 
 
 def test_another_writer_may_come_between_any_two_steps(tmp_path, monkeypatch):
-    """A new temporary file that was not locked yet was taken for a leftover, and its writer lost what it had."""
+    """A temporary file that was not locked yet was taken by another writer, who has moved it away."""
     target = tmp_path / "a.bin"
     lock, met = fcntl.flock, []
 
     def late(descriptor, how):
-        if how == fcntl.LOCK_EX and not met:
-            met.extend(atomic.remove_leftovers(target))
+        if not met:
+            met.append(how)
+            atomic.write_bytes(target, b"other")
         return lock(descriptor, how)
 
     monkeypatch.setattr(atomic.fcntl, "flock", late)

@@ -273,16 +273,10 @@ def test_a_failed_check_keeps_the_old_file(tmp_path):
     assert list(tmp_path.iterdir()) == [target]
 
 
-def test_leftovers_are_removed_but_not_those_of_a_living_writer(tmp_path):
-    target = tmp_path / "result.nc"
-    dead = tmp_path / ".result.nc.0123456789ab.partial"
-    other = tmp_path / ".other.nc.0123456789ab.partial"
-    dead.touch()
-    other.touch()
-    with atomic._temporary(target) as (_, living):
-        assert atomic.remove_leftovers(target) == [dead]
-        assert living.exists()
-        assert other.exists()
+def test_a_leftover_is_taken_by_the_next_write(tmp_path):
+    (tmp_path / ".result.nc.partial").write_bytes(b"longer than what follows")
+    atomic.write_bytes(tmp_path / "result.nc", b"new")
+    assert [(entry.name, entry.read_bytes()) for entry in tmp_path.iterdir()] == [("result.nc", b"new")]
 
 
 KILL_LOOP = """

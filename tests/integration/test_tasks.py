@@ -5,7 +5,6 @@ import functools
 import importlib
 import json
 import os
-import pickle
 import signal
 import subprocess
 import sys
@@ -19,7 +18,7 @@ import pytest
 
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
-from granular_response.sweeps import executor, keys, memory, processes
+from granular_response.sweeps import executor, keys, processes
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.memory import MemoryWarning
 from granular_response.sweeps.resources import using
@@ -298,32 +297,6 @@ def alive(pid: int) -> bool:
     return state != "Z"
 
 
-def test_a_result_that_does_not_load_is_computed_again(tmp_path):
-    expected = map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path)
-    for file in tmp_path.rglob("*.kept"):
-        file.write_bytes(file.read_bytes()[:-3])
-    assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path) == expected
-
-
-def test_a_planted_pickle_does_not_run(tmp_path):
-    expected = map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept")
-    for file in (tmp_path / "kept").rglob("*.kept"):
-        code = pickle.dumps(Planted(tmp_path / "mark"))
-        file.write_bytes(code + memory._seal(file.stem, code))
-    assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept") == expected
-    assert not (tmp_path / "mark").exists()
-
-
-class Planted:
-    """Leaves a mark when it is unpickled."""
-
-    def __init__(self, mark):
-        self.mark = mark
-
-    def __reduce__(self):
-        return Path.touch, (self.mark,)
-
-
 def test_scenes_with_different_tables_have_their_own_results(tmp_path):
     scenes = []
     for name, radius in (("a", 1.0), ("b", 0.5)):
@@ -366,12 +339,6 @@ def test_a_result_of_another_kind_is_returned_and_not_kept(tmp_path):
     with pytest.warns(MemoryWarning, match=r"a value is not kept: builtins.iter is no class"):
         (found,) = map_tasks(iter, [[1, 2]], workers=1, checkpoint=tmp_path / "kept")
     assert list(found) == [1, 2]
-
-
-def test_a_checkpoint_that_cannot_be_written_costs_a_warning(tmp_path):
-    (tmp_path / "kept").write_text("a file")
-    with pytest.warns(MemoryWarning, match=r"nothing more is kept there"):
-        assert map_tasks(slow_first, range(3), workers=1, checkpoint=tmp_path / "kept") == [0, 1, 2]
 
 
 def test_the_resources_in_use_name_the_folder(tmp_path):

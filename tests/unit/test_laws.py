@@ -14,7 +14,8 @@ from granular_response.cli import scene_reference
 from granular_response.contact import LAWS
 from granular_response.contact.law import elastic_force, energy, stiffness
 from granular_response.scene import Scene, SceneError
-from granular_response.scene.material import LAW_PARAMETERS, OUTSIDE_LAWS
+from granular_response.scene.material import KNOWN_LAWS
+from granular_response.solvers.laws import law_class
 from granular_response.solvers.problem import Problem
 from granular_response.sweeps.keys import key
 
@@ -22,21 +23,16 @@ from granular_response.sweeps.keys import key
 NAMES = [*LAWS, "cohesive"]
 
 
-def forget(name):
-    for known in (LAWS, LAW_PARAMETERS, OUTSIDE_LAWS):
-        del known[name]
-
-
 @pytest.fixture(autouse=True)
 def _cohesive():
     gr.register_law("cohesive", Cohesive, Cohesion)
     yield
-    forget("cohesive")
+    del KNOWN_LAWS["cohesive"]
 
 
 def law(name, reduced_radius=0.5, friction=0.2):
-    own = LAW_PARAMETERS[name]().model_dump()
-    return LAWS[name].of(3000.0, 54.0, 2400.0, 49.0, friction, -math.inf, reduced_radius, **own)
+    own = KNOWN_LAWS[name].parameters().model_dump()
+    return law_class(name).of(3000.0, 54.0, 2400.0, 49.0, friction, -math.inf, reduced_radius, **own)
 
 
 @nb.njit(error_model="numpy")
@@ -50,10 +46,9 @@ def shape_of(law, first=1.0, second=1.0):
 
 
 def test_a_scene_can_name_every_law():
-    assert set(LAW_PARAMETERS) == set(LAWS)
-    for name in LAWS:
+    for name in NAMES:
         problem = Problem.from_scene(Scene().updated({"contact.law": name}))
-        assert type(problem.pair_law) is type(problem.wall_law) is LAWS[name]
+        assert type(problem.pair_law) is type(problem.wall_law) is law_class(name)
     with pytest.raises(SceneError, match=r"contact\.law = .*must be linear or hertz or cohesive"):
         Scene().updated({"contact.law": "hertzian"})
 
@@ -167,7 +162,7 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
 
     scene = Scene().updated({"contact.law": "mine"})
     sent, before = pickle.dumps(scene), key(scene)
-    forget("mine")
+    del KNOWN_LAWS["mine"]
     del sys.modules["law_of_mine"]
     try:
         received = pickle.loads(sent)
@@ -175,7 +170,7 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
         file.write_text(MINE + "# another force\n")
         assert key(received) != before
     finally:
-        forget("mine")
+        del KNOWN_LAWS["mine"]
 
 
 @pytest.mark.parametrize(
@@ -191,4 +186,4 @@ def test_a_law_without_parameters_is_known_in_other_processes_and_tells_results_
 def test_a_law_that_lacks_something_is_refused(arguments, said):
     with pytest.raises(gr.GranularError, match=said):
         gr.register_law(*arguments)
-    assert "mine" not in LAWS
+    assert "mine" not in KNOWN_LAWS

@@ -89,7 +89,7 @@ def test_a_disk_rolls_to_rest():
     dynamics.advance(20_000)
     assert np.abs(dynamics.v).max() < 1e-3
     assert dynamics.position[0, 0] - 500.0 == pytest.approx(0.75 * speed**2 / 0.3, rel=5e-3)
-    assert dynamics.state().walls.rolling
+    assert dynamics.state().walls.resists_rolling
 
 
 @pytest.mark.parametrize("body", ["disk", "floor"])
@@ -268,3 +268,19 @@ def test_stiff_rolling_shortens_the_time_step():
         except RuntimeError:
             energy = np.inf
         assert (energy < 1e-12) == rests
+
+
+def test_an_event_names_the_contact_that_changes():
+    """Also where a wall contact and the rolling of a pair change at one load: a disk is where its wall contact is."""
+    load = {"disk": "top-centre", "force": [0.3, -6.0]}
+    rolls = {"contact__friction": 0.5, "contact__rolling_friction": 0.05, "contact__rolling_stiffness_ratio": 1.0}
+    solved = solve_scene(
+        scene(packing__layers=5, packing__disks_per_row=9, wall__friction=0.3, **rolls, loads=[load]),
+        load_factors=[1.0, 2.0],
+    )
+    at_wall = [event for state in solved.loaded for event in state.reached.events if event.at_wall]
+    position, box = solved.rest.position, solved.rest.box
+    for event in at_wall:
+        foot = box.on_wall(position[[event.first]], [event.second])[0]
+        assert np.hypot(event.x - foot[0], event.z - foot[1]) < 0.1
+    assert at_wall

@@ -83,15 +83,12 @@ class Result:
         return tuple(state.load_factor for state in self.loaded)
 
     @property
-    def certificates(self) -> tuple[Certificate | None, ...]:
-        """Unbalanced force and stability of each state, the initial equilibrium first.
-
-        None only where a file does not say.
-        """
-        return tuple(state.reached.certificate for state in (self.rest, *self.loaded))
+    def certificates(self) -> tuple[Certificate, ...]:
+        """Unbalanced force and stability of each state, the initial equilibrium first."""
+        return tuple(state.certificate for state in (self.rest, *self.loaded))
 
     @property
-    def certificate(self) -> Certificate | None:
+    def certificate(self) -> Certificate:
         """That of the last state."""
         return self.certificates[-1]
 
@@ -427,9 +424,6 @@ class Result:
             change = touching - int(self.rest.pairs.touching.sum())
             contacts = f"{touching} contacts between disks" + (f" ({change:+d})" if change else "")
             name = f"load factor {state.load_factor:g}" if k else "initial equilibrium"
-            if certificate is None:
-                rows.append((name, f"no certificate, {contacts}"))
-                continue
             stable = {True: "stable", False: "unstable", None: "stability not determined"}[certificate.stable]
             rows.append((name, f"{stable}, max. unbalanced force {certificate.force_residual:.1e}, {contacts}"))
         return rows

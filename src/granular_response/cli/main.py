@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import sys
-from contextlib import AbstractContextManager
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .. import __version__
+from ..errors import SolveError
 from .command_line import CommandLine, loaded
 
 if TYPE_CHECKING:
+    from ..api.terminal import TerminalProgress
     from ..solvers.solution import Solution
 
 PAPER = (
@@ -93,8 +97,6 @@ def example(
 
 def _keep(output: Path, solution: Solution, started: float, allow_unsettled: bool, said: str) -> None:
     """Store a solution. States that are still moving are kept too, but no success unless they were asked for."""
-    import time
-
     from ..store import files as store
     from ..store.result import to_dataset
 
@@ -106,11 +108,17 @@ def _keep(output: Path, solution: Solution, started: float, allow_unsettled: boo
         raise typer.Exit(1)
 
 
-def _compilation_told() -> AbstractContextManager[Any]:
-    """Say on a terminal that kernels are compiled, where they are."""
+@contextmanager
+def _computing(threads: int | None) -> Iterator[TerminalProgress]:
+    """On so many threads, with a line of progress; on a terminal it is said where kernels are compiled."""
     from ..api.compiling import logged
+    from ..api.terminal import TerminalProgress
+    from ..machine.threads import cores, using
 
-    return logged(commands.say if sys.stderr is not None and sys.stderr.isatty() else None)
+    loaded()
+    say = commands.say if sys.stderr is not None and sys.stderr.isatty() else None
+    with logged(say), using(threads or cores()), TerminalProgress() as progress:
+        yield progress
 
 
 @commands.command("run examples/slab.yaml -o slab.nc", "run scene.yaml -o scene-by-dynamics.nc --method dynamics")
@@ -128,9 +136,6 @@ def run(
 
     It settles under gravity and is then loaded; both states are stored with their certificate.
     """
-    import time
-
-    from ..api.terminal import TerminalProgress
     from ..scene import Scene, SceneError
     from ..store import files as store
 
@@ -140,14 +145,10 @@ def run(
         described = described.updated({"protocol.method": method})
     store.check_writable(output, [scene, *described.files])
 
-    from ..errors import SolveError
-    from ..machine.threads import cores, using
     from ..solvers.solution import solve_scene
 
-    loaded()
-
     try:
-        with _compilation_told(), using(threads or cores()), TerminalProgress() as progress:
+        with _computing(threads) as progress:
             solution = solve_scene(described, progress=progress)
     except (SceneError, SolveError) as error:
         if not str(error).startswith(str(scene)):
@@ -176,27 +177,21 @@ def continue_(
 
     The states so far are kept. The new ones are, to the last bit, those of a run that was never interrupted.
     """
-    import time
-
-    from ..api.terminal import TerminalProgress
     from ..store import files as store
 
     started = time.perf_counter()
     store.check_writable(output, [result])
 
-    from ..machine.threads import cores, using
     from ..scene import SceneError
     from ..solvers.solution import continue_solution
     from ..store.checked import read_result
     from ..store.result import ResultError, solution_from
 
-    loaded()
-
     stored = read_result(result)
     try:
         solution = solution_from(stored, folder=folder)
         store.check_writable(output, solution.scene.files)
-        with _compilation_told(), using(threads or cores()), TerminalProgress() as progress:
+        with _computing(threads) as progress:
             solution = continue_solution(solution, to, progress=progress)
     except (ResultError, SceneError) as error:
         raise ResultError(f"{result}: {error}") from error

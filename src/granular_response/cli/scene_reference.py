@@ -6,14 +6,15 @@ What is allowed is not written down a second time either: it is what the message
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
-from typing import Any, get_args
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, NamedTuple, get_args
 
 from .. import scene
 from ..scene import text as yaml_text
-from ..scene.base import UNITS, Description
+from ..scene.base import Description, unit_of
 from ..scene.lattice import LatticePacking
-from ..scene.material import LAW_PARAMETERS
+from ..scene.material import KNOWN_LAWS
 from ..store import generated
 
 #: Name of the generated lines.
@@ -22,8 +23,7 @@ BLOCK = "keys"
 _WRONG: Any = [[]]
 
 
-@dataclass(frozen=True)
-class Key:
+class Key(NamedTuple):
     """One key of a scene file; all texts are for people."""
 
     path: str  #: contact.friction, loads[].force
@@ -32,19 +32,14 @@ class Key:
     unit: str  #: empty without one
     meaning: str
 
-    def words(self) -> tuple[str, str, str]:
-        """What is allowed, the unit, the meaning."""
-        return self.allowed, self.unit, self.meaning
 
-
-@dataclass(frozen=True)
-class Section:
+class Section(NamedTuple):
     """The keys of one part of a scene."""
 
     title: str
     place: str  #: of the part in a scene
     model: type[Description]
-    given: dict[str, Any] = field(default_factory=dict)  #: keys that must be there, with values that are allowed
+    given: Mapping[str, Any] = MappingProxyType({})  #: keys that must be there, with values that are allowed
     left_out: frozenset[str] = frozenset()  #: keys that another section has
 
     def listed(self) -> list[Key]:
@@ -56,22 +51,11 @@ class Section:
             if info.description is None:
                 raise TypeError(f"{self.model.__name__}.{name} has no description")
             required = info.is_required() or name == "kind"
+            default = "" if required else _spelled(info.get_default(call_default_factory=True))
             found.append(
-                Key(
-                    path=f"{self.place}.{name}",
-                    default="" if required else _spelled(_plain(info.get_default(call_default_factory=True))),
-                    allowed=self._allowed(name),
-                    unit=self._unit(name, info),
-                    meaning=info.description,
-                )
+                Key(f"{self.place}.{name}", default, self._allowed(name), unit_of(name, info), info.description)
             )
         return found
-
-    def _unit(self, name: str, info: Any) -> str:
-        """That of a key with a number; a law says the units of its parameters itself (``json_schema_extra``)."""
-        if isinstance(info.json_schema_extra, dict) and "unit" in info.json_schema_extra:
-            return str(info.json_schema_extra["unit"])
-        return UNITS[name] if _holds_float(info.annotation) else ""
 
     def _allowed(self, name: str) -> str:
         """What the message about a wrong value says."""
@@ -109,8 +93,11 @@ SECTIONS = (
 
 def sections() -> list[Section]:
     """All sections, with those of laws that have parameters."""
-    laws = LAW_PARAMETERS.items()
-    own = [Section(f"Parameters of the law {name}", "contact.parameters", of) for name, of in laws if of.model_fields]
+    own = [
+        Section(f"Parameters of the law {name}", "contact.parameters", known.parameters)
+        for name, known in KNOWN_LAWS.items()
+        if known.parameters.model_fields
+    ]
     return [*SECTIONS, *own]
 
 
@@ -121,32 +108,32 @@ def every() -> list[Key]:
 
 def lines() -> str:
     """All keys as Markdown: the parts of a scene, then a table for each."""
-    parts = [
-        _table(("part", "meaning"), [(f"`{n}`", f.description or "") for n, f in scene.Scene.model_fields.items()])
-    ]
+    parts = [(f"`{name}`", info.description or "") for name, info in scene.Scene.model_fields.items()]
+    found = [_table(("part", "meaning"), parts)]
     for section in sections():
-        rows: list[tuple[str, ...]] = [
-            (f"`{key.path}`", f"`{key.default}`" if key.default else "must be given", *key.words())
+        rows = [
+            (f"`{key.path}`", f"`{key.default}`" if key.default else "must be given", *key[2:])
             for key in section.listed()
         ]
-        parts += [f"## {section.title}", _table(("key", "default", "allowed", "unit", "meaning"), rows)]
-    return "\n\n".join(parts)
+        found += [f"## {section.title}", _table(("key", "default", "allowed", "unit", "meaning"), rows)]
+    return "\n\n".join(found)
 
 
 def plain(part: str = "") -> str:
     """The keys whose path begins with ``part``, for a terminal. Raises SceneError if there is none."""
-    paragraphs = []
-    for section in sections():
-        chosen = [key for key in section.listed() if key.path.startswith(part)]
-        if chosen:
-            paragraphs.append(f"{section.title}:")
-        for key in chosen:
-            unit = f" [{key.unit}]" if key.unit else ""
-            default = f"default {key.default}" if key.default else "must be given"
-            paragraphs.append(f"  {key.path}{unit}: {default}\n    {key.allowed}\n    {key.meaning}")
-    if not paragraphs:
-        raise scene.SceneError(f"no key of a scene begins with {part}, parts are {', '.join(scene.Scene.model_fields)}")
-    return "\n".join(paragraphs)
+    if text := "\n".join(line for section in sections() for line in _paragraphs(section, part)):
+        return text
+    raise scene.SceneError(f"no key of a scene begins with {part}, parts are {', '.join(scene.Scene.model_fields)}")
+
+
+def _paragraphs(section: Section, part: str) -> Iterator[str]:
+    chosen = [key for key in section.listed() if key.path.startswith(part)]
+    if chosen:
+        yield f"{section.title}:"
+    for key in chosen:
+        unit = f" [{key.unit}]" if key.unit else ""
+        default = f"default {key.default}" if key.default else "must be given"
+        yield f"  {key.path}{unit}: {default}\n    {key.allowed}\n    {key.meaning}"
 
 
 def renew(file: str | os.PathLike[str]) -> None:
@@ -154,19 +141,12 @@ def renew(file: str | os.PathLike[str]) -> None:
     generated.renew(file, BLOCK, lines())
 
 
-def _plain(value: Any) -> Any:
-    return value.model_dump() if isinstance(value, Description) else value
-
-
 def _spelled(value: Any) -> str:
-    return yaml_text.write(value).removesuffix("...\n").strip()
+    plain = value.model_dump() if isinstance(value, Description) else value
+    return yaml_text.write(plain).removesuffix("...\n").strip()
 
 
-def _holds_float(annotation: Any) -> bool:
-    return annotation is float or any(_holds_float(part) for part in get_args(annotation))
-
-
-def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     """A Markdown table; a bar within a cell would end it."""
     texts = [head, ("---",) * len(head), *(tuple(cell.replace("|", "\\|") for cell in row) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in texts)

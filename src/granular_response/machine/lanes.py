@@ -123,20 +123,23 @@ def _negative(context, builder, sig, args):
     return builder.fneg(args[0])
 
 
-def _vector_function(builder, name, value):
-    function = cgutils.get_or_insert_function(
-        builder.module, ir.FunctionType(_DOUBLES, [_DOUBLES]), f"llvm.{name}.v{WIDTH}f64"
-    )
-    return builder.call(function, [value])
+def _kind(like):
+    return LANES if like in (LANES, MASK) else types.float64
 
 
-def _scalar_function(name):
-    def generate(context, builder, sig, args):
-        double = ir.DoubleType()
-        function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(double, [double]), f"llvm.{name}.f64")
-        return builder.call(function, args)
+def _alike(builder, sig, args):
+    """Arguments as lanes where the result is."""
+    if sig.return_type != LANES:
+        return args
+    return [value if k == MASK else _as_lanes(builder, k, value) for k, value in zip(sig.args, args, strict=True)]
 
-    return types.float64(types.float64), generate
+
+def _llvm(builder, name, values):
+    """Call an intrinsic function of LLVM, for lanes or doubles."""
+    kind = values[0].type
+    suffix = f"v{WIDTH}f64" if kind == _DOUBLES else "f64"
+    function = ir.FunctionType(kind, [kind] * len(values))
+    return builder.call(cgutils.get_or_insert_function(builder.module, function, f"llvm.{name}.{suffix}"), values)
 
 
 def _is_line(array) -> bool:
@@ -207,18 +210,10 @@ def spread(typing, value):
 @intrinsic
 def select(typing, condition, yes, no):
     """``yes`` where ``condition`` holds and else ``no``, without a branch; both are evaluated."""
-    if condition == MASK:
-
-        def generate(context, builder, sig, args):
-            yes, no = (_as_lanes(builder, k, v) for k, v in zip(sig.args[1:], args[1:], strict=True))
-            return builder.select(args[0], yes, no)
-
-        return LANES(MASK, *(LANES if k == LANES else types.float64 for k in (yes, no))), generate
-
-    def generate_scalar(context, builder, sig, args):
-        return builder.select(*args)
-
-    return types.float64(types.boolean, types.float64, types.float64), generate_scalar
+    result = _kind(condition)
+    kinds = [LANES if k == LANES else types.float64 for k in (yes, no)]
+    signed = result(MASK if result == LANES else types.boolean, *kinds)
+    return signed, lambda context, builder, sig, args: builder.select(*_alike(builder, sig, args))
 
 
 def _any(builder, mask):
@@ -234,63 +229,47 @@ def anywhere(typing, condition):
 @intrinsic
 def root(typing, value):
     """Square root."""
-    if value == LANES:
-        return LANES(LANES), lambda context, builder, sig, args: _vector_function(builder, "sqrt", args[0])
-    return _scalar_function("sqrt")
+    kind = _kind(value)
+    return kind(kind), lambda context, builder, sig, args: _llvm(builder, "sqrt", args)
 
 
 @intrinsic
 def magnitude(typing, value):
     """Absolute value."""
-    if value == LANES:
-        return LANES(LANES), lambda context, builder, sig, args: _vector_function(builder, "fabs", args[0])
-    return _scalar_function("fabs")
+    kind = _kind(value)
+    return kind(kind), lambda context, builder, sig, args: _llvm(builder, "fabs", args)
 
 
 @intrinsic
 def quotient_where(typing, condition, dividend, divisor, otherwise):
     """``dividend / divisor`` where ``condition`` holds and else ``otherwise``; no lane divides when none has to."""
-    if condition == MASK:
+    result = _kind(condition)
+    kinds = [LANES if k == LANES else types.float64 for k in (dividend, divisor, otherwise)]
 
-        def generate(context, builder, sig, args):
-            condition = args[0]
-            dividend, divisor, otherwise = (
-                _as_lanes(builder, k, v) for k, v in zip(sig.args[1:], args[1:], strict=True)
-            )
-            result = cgutils.alloca_once_value(builder, otherwise)
-            with builder.if_then(_any(builder, condition)):
-                builder.store(builder.select(condition, builder.fdiv(dividend, divisor), otherwise), result)
-            return builder.load(result)
+    def generate(context, builder, sig, args):
+        condition, dividend, divisor, otherwise = _alike(builder, sig, args)
+        if result != LANES:
+            return builder.select(condition, builder.fdiv(dividend, divisor), otherwise)
+        found = cgutils.alloca_once_value(builder, otherwise)
+        with builder.if_then(_any(builder, condition)):
+            builder.store(builder.select(condition, builder.fdiv(dividend, divisor), otherwise), found)
+        return builder.load(found)
 
-        return LANES(MASK, *(LANES if k == LANES else types.float64 for k in (dividend, divisor, otherwise))), generate
-
-    def generate_scalar(context, builder, sig, args):
-        condition, dividend, divisor, otherwise = args
-        return builder.select(condition, builder.fdiv(dividend, divisor), otherwise)
-
-    return types.float64(types.boolean, types.float64, types.float64, types.float64), generate_scalar
+    return result(MASK if result == LANES else types.boolean, *kinds), generate
 
 
 @intrinsic
 def less_product(typing, value, factor, other):
     """``value - factor * other`` rounded once; ``factor`` may be a float for all lanes."""
-    if value == LANES:
+    kind = _kind(value)
 
-        def generate(context, builder, sig, args):
-            fused = cgutils.get_or_insert_function(
-                builder.module, ir.FunctionType(_DOUBLES, [_DOUBLES] * 3), f"llvm.fma.v{WIDTH}f64"
-            )
-            factor = _as_lanes(builder, sig.args[1], builder.fneg(args[1]))
-            return builder.call(fused, [factor, args[2], args[0]])
+    def generate(context, builder, sig, args):
+        factor = builder.fneg(args[1])
+        if kind == LANES:
+            factor = _as_lanes(builder, sig.args[1], factor)
+        return _llvm(builder, "fma", [factor, args[2], args[0]])
 
-        return LANES(LANES, LANES if factor == LANES else types.float64, LANES), generate
-
-    def generate_scalar(context, builder, sig, args):
-        double = ir.DoubleType()
-        fused = cgutils.get_or_insert_function(builder.module, ir.FunctionType(double, [double] * 3), "llvm.fma.f64")
-        return builder.call(fused, [builder.fneg(args[1]), args[2], args[0]])
-
-    return types.float64(types.float64, types.float64, types.float64), generate_scalar
+    return kind(kind, LANES if factor == LANES else types.float64, kind), generate
 
 
 @intrinsic

@@ -97,7 +97,7 @@ def audit(
     ValueError
         For a state whose contacts resist rolling: their couples are not summed here.
     """
-    if state.pairs.rolling or state.walls.rolling:
+    if state.pairs.resists_rolling or state.walls.resists_rolling:
         raise ValueError("state: its contacts resist rolling, which is not checked")
     n = len(radius)
     x = state.position

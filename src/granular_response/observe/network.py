@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from ..state import SLIDING, Contacts, FloatArray, State
 from .difference import require_same
+from .floor import interior_mask
 
 #: Directions of the triangular lattice, as returned by :func:`lattice_direction`.
 HORIZONTAL, RISING, FALLING = 0, 1, 2
@@ -79,10 +80,7 @@ def interior_contacts(state: State, width: float, margin: float = 10.0) -> BoolA
 
     Raises ``ValueError`` if nothing can be in the interior.
     """
-    if not 0.0 <= margin < width / 2.0:
-        raise ValueError(f"margin: {margin} given; it must be at least 0 and less than half the width {width}")
-    x = contact_centre(state)[:, 0]
-    return (x >= margin) & (x <= width - margin)
+    return interior_mask(contact_centre(state)[:, 0], width, margin)
 
 
 def bulk_disks(state: State, width: float, side_margin: float = 10.0, vertical_margin: float = 4.0) -> BoolArray:

@@ -58,7 +58,7 @@ class Shown:
                 raise TypeError(f"result: must be a Result or its dataset, not {kind} (open_result reads a file)")
             result = result.to_dataset()
         if not {"position", "contact_force", "wall_force", "state_load_factor"} <= set(result.variables):
-            raise PictureError("result: the dataset holds no states of a packing (open_result reads older files)")
+            raise PictureError("result: the dataset holds no states of a packing (open_result reads a file)")
         if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
             raise PictureError(f"state = {state!r}: must be an integer, 0 for the initial equilibrium")
         count = result.sizes["state"]
@@ -83,7 +83,7 @@ class Shown:
 
     @property
     def box(self) -> Box:
-        return Box(float(self.data.attrs["width"]), self.data.attrs.get("sides") == "periodic")
+        return Box.of(self.data.attrs)
 
     @property
     def top(self) -> float:
@@ -140,7 +140,7 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     with style.context():
         axes = _axes(ax, 0.36)
         forces = np.atleast_1d(shown.data["total_force"].values)
-        branch = _branches(shown)
+        branch = _load_branches(shown)
         for k, (curve, force) in enumerate(zip(values, forces, strict=True)):
             if np.isnan(curve).all():  # unloaded: floor draws what is left
                 continue
@@ -155,7 +155,7 @@ def response(result: HasDataset | xr.Dataset, *, ax: Axes | None = None, **line:
     return axes
 
 
-def _branches(shown: Shown) -> list[str]:
+def _load_branches(shown: Shown) -> list[str]:
     """What a legend adds to each load: its branch, where not all are on the first."""
     branch = shown.data["branch"].values.tolist() if "branch" in shown.data.variables else []
     told = any(one != "loading" for one in branch)

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from . import formats
-from .base import Description, Positive, Sides, Vector
+from .base import PackingDescription, Positive, Sides, Vector
 from .disks import packed
 from .errors import Problem
 from .packing import Packing
@@ -23,7 +23,7 @@ def _check_numbers(value: Any) -> Any:
 Column = Annotated[tuple[float, ...], BeforeValidator(_check_numbers)]
 
 
-class ArrayPacking(Description):
+class ArrayPacking(PackingDescription):
     """Disks given by their numbers; ``Scene.from_arrays`` makes one of arrays.
 
     Lengths are in any one unit, masses too. Every centre lies above the floor and between the side walls; periodic
@@ -73,14 +73,6 @@ class ArrayPacking(Description):
     def disk_count(self) -> int:
         """Number of disks."""
         return len(self.x)
-
-    @property
-    def periodic(self) -> bool:
-        """Whether the sides are periodic."""
-        return self.sides == "periodic"
-
-    def half(self) -> None:
-        """See ``LatticePacking.half``: disks of one's own have no smaller packing."""
 
     def build(self) -> Packing:
         """Rescale the disks."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, WrapValidator, model_validator
+from pydantic.fields import FieldInfo
 
 from .errors import Problem, from_validation, suggestion
 
@@ -46,6 +47,12 @@ UNITS = {
 }
 
 
+def unit_of(name: str, info: FieldInfo) -> str:
+    """The unit of a key; a law says those of its parameters itself (``json_schema_extra``)."""
+    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+    return str(extra.get("unit", UNITS.get(name, "")))
+
+
 class _Public(ModelMetaclass):
     """Has ``help`` and ``dir`` list what a description adds, and nothing of pydantic."""
 
@@ -60,9 +67,6 @@ class Description(BaseModel, metaclass=_Public):
     """Frozen, validated data; a value that is not allowed or a key that does not exist is a SceneError."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-    #: Keys that are gone, and what took their place.
-    replaced: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, /, **data: Any) -> None:
         try:
@@ -81,9 +85,7 @@ class Description(BaseModel, metaclass=_Public):
             default = inspect.Parameter.empty if info.is_required() else info.get_default(call_default_factory=True)
             parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default))
             shown = "must be given" if info.is_required() else f"default {default!r}"
-            extra = info.json_schema_extra
-            named = extra.get("unit") if isinstance(extra, dict) else UNITS.get(name)
-            unit = f" [{named}]" if named else ""
+            unit = f" [{unit_of(name, info)}]" if unit_of(name, info) else ""
             lines += [f"{name} : {shown}{unit}", textwrap.indent(textwrap.fill(info.description or "", 112), "    ")]
         cls.__signature__ = inspect.Signature(parameters)
         text, title, examples = inspect.cleandoc(cls.__doc__ or "").partition("\n\nExamples\n")
@@ -108,8 +110,6 @@ class Description(BaseModel, metaclass=_Public):
         if not isinstance(data, Mapping):
             raise Problem(f"must be a mapping with keys among {keys}" if keys else "must be {}")
         for key, value in data.items():
-            if isinstance(key, str) and key in cls.replaced:
-                raise Problem(cls.replaced[key], key=(key,), value=value)
             if key not in cls.model_fields:
                 raise Problem(
                     f"unknown key{suggestion(key, cls.model_fields)} (allowed: {keys or 'none'})",
@@ -166,3 +166,21 @@ Sides = Annotated[
         description="Side walls, or periodic sides.",
     ),
 ]
+
+
+class PackingDescription(Description):
+    """What all descriptions of packings share."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the sides are periodic."""
+        return getattr(self, "sides", "walls") == "periodic"
+
+    @property
+    def disk_count(self) -> int:
+        """Number of disks; 0 where only a file knows it."""
+        return 0
+
+    def half(self) -> Self | None:
+        """One of the same shape with half as many rows and half as wide; None where there is none."""
+        return None

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from .base import Description, Fraction, Index, Sides, allowed
+from .base import Fraction, Index, PackingDescription, Sides, allowed
 from .errors import Problem
 from .packing import Packing, exact_mean
 
@@ -28,7 +28,7 @@ LatticeConstant = Annotated[
 LEAST_PERIOD = 5
 
 
-class LatticePacking(Description):
+class LatticePacking(PackingDescription):
     """What slab and pile share: a triangular lattice, and radii drawn from one interval."""
 
     kind: str
@@ -50,11 +50,6 @@ class LatticePacking(Description):
         "polydispersity.",
     )
 
-    @property
-    def periodic(self) -> bool:
-        """Whether the sides are periodic."""
-        return False
-
     def row_count(self) -> NDArray[np.int64]:
         """(rows,) number of disks in each row, from the bottom."""
         raise NotImplementedError
@@ -62,10 +57,6 @@ class LatticePacking(Description):
     def _left(self) -> NDArray[np.int64]:
         """(rows,) left end of each row, in half lattice constants from the left end of the first."""
         raise NotImplementedError
-
-    def half(self) -> LatticePacking | None:
-        """One of the same shape with half as many rows and half as wide; None where there is none."""
-        return None
 
     @property
     def disk_count(self) -> int:
@@ -139,10 +130,6 @@ class SlabPacking(LatticePacking):
             raise Problem(rule, key=("disks_per_row",), value=self.disks_per_row)
         return self
 
-    @property
-    def periodic(self) -> bool:
-        return self.sides == "periodic"
-
     def row_count(self) -> NDArray[np.int64]:
         if self.periodic:
             return np.full(self.layers, self.disks_per_row)
@@ -151,7 +138,7 @@ class SlabPacking(LatticePacking):
     def _left(self) -> NDArray[np.int64]:
         return np.arange(self.layers) % 2
 
-    def half(self) -> SlabPacking | None:
+    def half(self) -> Self | None:
         if self.layers < 2 or self.periodic:
             return None
         return self.model_copy(update={"layers": self.layers // 2, "disks_per_row": (self.disks_per_row + 1) // 2})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 from pydantic import (
     BeforeValidator,
@@ -23,22 +23,21 @@ class NoParameters(Description):
     """A contact law without parameters of its own."""
 
 
-#: By the name of a contact law, the description of the parameters that it brings.
-LAW_PARAMETERS: dict[str, type[Description]] = {"linear": NoParameters, "hertz": NoParameters}
-#: Laws from outside the package, by their names.
-OUTSIDE_LAWS: dict[str, type] = {}
+class KnownLaw(NamedTuple):
+    """What scenes know of a contact law."""
+
+    parameters: type[Description] = NoParameters  #: of its own
+    law: type | None = None  #: of a law from outside the package, its class
+
+
+#: Contact laws by the name that a scene file has for them; those of the package are in ``contact.LAWS``.
+KNOWN_LAWS = {"linear": KnownLaw(), "hertz": KnownLaw()}
 
 
 def _check_law(value: Any) -> Any:
-    if not isinstance(value, str) or value not in LAW_PARAMETERS:
-        raise Problem(f"must be {' or '.join(LAW_PARAMETERS)}{suggestion(value, LAW_PARAMETERS)}")
+    if not isinstance(value, str) or value not in KNOWN_LAWS:
+        raise Problem(f"must be {' or '.join(KNOWN_LAWS)}{suggestion(value, KNOWN_LAWS)}")
     return value
-
-
-def law_parameters(law: str, values: Any) -> Description:
-    """The parameters of a law from a mapping, with its defaults; raises ``ValidationError`` for what it has not."""
-    data = values.model_dump() if isinstance(values, Description) else values
-    return LAW_PARAMETERS.get(law, NoParameters).model_validate(data)
 
 
 class Sparse(Description):
@@ -99,11 +98,12 @@ class Contact(Sparse):
     @field_validator("parameters", mode="plain")
     @classmethod
     def _check_parameters(cls, value: Any, info: ValidationInfo) -> Description:
-        return law_parameters(info.data.get("law", "linear"), value)
+        known = KNOWN_LAWS[info.data.get("law", "linear")]  # another law was refused, and is left out of the data
+        return known.parameters.model_validate(value.model_dump() if isinstance(value, Description) else value)
 
     def __getstate__(self) -> dict[Any, Any]:
         """With the class of the law: its module, which registers it, is imported where this is unpickled."""
-        return {**super().__getstate__(), "law": OUTSIDE_LAWS.get(self.law)}
+        return {**super().__getstate__(), "law": KNOWN_LAWS[self.law].law}
 
     @property
     def rolls(self) -> bool:

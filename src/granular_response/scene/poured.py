@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from ..state import FloatArray
-from .base import Description, Fraction, Index, Positive, Sides, allowed
+from .base import Fraction, Index, PackingDescription, Positive, Sides, allowed
 from .errors import Problem
 from .packing import Packing, exact_mean
 
@@ -38,7 +38,7 @@ def _check_positive(value: Any) -> Any:
 Numbers = Annotated[tuple[float, ...], BeforeValidator(_check_positive)]
 
 
-class PouredPacking(Description):
+class PouredPacking(PackingDescription):
     """Disks of random sizes, poured one after the other: each rolls down to the first hollow. A disordered packing.
 
     Examples
@@ -78,14 +78,6 @@ class PouredPacking(Description):
     def disk_count(self) -> int:
         """Number of disks."""
         return self.disks
-
-    @property
-    def periodic(self) -> bool:
-        """Whether the sides are periodic."""
-        return self.sides == "periodic"
-
-    def half(self) -> None:
-        """See ``LatticePacking.half``: a disordered packing has no smaller one of its shape."""
 
     def build(self) -> Packing:
         """Pour the disks: the same ones, in the same places, each time."""

@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from ..inputs import read_text
 from . import text as yaml_text
 from .arrays import ArrayPacking, listed, shortened
-from .base import MOST_STIFFNESS, PACKING_KINDS, Description
+from .base import MOST_STIFFNESS, PACKING_KINDS, Description, PackingDescription
 from .errors import Problem, SceneError, SceneFileError, from_validation, show, show_key, suggestion
 from .lattice import LatticePacking, PilePacking, SlabPacking
 from .load import TOP_CENTRE, Load, TopSelector, check_disk
@@ -28,7 +28,7 @@ from .table import FilePacking
 
 def _check_kind(value: Any) -> Any:
     """Say what is wrong with the kind before pydantic's tagged union looks at it."""
-    if isinstance(value, (SlabPacking, PilePacking, PouredPacking, FilePacking, ArrayPacking)):
+    if isinstance(value, PackingDescription):
         return value
     choices = " or ".join(PACKING_KINDS)
     if not isinstance(value, Mapping):

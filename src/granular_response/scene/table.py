@@ -11,12 +11,10 @@ import numpy as np
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, model_validator
 
 from . import formats
-from .base import Description, Positive, Sides, Vector, allowed
+from .base import PackingDescription, Positive, Sides, Vector, allowed
 from .disks import ROUNDING, packed
 from .errors import Problem, SceneError, describe, show
 from .packing import Packing, exact_mean
-
-_FORMATS = " or ".join(formats.SUFFIXES)
 
 
 def _printable(text: str) -> str:
@@ -25,17 +23,13 @@ def _printable(text: str) -> str:
     return text
 
 
-def _known(text: str) -> str:
-    if text not in formats.SUFFIXES:
-        raise Problem("")
-    return text
-
-
 FileName = Annotated[str, Field(strict=True), AfterValidator(_printable), allowed("must be the path of a file")]
-Format = Annotated[str, Field(strict=True), AfterValidator(_known), allowed(f"must be {_FORMATS}")]
+Format = Annotated[
+    Literal["csv", "lammps-data", "lammps-dump", "yade", "gsd"], allowed(f"must be {' or '.join(formats.SUFFIXES)}")
+]
 
 
-class FilePacking(Description):
+class FilePacking(PackingDescription):
     """Disks from a file: CSV with the columns x, z and radius, or what another program wrote (``scene.formats``).
 
     Lengths are in any one unit. Every centre lies above the floor and between the side walls; periodic sides take any
@@ -79,11 +73,6 @@ class FilePacking(Description):
         return own
 
     @property
-    def disk_count(self) -> int:
-        """0: only the file knows the number of disks."""
-        return 0
-
-    @property
     def folder(self) -> str | None:
         """Folder at which a relative path starts; None for the current one."""
         return self._folder
@@ -92,14 +81,6 @@ class FilePacking(Description):
     def file(self) -> Path:
         """The table's place."""
         return Path(self._folder or ".", self.path)
-
-    @property
-    def periodic(self) -> bool:
-        """Whether the sides are periodic."""
-        return self.sides == "periodic"
-
-    def half(self) -> None:
-        """See ``LatticePacking.half``: a table has no smaller one."""
 
     def build(self) -> Packing:
         """Read the table and rescale it.

@@ -1,4 +1,4 @@
-"""Contact laws from outside the package."""
+"""Contact laws by their names, those from outside the package too."""
 
 from __future__ import annotations
 
@@ -8,13 +8,11 @@ from ..contact import LAWS, Law
 from ..errors import GranularError
 from ..scene import SceneError
 from ..scene.base import Description
-from ..scene.material import LAW_PARAMETERS, OUTSIDE_LAWS, NoParameters
+from ..scene.material import KNOWN_LAWS, KnownLaw, NoParameters
 
-#: What a law must have; see :class:`granular_response.contact.law.Law`.
-FIELDS = (
-    "normal_stiffness", "normal_damping", "tangential_stiffness", "tangential_damping", "friction", "least_force",
-)  # fmt: skip
-METHODS = ("of", "elastic_force", "stiffness", "energy", "shapes", "stiffest", "softened", "without_friction")
+#: What a law must have: the constants and the methods of the protocol.
+FIELDS = tuple(name for name, part in vars(Law).items() if isinstance(part, property))
+METHODS = tuple(name for name in vars(Law) if name not in FIELDS and not name.startswith("_"))
 
 
 class LawError(GranularError, ValueError):
@@ -48,8 +46,8 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
     """
     if not isinstance(name, str) or not name.isidentifier():
         raise LawError(f"name = {name!r}: must be letters, digits and underscores")
-    if LAWS.get(name, law) is not law:
-        raise LawError(f"name = {name!r}: is the name of another law, {LAWS[name].__qualname__}")
+    if name in KNOWN_LAWS and law_class(name) is not law:
+        raise LawError(f"name = {name!r}: is the name of another law, {law_class(name).__qualname__}")
     lacks = [part for part in FIELDS if part not in getattr(law, "_fields", ())]
     lacks += [part for part in METHODS if not callable(getattr(law, part, None))]
     if lacks:
@@ -62,4 +60,9 @@ def register_law(name: str, law: type[Law], parameters: type[Description] = NoPa
         raise LawError(
             f"law = {law.__qualname__}: {error}; parameters must have defaults, and of() take them"
         ) from None
-    LAWS[name], LAW_PARAMETERS[name], OUTSIDE_LAWS[name] = law, parameters, law
+    KNOWN_LAWS[name] = KnownLaw(parameters, law)
+
+
+def law_class(name: str) -> type[Law]:
+    """The class of the contact law that a scene names."""
+    return KNOWN_LAWS[name].law or LAWS[name]

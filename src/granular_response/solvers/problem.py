@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import LAWS, RULES, Law
+from ..contact import RULES, Law
 from ..contact.rolling import Rolling, arms
 from ..kernels import neighbours, statics
 from ..machine.lanes import WIDTH, aligned, aligned_zeros
@@ -22,6 +22,7 @@ from ..state.box import WALL_MEANINGS
 from .choice import Plan, plan
 from .close_pairs import close_pairs
 from .held import NOTHING, Held
+from .laws import law_class
 
 #: Largest gap of a listed candidate pair (mean radii). Half of it is how far disks may move before the list
 #: is made again.
@@ -107,7 +108,7 @@ def _laws(scene: Scene) -> tuple[Law, Law]:
     least = -np.inf if scene.protocol.tensile_dashpot else 0.0
 
     def law(m: Contact, reduced_radius: float) -> Law:
-        whole = LAWS[scene.contact.law].of(
+        whole = law_class(scene.contact.law).of(
             m.normal_stiffness, m.normal_damping, m.tangential_stiffness, m.tangential_damping,
             m.friction, least, reduced_radius, **m.parameters.model_dump(),
         )  # fmt: skip

@@ -7,7 +7,9 @@ are made here, from positions that are never wrapped.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +41,11 @@ class Box:
 
     width: float  #: distance of the side walls, or period
     periodic: bool = False  #: periodic sides in place of walls
+
+    @classmethod
+    def of(cls, attributes: Mapping[Any, Any]) -> Box:
+        """The box that the attributes ``width`` and ``sides`` of a stored result describe."""
+        return cls(float(attributes["width"]), attributes.get("sides") == "periodic")
 
     @property
     def period(self) -> float | None:

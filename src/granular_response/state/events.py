@@ -11,7 +11,7 @@ CONTACT_EVENTS = ("opens", "closes", "slides", "sticks", "reverses")
 #: What it does along the rolling.
 ROLLING_EVENTS = ("rolls", "stops rolling", "rolls back")
 #: What happens to an equilibrium that ends: a longer increment finds the next one nearby, the motion of the disks leads
-#: to it, or one of several branches is taken.
+#: to it, or to one of several.
 LOST_EVENTS = ("stepped over", "jump", "bifurcation")
 
 
@@ -23,7 +23,7 @@ class Event:
     it) or ``"reverses"`` (slides the other way); where it resists rolling also ``"rolls"`` (reaches the limit of that),
     ``"stops rolling"`` or ``"rolls back"``. Where an equilibrium is lost it is ``"stepped over"`` (the next one is
     near, under a slightly larger load), ``"jump"`` (the motion of the disks leads to it) or ``"bifurcation"`` (it is
-    unstable, and the motion leads to one of the branches). Lengths are in mean disk radii.
+    unstable, and the motion leads to one of several others). Lengths are in mean disk radii.
 
     Examples
     --------

@@ -55,7 +55,7 @@ class Contacts:
         return self.status == SLIDING
 
     @property
-    def rolling(self) -> bool:
+    def resists_rolling(self) -> bool:
         """Whether some contact rolls against a resistance."""
         return bool((self.rolling_status != OPEN).any())
 

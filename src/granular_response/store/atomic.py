@@ -1,8 +1,8 @@
 """A whole file or none: bytes go to a temporary file beside the target, which then replaces it in one step.
 
 Whatever happens in between (no space left, an error, a killed process), a file that stood there before is
-untouched. What a killed process leaves is named ``.NAME.RANDOM.partial`` and removed by the next write of the
-same file; a lock held by the living tells it from a write that is still going on.
+untouched. What a killed process leaves is named ``.NAME.partial`` and taken by the next write of the same file; a
+writer holds a lock on it, so that two at once come one after the other.
 
 Only a regular file is replaced: a link is followed and stays, a device, a pipe or a folder is refused, and so is a
 file that the same command reads (``check_writable``).
@@ -13,9 +13,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import fcntl
-import glob
 import os
-import secrets
 import stat
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -39,7 +37,6 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, check: Callable[[byte
         If the file cannot be written, or reads back differently.
     """
     target = _regular(path)
-    remove_leftovers(target)
     with _temporary(target) as (descriptor, temporary):
         with contextlib.suppress(FileNotFoundError):
             os.fchmod(descriptor, stat.S_IMODE(os.stat(target).st_mode))
@@ -89,39 +86,31 @@ def _regular(path: str | os.PathLike[str]) -> Path:
     return target
 
 
-def remove_leftovers(path: str | os.PathLike[str]) -> list[Path]:
-    """Remove the temporary files that killed writes of ``path`` left beside it; returns their paths."""
-    target = Path(path)
-    removed: list[Path] = []
-    for leftover in target.parent.glob(f".{glob.escape(target.name)}.*.partial"):
-        with contextlib.suppress(OSError):
-            descriptor = os.open(leftover, os.O_RDWR)
-            try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)  # fails while its writer lives
-                os.unlink(leftover)
-                removed.append(leftover)
-            finally:
-                os.close(descriptor)
-    return removed
-
-
 @contextlib.contextmanager
 def _temporary(target: Path) -> Iterator[tuple[int, Path]]:
-    """A new, locked file beside ``target``, gone at the end unless it was moved away."""
+    """An empty, locked file beside ``target``, gone at the end unless it was moved away."""
+    temporary = target.with_name(f".{target.name}.partial")
     while True:
-        temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.partial")
-        descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+        descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT, 0o666)
         fcntl.flock(descriptor, fcntl.LOCK_EX)
-        with contextlib.suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(descriptor), os.stat(temporary)):
-                break
-        os.close(descriptor)  # another writer took it for a leftover before it was locked
+        if _is_open(descriptor, temporary):
+            break
+        os.close(descriptor)  # another writer has moved it away meanwhile
     try:
+        os.ftruncate(descriptor, 0)
         yield descriptor, temporary
     finally:
-        with contextlib.suppress(FileNotFoundError):
+        if _is_open(descriptor, temporary):
             os.unlink(temporary)
         os.close(descriptor)
+
+
+def _is_open(descriptor: int, path: Path) -> bool:
+    """Whether this is the file that has the path."""
+    try:
+        return os.path.samestat(os.fstat(descriptor), os.stat(path))
+    except FileNotFoundError:
+        return False
 
 
 def _sync_folder(folder: Path) -> None:

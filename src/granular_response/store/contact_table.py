@@ -42,7 +42,7 @@ def contact_table(state: State, radius: FloatArray) -> Any:
         "tangential_force": joined("tangential_force"),
     }
     units = dict(UNITS)
-    if pairs.rolling or walls.rolling:
+    if pairs.resists_rolling or walls.resists_rolling:
         columns["rolling_force"], units["rolling_force"] = joined("rolling_force"), FORCE
         columns["rolling_status"] = np.array([MEANINGS[code] for code in joined("rolling_status")], object)
     found = xr.Dataset({name: ("contact", values) for name, values in columns.items()}).to_dataframe()

@@ -29,19 +29,17 @@ from .. import __version__
 from ..errors import GranularError
 from ..inputs import check_regular
 from . import atomic
-from .conventions import encoded_attributes, encoded_variables
 
 #: What the name of every file of datasets ends with.
 SUFFIX = ".nc"
 #: Root attribute by which a file of ours is known; its number grows when the layout changes.
 FORMAT = "granular_response 2"
-#: Layouts that are read: in the first one results have ``load_factor`` along ``state`` (``store.checked`` turns it).
-_READ = (FORMAT, "granular_response 1")
 
 #: For files in memory, whatever the name of the file on disk.
 _NO_NAME = "memory"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SEAL = b"granular_response sha256 "
+_PACKED = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
 _GROUP = re.compile(r"[A-Za-z_][\w.+-]*(/[A-Za-z_][\w.+-]*)*")
 
 
@@ -188,40 +186,17 @@ def _made(path: Path, groups: Mapping[str, xr.Dataset]) -> bytes:
 
 
 def _fill(file: netCDF4.Dataset, path: Path, groups: Mapping[str, xr.Dataset]) -> None:
+    """Write each dataset as xarray does: the same bytes for the same data."""
     for name, dataset in groups.items():
+        numbers = {key: int(value) for key, value in dataset.attrs.items() if isinstance(value, (bool, np.bool_))}
+        arrays = {key: one.dtype.kind not in "OU" and one.ndim and one.size for key, one in dataset.variables.items()}
         try:
-            _dump(dataset, file.createGroup(name) if name else file)
+            store = NetCDF4DataStore(file.createGroup(name) if name else file)
+            dataset.assign_attrs(numbers).dump_to_store(
+                store, encoding={key: _PACKED if array else {} for key, array in arrays.items()}
+            )
         except (AttributeError, RuntimeError, TypeError, ValueError, NotImplementedError) as error:
             raise _error(path, f"group {name or '/'} cannot be stored: {error}") from error
-
-
-def _dump(dataset: xr.Dataset, group: netCDF4.Dataset) -> None:
-    """Write a dataset as xarray would, by the CF conventions: the same bytes."""
-    for name, value in encoded_attributes(dataset).items():
-        _set_attribute(group, name, value)
-    variables = encoded_variables(dataset)
-    for variable in variables.values():
-        for dimension, size in zip(variable.dimensions, variable.values.shape, strict=True):
-            if dimension not in group.dimensions:
-                group.createDimension(dimension, size)
-    for name, variable in variables.items():
-        values, labels = variable.values, dict(variable.attributes)
-        numbers = values.dtype.kind != "U"
-        packed = numbers and bool(values.ndim and values.size)
-        written = group.createVariable(
-            name, values.dtype.newbyteorder("=") if numbers else str, variable.dimensions,
-            fill_value=labels.pop("_FillValue", None), zlib=packed, complevel=4, shuffle=True, fletcher32=packed,
-        )  # fmt: skip
-        written.setncatts(labels)
-        written[...] = values if numbers else values.astype(object)
-
-
-def _set_attribute(group: netCDF4.Dataset, name: str, value: Any) -> None:
-    several = np.asarray(value)
-    if several.dtype.kind in "US" and several.size > 1:
-        group.setncattr_string(name, value)
-    else:
-        group.setncattr(name, value)
 
 
 def _verify(data: bytes, groups: Mapping[str, xr.Dataset]) -> None:
@@ -257,11 +232,11 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
         raise _error(path, "is truncated or damaged") from error
     if sealed and not has_seal:
         dataset.close()
-        if attributes.get("format") in _READ:
+        if attributes.get("format") == FORMAT:
             raise _error(path, "is truncated or damaged, or another program has written it anew")
         raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
     by_xarray = not sealed and attributes.get("package") == "granular_response" and "format" not in attributes
-    if attributes.get("format") not in _READ and not by_xarray:
+    if attributes.get("format") != FORMAT and not by_xarray:
         dataset.close()
         raise _error(path, f"has another layout, must have the attribute format = {FORMAT!r}")
     return dataset

@@ -1,7 +1,7 @@
 """Solutions as labelled datasets, and states back from them.
 
 A dataset is in reduced units: lengths in mean disk radii, masses in mean disk masses, forces in mean disk
-weights. Results have them in ``units`` (``labels.py``); datasets of studies have "1", and the unit in ``long_name``.
+weights. What its variables are is said in ``variables.py``.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from ..observe.difference import match_candidates, pair_force_difference, wall_f
 from ..observe.floor import floor_disks, floor_force
 from ..scene import Packing, Scene
 from ..scene import text as scene_text
-from ..scene.protocol import without_replaced
 from ..solvers.problem import Problem
 from ..solvers.solution import Solution
 from ..solvers.timestep import time_step_reason
@@ -35,63 +34,38 @@ from ..state import (
     Event,
     Reached,
     State,
-    box,
     status,
 )
-from .labels import labelled
+from .variables import (
+    CERTIFICATE,
+    CONTACT,
+    EVENT_KINDS,
+    EVENTS,
+    NOT_DETERMINED,
+    RADII,
+    REACHED,
+    ROLLING,
+    WEIGHTS,
+    described,
+    labelled,
+)
+from .variables import flags as flags
+from .variables import variable as variable
 
-LENGTH, FORCE = "in mean disk radii", "in mean disk weights"
-
-_STATE_VARIABLES = {
-    "position": (("disk", "axis"), f"disk centre x, z {LENGTH}"),
-    "angle": (("disk",), "rotation since the start of the preparation, counter-clockwise, in radians"),
-    "velocity": (("disk", "axis"), "disk velocity in sqrt(radius g)"),
-    "angular_velocity": (("disk",), "angular velocity in sqrt(g/radius)"),
-}
-_CONTACT_VARIABLES = {
-    "overlap": f"overlap {LENGTH}; negative is a gap",
-    "normal_force": f"normal contact force {FORCE}, positive in compression",
-    "tangential_force": f"tangential contact force {FORCE}, along z cross n",
-    "spring": f"elongation of the tangential spring {LENGTH}",
-    "status": "contact status",
-}
-#: Stored of contacts that resist rolling.
-ROLLING_VARIABLES = {
-    "rolling_force": f"rolling force {FORCE}; times the reduced radius it is the couple on the first disk",
-    "rolling_spring": f"elongation of the rolling spring {LENGTH}",
-    "rolling_status": "status along the rolling: sliding is at the limit of the rolling force",
-}
+LENGTH, FORCE = RADII, WEIGHTS
 #: The system of units of everything stored.
 UNITS = "reduced: mean disk radius, mean disk mass, g"
 
 
-def flags(meanings: Sequence[str], kind: type[np.integer] = np.int8) -> dict[str, Any]:
-    """Attributes of a variable that holds codes, by the CF conventions."""
-    return {"flag_values": np.arange(len(meanings), dtype=kind), "flag_meanings": " ".join(meanings)}
-
-
 STATUSES = flags(status.MEANINGS)
-_WALL_FLAGS = flags(box.WALL_MEANINGS, np.int32)
-_KINDS = {"pairs": ("contact", "contact"), "walls": ("wall_contact", "wall")}
-
-
-#: Number of unstable directions in files where it was not determined.
-NOT_DETERMINED = -1
-#: Parts of a certificate that older files do not have.
-ADDED_LATER = frozenset({"certificate_unbalanced_part", "certificate_rolling_excess"})
+#: Lists of candidate contacts of a state, by what the names of their variables begin with.
+_LISTS = {"contact": "pairs", "wall": "walls"}
+#: By the same, the variables with the disk and with the other disk, or the wall.
+_CANDIDATES = {"contact": ("contact_disk", "contact_partner"), "wall": ("wall_disk", "wall_index")}
 
 
 class ResultError(GranularError, ValueError):
     """A dataset that is not a result, or not one that can be continued. The message is one line."""
-
-
-def variable(dims, values, long_name: str, **attributes) -> xr.Variable:
-    """xr.Variable with the attributes that every stored variable has."""
-    dimensions = (dims,) if isinstance(dims, str) else tuple(dims)
-    # numpy's arrays are taken as they are: xarray need not find out whether they are Dask's
-    return xr.Variable(
-        dimensions, np.asarray(values), {"long_name": long_name, "units": "1", **attributes}, fastpath=True
-    )
 
 
 def _dataset(
@@ -117,26 +91,21 @@ def states_dataset(states: Sequence[State], dimension: str = "state") -> xr.Data
     return _dataset(_states(states, dimension), {"axis"})
 
 
-def _states(states: Sequence[State], dimension: str) -> dict[str, xr.Variable]:
-    data: dict[str, xr.Variable] = {}
-    for name, (dims, long_name) in _STATE_VARIABLES.items():
-        data[name] = variable((dimension, *dims), np.stack([getattr(s, name) for s in states]), long_name)
-    for kind, (dim, prefix) in _KINDS.items():
-        contacts: list[Contacts] = [getattr(s, kind) for s in states]
-        second = "partner" if kind == "pairs" else "wall"
-        first_name = f"{prefix}_disk"
-        data[first_name] = variable(dim, contacts[0].first, "disk that the contact force acts on")
-        if kind == "pairs":
-            data[f"{prefix}_{second}"] = variable(dim, contacts[0].second, "other disk")
-        else:
-            data["wall_index"] = variable(dim, contacts[0].second, "wall", **_WALL_FLAGS)
-        rolling = ROLLING_VARIABLES if any(one.rolling for one in contacts) else {}
-        for name, long_name in {**_CONTACT_VARIABLES, **rolling}.items():
-            values = np.stack([getattr(c, name) for c in contacts])
-            coded = STATUSES if name.endswith("status") else {}
-            data[f"{prefix}_{name}"] = variable((dimension, dim), values, long_name, **coded)
-    data["load_factor"] = variable(dimension, [s.load_factor for s in states], "multiplier of the scene's loads")
-    return {**data, "axis": variable("axis", ["x", "z"], "axis labels")}
+def _states(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
+    data = {
+        name: described(name, np.stack([getattr(state, name) for state in states]), along=along)
+        for name in ("position", "angle", "velocity", "angular_velocity")
+    }
+    for prefix, (first, second) in _CANDIDATES.items():
+        contacts: list[Contacts] = [getattr(state, _LISTS[prefix]) for state in states]
+        data[first] = described(first, contacts[0].first)
+        data[second] = described(second, contacts[0].second)
+        rolling = ROLLING if any(one.resists_rolling for one in contacts) else {}
+        for name in (*CONTACT, *rolling):
+            values = np.stack([getattr(one, name) for one in contacts])
+            data[f"{prefix}_{name}"] = described(f"{prefix}_{name}", values, along=along)
+    data["load_factor"] = described("state_load_factor", [state.load_factor for state in states], along=along)
+    return {**data, "axis": described("axis", ["x", "z"])}
 
 
 def certificates_dataset(states: Sequence[State], dimension: str = "state") -> xr.Dataset:
@@ -144,44 +113,15 @@ def certificates_dataset(states: Sequence[State], dimension: str = "state") -> x
     return _dataset(_certificates(states, dimension))
 
 
-def _certificates(states: Sequence[State], dimension: str) -> dict[str, xr.Variable]:
-    names = {
-        "force_residual": f"largest unbalanced force on a disk {FORCE}",
-        "torque_residual": "largest unbalanced torque on a disk in mean weight times mean radius",
-        "coulomb_excess": f"largest excess of a tangential force over the Coulomb limit {FORCE}",
-        "smallest_normal_force": f"smallest normal force of a closed contact {FORCE}",
-        "kinetic_energy": "kinetic energy per disk in mean weight times mean radius",
-        "negative_modes": f"unstable directions of the tangent stiffness ({NOT_DETERMINED}: not determined)",
-        "loose_disks": "disks with fewer than two contacts",
-        "unbalanced_part": "largest unbalanced force on a disk, as a part of what it bears",
-    }
-    if any(contacts.rolling for state in states for contacts in (state.pairs, state.walls)):
-        names["rolling_excess"] = f"largest excess of a rolling force over its limit {FORCE}"
-    certificates: list[Certificate] = [s.certificate for s in states]
-
-    def number(value: float | None) -> float:
-        return NOT_DETERMINED if value is None else value
-
-    return {
-        f"certificate_{name}": variable(dimension, [number(getattr(c, name)) for c in certificates], text)
-        for name, text in names.items()
-    }
-
-
-#: What is stored of the events of a path: the fields of each, in order.
-EVENTS = {
-    "load_factor": "load factor at which it happens",
-    "kind": "what happens",
-    "first": "disk that it happens to; the one that moves farthest where an equilibrium is lost",
-    "second": "the other disk, or the wall; -1 where an equilibrium is lost",
-    "at_wall": "whether the contact is with a wall",
-    "x": f"place of the contact, or of the disk {LENGTH}",
-    "z": f"height of the contact, or of the disk {LENGTH}",
-    "until": "load factor at which the path goes on",
-    "displacement": f"largest displacement of a disk from a lost equilibrium to the next {LENGTH}",
-    "reason": "why an equilibrium is lost",
-}
-EVENT_KINDS = CONTACT_EVENTS + LOST_EVENTS + ROLLING_EVENTS
+def _certificates(states: Sequence[State], along: str) -> dict[str, xr.Variable]:
+    rolling = any(contacts.resists_rolling for state in states for contacts in (state.pairs, state.walls))
+    found = {}
+    for name in CERTIFICATE:
+        if name != "rolling_excess" or rolling:
+            values = [getattr(state.certificate, name) for state in states]
+            numbers = [NOT_DETERMINED if value is None else value for value in values]
+            found[f"certificate_{name}"] = described(f"certificate_{name}", numbers, along=along)
+    return found
 
 
 def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variable]:
@@ -189,7 +129,7 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variabl
     if not found:
         return {}
     data = {}
-    for name, text in EVENTS.items():
+    for name in EVENTS:
         values: Any = [getattr(event, name) for _, event in found]
         attributes: dict[str, Any] = {}
         if name == "kind":
@@ -197,11 +137,11 @@ def described_events(found: Sequence[tuple[int, Event]]) -> dict[str, xr.Variabl
             values = np.array([known.index(kind) for kind in values], np.int8)
             attributes = flags([kind.replace(" ", "_") for kind in known])
         elif name == "at_wall":
-            values, attributes = np.array(values, np.int8), flags(("no", "yes"))
+            values = np.array(values, np.int8)
         elif name == "reason":
             values = np.array(values, str)
-        data[f"event_{name}"] = variable("event", values, text, **attributes)
-    return {**data, "event_state": variable("event", [k for k, _ in found], "state that the event leads to")}
+        data[f"event_{name}"] = described(f"event_{name}", values, **attributes)
+    return {**data, "event_state": described("event_state", [k for k, _ in found])}
 
 
 def events_from(dataset: xr.Dataset, index: int | None = None) -> list[tuple[int, Event]]:
@@ -229,50 +169,26 @@ def chosen_states(dataset: xr.Dataset, indices: Sequence[int]) -> xr.Dataset:
     return chosen.assign(event_state=("event", [places[k] for k in chosen["event_state"].values], state.attrs))
 
 
-#: What is stored of the record of each state, where it is known for one of them.
-_REACHED = {
-    "method": "method that found the state",
-    "settled": "whether dynamics came to rest",
-    "steps": "time steps of the dynamics since it began",
-    "time_step": "time step of the dynamics in sqrt(radius/g)",
-    "time": "time since the last ramp began in sqrt(radius/g)",
-    "rebuilds": "times that candidate contacts were listed again",
-    "kinetic_energy": "kinetic energy per disk before the static finish in mean weight times mean radius",
-    "relaxation_steps": "time steps of the last relaxation",
-    "network_fixed_steps": "time steps in which no contact opened or closed",
-    "sliding_contacts": "sliding contacts when the kinetic energy had fallen below its limit",
-    "mean_acceleration": "mean acceleration of disks with two contacts or more in g, at that moment",
-    "loose_disks": "disks with fewer than two contacts, at that moment",
-    "more_relaxations": "stretches of dynamics between tries of the static finish",
-    "newton_iterations": "iterations of Newton's method",
-    "finish_displacement": f"largest displacement of a disk in the static finish {LENGTH}",
-    "escapes": "saddles of the energy that were left",
-    "increments": "increments of the path so far, in the command that made the state",
-    "factorisations": "factorisations of the path so far, in the command that made the state",
-    "events_within": f"load within which the path took events together {FORCE}",
-    "events_error": "what that leaves out of a force of the floor or a wall, per load, as measured",
-}
-
-
 def _reached(states: Sequence[State]) -> dict[str, xr.Variable]:
-    """How the states were reached, along ``state``."""
+    """How the states were reached, along ``state``; a record that none of them has is left out."""
     data = {}
-    for name, text in _REACHED.items():
+    for name, (text, *_) in REACHED.items():
         known = [getattr(state.reached, name) for state in states]
         if name == "method":
-            data["reached_method"] = variable("state", np.array([one or "" for one in known], str), text)
+            data["reached_method"] = described("reached_method", np.array([one or "" for one in known], str))
         elif any(one is not None for one in known):
             whole = all(one is None or isinstance(one, (bool, int, np.integer)) for one in known)
             missing = NOT_DETERMINED if whole else np.nan
             values = np.array([missing if one is None else one for one in known], np.int64 if whole else float)
-            data[f"reached_{name}"] = variable("state", values, text + (" (-1: not known)" if whole else ""))
+            said = f"{text} (-1: not known)" if whole else text
+            data[f"reached_{name}"] = described(f"reached_{name}", values, text=said)
     return data
 
 
 def _reached_from(one: xr.Dataset) -> dict[str, Any]:
     """The numbers of a stored record; what is not known is left out."""
     found: dict[str, Any] = {}
-    for name in _REACHED:
+    for name in REACHED:
         if f"reached_{name}" in one:
             value = one[f"reached_{name}"].values.item()
             if value not in ("", NOT_DETERMINED) and value == value:
@@ -285,17 +201,17 @@ def load_coordinates(factors: Sequence[float]) -> dict[str, xr.Variable]:
 
     Factors may repeat: ``sel(load=0.5)`` then gives every step at half the loads, which ``branch`` tells apart.
     """
-    text = "multiplier of the scene's loads"
     values = np.asarray(factors, float)
-    return {
-        "load": variable("load", values, f"index: {text}"),
-        "load_factor": variable("load", values, text),
-        "step": variable("load", np.arange(1, len(values) + 1), "step of the load programme"),
-        "branch": variable("load", np.array(branches(factors), str), "branch of the load programme"),
+    found = {
+        "load": values,
+        "load_factor": values,
+        "step": np.arange(1, len(values) + 1),
+        "branch": np.array(load_branches(factors), str),
     }
+    return {name: described(name, one) for name, one in found.items()}
 
 
-def branches(factors: Sequence[float]) -> list[str]:
+def load_branches(factors: Sequence[float]) -> list[str]:
     """The branch of a load programme that each factor ends, from 0 on.
 
     "loading" beyond all loads of the same sign before, "reloading" up to the largest of them, "unloading" towards 0. A
@@ -337,33 +253,28 @@ def added_forces_dataset(
     both = list(zip(rest, loaded, strict=True))
     text = f"contact force that the load adds, on the first disk {FORCE}"
 
-    def status(when: str, states: Sequence[State]) -> xr.Variable:
-        values = np.stack([state.pairs.status for state in states])
-        return variable((dimension, "contact"), values, f"contact status {when}", **STATUSES)
+    def stacked(like: str, values: Sequence[np.ndarray], text: str) -> xr.Variable:
+        return described(like, np.stack(values), along=dimension, text=text)
 
     return xr.Dataset(
         {
-            "position": variable(
-                (dimension, "disk", "axis"),
-                np.stack([state.position for state in loaded]),
-                f"disk centre x, z under load {LENGTH}",
+            "position": stacked("position", [one.position for one in loaded], f"disk centre x, z under load {LENGTH}"),
+            "radius": described("radius", packing.radius),
+            "contact_disk": described("contact_disk", pairs.first),
+            "contact_partner": described("contact_partner", pairs.second),
+            "contact_added_force": stacked("contact_force", [pair_force_difference(*one) for one in both], text),
+            "contact_status_rest": stacked(
+                "contact_status", [one.pairs.status for one in rest], "contact status at rest"
             ),
-            "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
-            "contact_disk": variable("contact", pairs.first, "disk that the contact force acts on"),
-            "contact_partner": variable("contact", pairs.second, "other disk"),
-            "contact_added_force": variable(
-                (dimension, "contact", "axis"), np.stack([pair_force_difference(a, b) for a, b in both]), text
+            "contact_status": stacked(
+                "contact_status", [one.pairs.status for one in loaded], "contact status under load"
             ),
-            "contact_status_rest": status("at rest", rest),
-            "contact_status": status("under load", loaded),
-            "wall_disk": variable("wall_contact", walls.first, "disk that the wall's force acts on"),
-            "wall_index": variable("wall_contact", walls.second, "wall", **_WALL_FLAGS),
-            "wall_added_force": variable(
-                (dimension, "wall_contact", "axis"), np.stack([wall_force_difference(a, b) for a, b in both]), text
-            ),
+            "wall_disk": described("wall_disk", walls.first, text="disk that the wall's force acts on"),
+            "wall_index": described("wall_index", walls.second),
+            "wall_added_force": stacked("wall_force", [wall_force_difference(*one) for one in both], text),
             "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
         },
-        coords={"axis": variable("axis", ["x", "z"], "axis labels")},
+        coords={"axis": described("axis", ["x", "z"])},
     ).merge(certificates_dataset(loaded, dimension))
 
 
@@ -393,33 +304,28 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     data = {
         "state_load_factor": of_states.pop("load_factor"),
         **of_states,
-        **described_forces(states),
+        **_forces(states),
         **load_coordinates(solution.load_factors),
-        "floor_force_rest": variable("floor_disk", at_rest, f"vertical floor force at rest {FORCE}"),
-        "floor_force": variable(("load", "floor_disk"), forces, f"vertical floor force under load {FORCE}"),
-        **floor_force_change(forces, at_rest),
-        "floor_response": variable(
-            ("load", "floor_disk"),
-            response,
-            "vertical floor force that the load adds, per total magnitude of the applied forces (NaN without any)",
-        ),
-        "radius": variable("disk", packing.radius, f"disk radius {LENGTH}"),
-        "mass": variable("disk", packing.mass, "disk mass in mean disk masses"),
-        "row": variable("disk", packing.row, "row on the lattice from the bottom, -1 without lattice"),
-        "loaded_disk": variable("load_point", problem.load_disk, "disks that carry the loads"),
-        "applied_load": variable(
-            ("load_point", "component"), problem.load, f"force x, z {FORCE} and torque at load factor 1"
-        ),
-        "total_force": variable("load", applied, f"total magnitude of the applied forces {FORCE}"),
-        **(_reaction(solution) if loaded and len(problem.held) else {}),
-        **_listed(own, states),
-        **_certificates(states, "state"),
-        **_reached(states),
-        **described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events]),
-        "floor_disk": variable("floor_disk", disks, "index of the floor disk"),
-        "x": variable("floor_disk", x, f"rest position from the loaded disk {LENGTH}"),
-        "component": variable("component", ["force_x", "force_z", "torque"], "component labels"),
     }
+    numbers = {
+        "floor_force_rest": at_rest,
+        "floor_force": forces,
+        "floor_force_change": forces - at_rest,
+        "floor_response": response,
+        "radius": packing.radius,
+        "mass": packing.mass,
+        "row": packing.row,
+        "loaded_disk": problem.load_disk,
+        "applied_load": problem.load,
+        "total_force": applied,
+    }
+    if loaded and len(problem.held):
+        numbers["reaction"] = np.stack([solution.reaction(state) for state in solution.loaded])
+    data |= {name: described(name, values) for name, values in numbers.items()}
+    data |= _listed(own, states) | _certificates(states, "state") | _reached(states)
+    data |= described_events([(k, event) for k, state in enumerate(own) for event in state.reached.events])
+    data |= {"floor_disk": described("floor_disk", disks), "x": described("x", x)}
+    data["component"] = described("component", ["force_x", "force_z", "torque"])
     moved = any(state.reached.time_step is not None for state in states)
     methods = {"rest": solution.rest_choice.method, "load": getattr(solution.load_choice, "method", "none")}
     reasons = {
@@ -457,12 +363,11 @@ def _own_places(own: Contacts, common: Contacts) -> np.ndarray:
 def _listed(own: Sequence[State], states: Sequence[State]) -> dict[str, xr.Variable]:
     """Which of the common candidates each state listed itself and in what order, where that is not the common one."""
     found = {}
-    for kind, (dim, prefix) in _KINDS.items():
+    for prefix, kind in _LISTS.items():
         common = getattr(states[0], kind)
         places = np.stack([_own_places(getattr(state, kind), common) for state in own])
         if (places != np.arange(places.shape[1])).any():
-            text = "place among the candidates of the state when it was solved, -1 for none of them"
-            found[f"{prefix}_own_place"] = variable(("state", dim), places, text)
+            found[f"{prefix}_own_place"] = described(f"{prefix}_own_place", places)
     return found
 
 
@@ -480,25 +385,11 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
     return replace(state, pairs=own(state.pairs, "contact"), walls=own(state.walls, "wall"))
 
 
-def _reaction(solution: Solution) -> dict[str, xr.Variable]:
-    """What holds displaced disks, under each load."""
-    values = np.stack([solution.reaction(state) for state in solution.loaded])
-    text = f"force x, z with which each load holds its disk at its displacement {FORCE}; 0 along free directions"
-    return {"reaction": variable(("load", "load_point", "axis"), values, text)}
-
-
-def floor_force_change(under_load: np.ndarray, at_rest: np.ndarray) -> dict[str, xr.Variable]:
-    """What loads add to the force on each floor disk, defined after unloading too."""
-    text = f"vertical floor force that the load adds {FORCE}"
-    return {"floor_force_change": variable(("load", "floor_disk"), under_load - at_rest, text)}
-
-
-def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:
+def _forces(states: Sequence[State]) -> dict[str, xr.Variable]:
     """Contact forces as vectors, on the disk named first."""
-    text = f"contact force x, z on the first disk {FORCE}"
     return {
-        "contact_force": variable(("state", "contact", "axis"), np.stack([s.pair_force() for s in states]), text),
-        "wall_force": variable(("state", "wall_contact", "axis"), np.stack([s.wall_force() for s in states]), text),
+        "contact_force": described("contact_force", np.stack([state.pair_force() for state in states])),
+        "wall_force": described("wall_force", np.stack([state.wall_force() for state in states])),
     }
 
 
@@ -520,32 +411,30 @@ def state_from(dataset: xr.Dataset, index: int = -1) -> State:
     if "contact_spring" not in dataset:
         raise ResultError("the dataset holds no states (variable contact_spring is missing)")
     one = dataset.isel(state=index)
-    stored = {field.name: f"certificate_{field.name}" for field in fields(Certificate)}
     certificate = None
-    if set(stored.values()) - ADDED_LATER <= set(one.variables):
+    if "certificate_force_residual" in one:
         numbers: dict[str, Any] = {
-            name: one[variable].values.item() for name, variable in stored.items() if variable in one.variables
+            name: one[f"certificate_{name}"].values.item() for name in CERTIFICATE if f"certificate_{name}" in one
         }
         if numbers["negative_modes"] == NOT_DETERMINED:
             numbers["negative_modes"] = None
         certificate = Certificate(**numbers)
 
-    def contacts(prefix: str, partner: str) -> Contacts:
-        values = [one[f"{prefix}_{name}"].values for name in _CONTACT_VARIABLES]
-        rolling = {
-            name: one[f"{prefix}_{name}"].values for name in ROLLING_VARIABLES if f"{prefix}_{name}" in one.variables
+    def contacts(prefix: str) -> Contacts:
+        found = {
+            name: one[f"{prefix}_{name}"].values for name in (*CONTACT, *ROLLING) if f"{prefix}_{name}" in one.variables
         }
-        first, second = (one[name].values.astype(np.int32) for name in (f"{prefix}_disk", partner))
-        return Contacts(first, second, *values, **rolling)
+        first, second = (one[name].values.astype(np.int32) for name in _CANDIDATES[prefix])
+        return Contacts(first, second, **found)
 
     return State(
         position=one["position"].values.astype(float),
         angle=one["angle"].values.astype(float),
         velocity=one["velocity"].values.astype(float),
         angular_velocity=one["angular_velocity"].values.astype(float),
-        pairs=contacts("contact", "contact_partner"),
-        walls=contacts("wall", "wall_index"),
-        box=Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic"),
+        pairs=contacts("contact"),
+        walls=contacts("wall"),
+        box=Box.of(dataset.attrs),
         load_factor=float(one["state_load_factor" if "state_load_factor" in one else "load_factor"]),
         reached=Reached(
             certificate=certificate,
@@ -575,16 +464,9 @@ def solution_from(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None 
     if not same or packed.box != rest.box:
         raise ResultError("the table of disks has changed since the result was made")
     rest, *loaded = (_as_solved(dataset, k) for k in range(dataset.sizes["state"]))
-    if rest.reached.certificate is None:
-        raise ResultError("holds no certificates, from which a run goes on")
-    return Solution(
-        scene=scene,
-        problem=problem,
-        rest=rest,
-        loaded=tuple(loaded),
-    )
+    return Solution(scene=scene, problem=problem, rest=rest, loaded=tuple(loaded))
 
 
-def scene_of(dataset: xr.Dataset, *, folder=None) -> Scene:
-    """The scene that a dataset was made from, also by a version that had other keys for how it was to be solved."""
-    return Scene.from_dict(without_replaced(scene_text.read(dataset.attrs["scene"])), folder=folder)
+def scene_of(dataset: xr.Dataset, *, folder: str | os.PathLike[str] | None = None) -> Scene:
+    """The scene that a dataset was made from."""
+    return Scene.from_dict(scene_text.read(dataset.attrs["scene"]), folder=folder)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from os import PathLike
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from rich.console import RenderableType
+from rich.console import OverflowMethod, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -18,7 +18,8 @@ from ..scene import text as scene_text
 from ..scene.arrays import shortened
 from . import files as store
 from .checked import read_result
-from .result import EVENT_KINDS, NOT_DETERMINED, events_from
+from .result import events_from
+from .variables import EVENT_KINDS, NOT_DETERMINED
 
 #: Attributes that a summary shows elsewhere or not at all.
 _HIDDEN = {
@@ -101,7 +102,7 @@ def summarise(path: str | PathLike[str]) -> Iterator[RenderableType]:
     yield _text(path, style="bold")
     if not store.is_sealed(path):
         yield Text("not sealed: rewritten by another program, so its numbers are not vouched for", style="bold")
-    yield _table((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
+    yield _pairs((name, _plain(value)) for name, value in attributes.items() if name not in _HIDDEN)
     if result is not None:
         yield from _result(result)
     else:
@@ -121,59 +122,29 @@ def _result(result: xr.Dataset) -> Iterator[RenderableType]:
     yield Text("\nhow it was solved", style="bold")
     methods, reasons = (json.loads(result.attrs.get(name, "{}")) for name in ("method", "method_reason"))
     rows = [(stage, f"{method} ({reasons.get(stage, '')})") for stage, method in methods.items()]
-    for name in ("stable", "settled"):
-        if name in result.attrs:
-            rows.append((name, str(result.attrs[name])))
-    yield _table(rows)
-    if work := [name for name in _WORK if f"reached_{name}" in result]:
+    yield _pairs([*rows, *((name, result.attrs[name]) for name in ("stable", "settled") if name in result.attrs)])
+    if work := {name: result[f"reached_{name}"].values for name in _WORK if f"reached_{name}" in result}:
         yield Text("\nwork", style="bold")
-        yield _work(result, work)
+        yield _by_factor(result, ((name, ("-" if n == NOT_DETERMINED else n for n in work[name])) for name in work))
     if "event_state" in result:
         yield Text("\nevents on the way to each state", style="bold")
         yield from _events(result)
     yield Text("\ncertificate", style="bold")
-    yield _certificate(result)
+    yield _by_factor(result, _certificate(result))
     if "reaction" in result:
         yield Text("\nforce that holds displaced disks", style="bold")
-        yield _reaction(result)
+        yield _table(("at load factor", "disk", "x", "z"), _reaction(result))
     yield Text("\nfloor response", style="bold")
-    yield _response(result)
-
-
-def _work(result: xr.Dataset, names: list[str]) -> Table:
-    table = _by_factor(result)
-    for name in names:
-        values = result[f"reached_{name}"].values
-        table.add_row(name.replace("_", " "), *("-" if value == NOT_DETERMINED else str(value) for value in values))
-    return table
-
-
-def _by_factor(result: xr.Dataset) -> Table:
-    """A column for each state."""
-    table = Table(box=None, pad_edge=False)
-    table.add_column("at load factor", style="dim")
-    for factor in result["state_load_factor"].values:
-        table.add_column(f"{factor:g}", justify="right")
-    return table
-
-
-def _titled(*titles: str, left: tuple[str, ...] = ()) -> Table:
-    """A table of numbers, with text in the columns on the ``left`` side."""
-    table = Table(box=None, pad_edge=False)
-    for title in titles:
-        table.add_column(title, justify="left" if title in left else "right")
-    return table
+    titles = ("load factor", "total force", "sum", "at x = 0", "largest", "at x", "largest change")
+    yield _table(titles, _response(result))
 
 
 def _events(result: xr.Dataset) -> Iterator[RenderableType]:
     """How many of each kind, the first opening, and each equilibrium that was lost."""
     found = events_from(result)
-    table = _by_factor(result)
-    for kind in EVENT_KINDS:
-        counts = [sum(event.kind == kind for k, event in found if k == state) for state in range(result.sizes["state"])]
-        if any(counts):
-            table.add_row(kind, *map(str, counts))
-    yield table
+    counts = [Counter(event.kind for k, event in found if k == state) for state in range(result.sizes["state"])]
+    kinds = [kind for kind in EVENT_KINDS if any(kind in one for one in counts)]
+    yield _by_factor(result, ((kind, (one[kind] for one in counts)) for kind in kinds))
     opening = next((event for _, event in found if event.kind == "opens"), None)
     if opening is not None:
         yield _text(f"first opening at load factor {opening.load_factor:.9g}, {opening.where}")
@@ -183,37 +154,30 @@ def _events(result: xr.Dataset) -> Iterator[RenderableType]:
     if lost := [event for _, event in found if event.lost]:
         yield Text("\nequilibria lost on the way", style="bold")
         titles = ("at load factor", "until", "what", "largest displacement", "of", "why")
-        table = _titled(*titles, left=("what", "of", "why"))
-        for event in lost:
-            numbers = (f"{event.load_factor:.6g}", f"{event.until:.6g}", event.kind, f"{event.displacement:.3g}")
-            table.add_row(*numbers, event.where, _text(event.reason))
-        yield table
+        rows = (
+            (f"{e.load_factor:.6g}", f"{e.until:.6g}", e.kind, f"{e.displacement:.3g}", e.where, e.reason) for e in lost
+        )
+        yield _table(titles, rows, left=("what", "of", "why"))
 
 
-def _certificate(result: xr.Dataset) -> Table:
-    table = _by_factor(result)
+def _certificate(result: xr.Dataset) -> Iterator[tuple[str, list[str]]]:
     for name in map(str, result):
         if name.startswith("certificate_"):
             title = name.removeprefix("certificate_").replace("_", " ")
             values = [f"{value:.3g}" for value in result[name].values]
             if title == "negative modes":
                 values = ["not determined" if value == str(NOT_DETERMINED) else value for value in values]
-            table.add_row(title, *values)
-    return table
+            yield title, values
 
 
-def _reaction(result: xr.Dataset) -> Table:
-    table = _titled("at load factor", "disk", "x", "z")
-    values = result["reaction"].values
+def _reaction(result: xr.Dataset) -> Iterator[tuple[str, ...]]:
     factors = result["state_load_factor"].values[1:]
-    for factor, forces in zip(factors, values, strict=True):
+    for factor, forces in zip(factors, result["reaction"].values, strict=True):
         for disk, force in zip(result["loaded_disk"].values, forces, strict=True):
-            table.add_row(f"{factor:g}", str(disk), *(f"{part:.6g}" for part in force))
-    return table
+            yield f"{factor:g}", str(disk), *(f"{part:.6g}" for part in force)
 
 
-def _response(result: xr.Dataset) -> Table:
-    table = _titled("load factor", "total force", "sum", "at x = 0", "largest", "at x", "largest change")
+def _response(result: xr.Dataset) -> Iterator[tuple[str, ...]]:
     x = result["x"].values
     for load in range(result.sizes["load"]):
         here = result.isel(load=load)
@@ -227,27 +191,48 @@ def _response(result: xr.Dataset) -> Table:
             places = x[np.isclose(response, peak, rtol=1e-6, atol=0)]
             row += [f"{response.sum():.9f}", f"{response[np.argmin(np.abs(x))]:.5f}", f"{peak:.5f}"]
             row.append(", ".join(f"{round(place, 9) + 0.0:.3g}" for place in places))
-        table.add_row(*row, f"{change[np.abs(change).argmax()]:.5g}" if change.size else "-")
-    return table
+        yield *row, f"{change[np.abs(change).argmax()]:.5g}" if change.size else "-"
 
 
 def _study(datasets: dict[str, xr.Dataset]) -> Iterator[RenderableType]:
-    table = Table(box=None, pad_edge=False)
-    for title in ("group", "dimensions", "variables"):
-        table.add_column(title, overflow="fold")
+    titles = ("group", "dimensions", "variables")
+    rows = []
     for name, dataset in datasets.items():
         sizes = ", ".join(f"{dimension} {size}" for dimension, size in dataset.sizes.items())
-        table.add_row(_text(name or "/"), _text(sizes), _text(", ".join(map(str, dataset.data_vars))))
+        rows.append((name or "/", sizes, ", ".join(map(str, dataset.data_vars))))
     yield Text("\ndatasets", style="bold")
-    yield table
+    yield _table(titles, rows, left=titles, overflow="fold")
 
 
-def _table(rows: Iterator[tuple[str, str]] | list[tuple[str, str]]) -> Table:
-    table = Table(box=None, show_header=False, pad_edge=False)
-    table.add_column(style="dim")
-    table.add_column(overflow="fold")
-    for name, value in rows:
-        table.add_row(_text(name.replace("_", " ")), _text(value))
+def _table(
+    titles: Iterable[str],
+    rows: Iterable[Iterable[object]],
+    *,
+    left: Collection[str] = (),
+    overflow: OverflowMethod = "ellipsis",
+) -> Table:
+    """A table of numbers, with text in the columns on the ``left`` side."""
+    table = Table(box=None, pad_edge=False)
+    for title in titles:
+        table.add_column(title, justify="left" if title in left else "right", overflow=overflow)
+    for row in rows:
+        table.add_row(*map(_text, row))
+    return table
+
+
+def _by_factor(result: xr.Dataset, rows: Iterable[tuple[str, Iterable[object]]]) -> Table:
+    """Named rows with a column for each state."""
+    titles = ["at load factor", *(f"{factor:g}" for factor in result["state_load_factor"].values)]
+    table = _table(titles, ((name.replace("_", " "), *values) for name, values in rows), left=titles[:1])
+    table.columns[0].style = "dim"
+    return table
+
+
+def _pairs(rows: Iterable[tuple[str, object]]) -> Table:
+    """Names and what they stand for, without titles."""
+    titles = ("name", "value")
+    table = _table(titles, ((name.replace("_", " "), value) for name, value in rows), left=titles, overflow="fold")
+    table.show_header, table.columns[0].style = False, "dim"
     return table
 
 

@@ -26,7 +26,7 @@ import numpy as np
 from ..errors import GranularError
 from ..inputs import check_regular
 from ..scene.base import Description
-from ..scene.material import OUTSIDE_LAWS, Contact
+from ..scene.material import KNOWN_LAWS, Contact
 from ..scene.table import FilePacking
 
 _PACKAGE = Path(__file__).parents[1]
@@ -107,7 +107,8 @@ def _parts(value: Any, by_name: Collection[str]) -> list[Any]:
         return plain((value.func, value.args, value.keywords))
     if isinstance(value, Description):
         table = [_table(value)] if isinstance(value, FilePacking) else []
-        law = [OUTSIDE_LAWS[value.law]] if isinstance(value, Contact) and value.law in OUTSIDE_LAWS else []
+        outside = KNOWN_LAWS[value.law].law if isinstance(value, Contact) else None
+        law = [outside] if outside else []
         return [*plain(getattr(value, name) for name in type(value).model_fields), *table, *plain(law)]
     if dataclasses.is_dataclass(value):
         return plain(getattr(value, field.name) for field in dataclasses.fields(value))

@@ -1,4 +1,4 @@
-"""Results as files for other programs: one module for each format.
+"""Results as files for other programs: ``text``, ``gsd_file`` and ``vtk``.
 
 ``export`` picks the format by the suffix:
 
@@ -24,7 +24,6 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -35,20 +34,24 @@ from ...scene import formats
 from .. import atomic
 from ..checked import read_result
 from ..result import chosen_states
+from . import gsd_file, text, vtk
 from .frames import PREFIXES, contact_force_sums
 
-#: For each suffix its module, and the states of its file: the one asked for, every one, or either as frames.
-_WRITERS = {
-    ".contacts.csv": ("contacts_table", "one"),
-    ".events.csv": ("events_table", "frames"),
-    ".gsd": ("gsd_file", "frames"),
-    ".pvd": ("vtk", "every"),
-    ".vtu": ("vtk", "one"),
-    ".xyz": ("xyz", "frames"),
-    **dict.fromkeys(formats.SUFFIXES["csv"], ("csv_table", "one")),
-    **dict.fromkeys(formats.SUFFIXES["lammps-data"], ("lammps_data", "one")),
-    **dict.fromkeys(formats.SUFFIXES["lammps-dump"], ("lammps_dump", "frames")),
-    **dict.fromkeys(formats.SUFFIXES["yade"], ("yade", "one")),
+#: Of one dataset, the files to write: content by path. Writers of frames take the index of the only state too.
+Writer = Callable[..., dict[Path, bytes]]
+
+#: For each suffix what writes it, and the states of its file: the one asked for, every one, or either as frames.
+_WRITERS: dict[str, tuple[Writer, str]] = {
+    ".contacts.csv": (text.contacts, "one"),
+    ".events.csv": (text.events, "frames"),
+    ".gsd": (gsd_file.files, "frames"),
+    ".pvd": (vtk.files, "every"),
+    ".vtu": (vtk.files, "one"),
+    ".xyz": (text.xyz, "frames"),
+    **dict.fromkeys(formats.SUFFIXES["csv"], (text.csv_table, "one")),
+    **dict.fromkeys(formats.SUFFIXES["lammps-data"], (text.lammps_data, "one")),
+    **dict.fromkeys(formats.SUFFIXES["lammps-dump"], (text.lammps_dump, "frames")),
+    **dict.fromkeys(formats.SUFFIXES["yade"], (text.yade, "one")),
 }
 #: Those that a scene reads again.
 _READ = {suffix for suffixes in formats.SUFFIXES.values() for suffix in suffixes}
@@ -56,9 +59,6 @@ _READ = {suffix for suffixes in formats.SUFFIXES.values() for suffix in suffixes
 _SAME_MASS = 1e-9
 #: What a file name may end with.
 SUFFIXES = tuple(sorted(_WRITERS))
-
-#: Of one dataset, the files to write: content by path. Writers of frames take the index of the only state too.
-Writer = Callable[..., dict[Path, bytes]]
 
 
 class ExportError(GranularError):
@@ -92,7 +92,7 @@ def export(
     ending = double if double in _WRITERS else output.suffix
     if ending not in _WRITERS:
         raise ExportError(f"{output}: format {ending!r} is unknown, must be {' or '.join(SUFFIXES)}")
-    name, states = _WRITERS[ending]
+    writer, states = _WRITERS[ending]
     if states == "every" and state is not None:
         raise ExportError(
             f"state = {state}: {output} is a series of all states, must be left out (.vtu holds one state)"
@@ -109,7 +109,6 @@ def export(
         atomic.check_output(output, read)
         output.parent.mkdir(parents=True, exist_ok=True)
         atomic.check_writable(output)
-        writer: Writer = import_module(f".{name}", __name__).files
         made = writer(chosen, output, **only)
         for path in made:
             atomic.check_writable(path, read)
@@ -120,16 +119,16 @@ def export(
     except OSError as error:
         raise ExportError(f"{output}: cannot be written: {error.strerror or error}") from error
     if ending in _READ:
-        for remark in _lost(dataset.isel(state=-1 if state is None else state), name):
+        for remark in _lost(dataset.isel(state=-1 if state is None else state), writer):
             warnings.warn(f"{output}: {remark}", stacklevel=2)
     return output
 
 
-def _lost(state: xr.Dataset, module: str) -> Iterator[str]:
+def _lost(state: xr.Dataset, writer: Writer) -> Iterator[str]:
     """What is another one where a file of one state is read as a packing."""
     one_material = state["radius"].values ** 2
     mass = state["mass"].values * np.mean(one_material) / np.mean(state["mass"].values)
-    if module == "yade" and not np.allclose(mass, one_material, rtol=_SAME_MASS, atol=0.0):
+    if writer is text.yade and not np.allclose(mass, one_material, rtol=_SAME_MASS, atol=0.0):
         yield "the format has no masses: read again, disks are of one material (.csv and others keep them)"
     if any(np.any(state[f"{prefix}_spring"].values) for prefix in PREFIXES):
         yield "the format has no springs of friction: read again, contacts begin anew (continue keeps them)"

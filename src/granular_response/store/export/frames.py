@@ -50,14 +50,9 @@ def contact_force_sums(state: xr.Dataset) -> tuple[FloatArray, np.ndarray]:
     return force, count
 
 
-def box(dataset: xr.Dataset) -> Box:
-    """The box of a result."""
-    return Box(float(dataset.attrs["width"]), dataset.attrs.get("sides") == "periodic")
-
-
 def mark(dataset: xr.Dataset) -> formats.Mark:
     """What our own tables say of disks and box."""
-    bounds = box(dataset)
+    bounds = Box.of(dataset.attrs)
     return formats.Mark(dataset.sizes["disk"], bounds.width, bounds.periodic)
 
 

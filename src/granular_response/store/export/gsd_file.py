@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ...state import OPEN
-from .frames import box, extent, frames, in_plane
+from ...state import OPEN, Box
+from .frames import extent, frames, in_plane
 
 
 def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:
@@ -45,7 +45,7 @@ def files(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path
                 frame.log = {
                     "origin": np.zeros(3),
                     "box_width": np.array([width]),
-                    "periodic": np.array([box(dataset).periodic], np.uint8),
+                    "periodic": np.array([Box.of(dataset.attrs).periodic], np.uint8),
                     "load_factor": np.array([factor]),
                     "particles/force_change": in_plane(force),
                     "particles/coordination": count.astype(np.int32),

@@ -15,9 +15,10 @@ import numpy as np
 import xarray as xr
 
 from ...observe.stress import coarse_grained_stress, load_forces
-from ...state import OPEN
-from ..result import EVENTS, events_from, state_from
-from .frames import PREFIXES, box, contact_force_sums, in_plane
+from ...state import OPEN, Box
+from ..result import events_from, state_from
+from ..variables import EVENTS
+from .frames import PREFIXES, contact_force_sums, in_plane
 
 
 def files(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
@@ -38,7 +39,7 @@ def _mesh(dataset: xr.Dataset, index: int) -> bytes:
     """One state, with the stress that its load adds (Sec. V.C) at the centres of the disks."""
     state = dataset.isel(state=index)
     n = state.sizes["disk"]
-    position, bounds = state["position"].values, box(dataset)
+    position, bounds = state["position"].values, Box.of(dataset.attrs)
     force, count = contact_force_sums(state)
     points: list[np.ndarray] = [position]
     ends: list[np.ndarray] = []

@@ -1,0 +1,114 @@
+"""Files of text, every digit kept: disks for LAMMPS, YADE, OVITO (extended XYZ) and as CSV, contacts and events as CSV.
+
+LAMMPS takes the mass of a sphere from density and volume, so the densities of its data files are those that give the
+stored masses.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ...state import Box
+from ..contact_table import contact_table
+from ..result import events_from, state_from
+from ..variables import EVENTS
+from .frames import extent, frames, in_plane, mark
+
+
+def _file(path: Path, lines: Iterable[str]) -> dict[Path, bytes]:
+    return {path: ("\n".join(lines) + "\n").encode("ascii")}
+
+
+def _rows(columns: Sequence[np.ndarray], between: str = " ") -> list[str]:
+    return [between.join(map(repr, row)) for row in np.column_stack(columns).tolist()]
+
+
+def csv_table(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
+    """The disks in the columns that ``packing: {kind: file}`` reads."""
+    state = dataset.isel(state=-1)
+    rows = _rows([state["position"].values, state["radius"].values, state["mass"].values], ",")
+    head = f"# {mark(dataset)}, load factor {float(state['state_load_factor'])!r}"
+    return _file(path, [head, "x,z,radius,mass", *rows])
+
+
+def yade(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
+    """The disks as spheres in the plane y = 0, in columns ``x y z r``."""
+    state = dataset.isel(state=-1)
+    x, z = state["position"].values.T
+    rows = _rows([x, np.zeros_like(x), z, state["radius"].values])
+    return _file(path, ["#format x_y_z_r", f"# {mark(dataset)}", *rows])
+
+
+def lammps_data(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
+    """The disks as atoms of style sphere in two dimensions."""
+    state = dataset.isel(state=-1)
+    width, height = extent(dataset)
+    radius, depth = state["radius"].values, float(state["radius"].values.max())
+    density = state["mass"].values / (4.0 / 3.0 * math.pi * radius**3)
+    head = [
+        # the format has no place for the sides but its title
+        f"LAMMPS data file by {mark(dataset)}; units of mean radius, mean mass and g", "",
+        f"{len(radius)} atoms", "1 atom types", "",
+        f"0.0 {width!r} xlo xhi", f"0.0 {height!r} ylo yhi", f"{-depth!r} {depth!r} zlo zhi", "",
+        "Atoms # sphere", "",
+    ]  # fmt: skip
+    rows = _rows([2.0 * radius, density, in_plane(state["position"].values)])
+    return _file(path, [*head, *(f"{k} 1 {row}" for k, row in enumerate(rows, start=1))])
+
+
+def lammps_dump(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:
+    """A frame for each state, or the one with the index ``only``."""
+    width, height = extent(dataset)
+    radius, mass = dataset["radius"].values, dataset["mass"].values
+    depth = float(radius.max())
+    sides = "pp" if Box.of(dataset.attrs).periodic else "ff"
+    lines = []
+    for frame in frames(dataset, only):
+        lines += ["ITEM: TIMESTEP", str(frame.step), "ITEM: NUMBER OF ATOMS", str(len(radius))]
+        lines += [f"ITEM: BOX BOUNDS {sides} ff pp", f"0.0 {width!r}", f"0.0 {height!r}", f"{-depth!r} {depth!r}"]
+        lines.append("ITEM: ATOMS id type x y z radius mass fx fy fz")
+        rows = _rows([in_plane(frame.position), radius, mass, in_plane(frame.force_change)])
+        lines += [f"{k} 1 {row}" for k, row in enumerate(rows, start=1)]
+    return _file(path, lines)
+
+
+def xyz(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:
+    """A frame of extended XYZ for each state, or the one with the index ``only``."""
+    width, height = extent(dataset)
+    columns = "species:S:1:pos:R:3:radius:R:1:mass:R:1:angle:R:1:force_change:R:3:coordination:I:1"
+    radius, mass = dataset["radius"].values, dataset["mass"].values
+    depth = 2.0 * float(radius.max())
+    periodic = "T" if Box.of(dataset.attrs).periodic else "F"
+    lines = []
+    for _, factor, position, angle, force, count in frames(dataset, only):
+        lines.append(str(len(position)))
+        lines.append(
+            f'Lattice="{width!r} 0.0 0.0 0.0 {height!r} 0.0 0.0 0.0 {depth!r}" Properties={columns} '
+            f'load_factor={factor!r} pbc="{periodic} F F"'
+        )
+        rows = _rows([in_plane(position), radius, mass, angle, in_plane(force)])
+        lines += [f"X {row} {contacts}" for row, contacts in zip(rows, count.tolist(), strict=True)]
+    return _file(path, lines)
+
+
+def contacts(dataset: xr.Dataset, path: Path) -> dict[Path, bytes]:
+    """The closed contacts of the last state, a line each."""
+    table = contact_table(state_from(dataset, -1), dataset["radius"].values)
+    return {path: table.to_csv().encode("ascii")}
+
+
+def events(dataset: xr.Dataset, path: Path, only: int | None = None) -> dict[Path, bytes]:
+    """The events of the load path, a line each: all, or those on the way to the state with the index ``only``."""
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["state", *EVENTS])
+    table.writerows([state, *astuple(event)] for state, event in events_from(dataset, only))
+    return {path: text.getvalue().encode("utf-8")}
