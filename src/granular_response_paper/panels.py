@@ -61,6 +61,17 @@ def material(polydispersity: float, friction: float) -> str:
     return f"{packing(polydispersity)}, {style.equals(style.FRICTION, friction)}"
 
 
+def materials(polydispersity: ArrayLike, friction: ArrayLike) -> list[tuple[str, dict[str, Any]]]:
+    """Name and look of each of some materials (m,): colour by the polydispersity, marker and dashes by the friction."""
+    spreads, frictions = (np.asarray(values, dtype=float).tolist() for values in (polydispersity, friction))
+    colours = dict(family(sorted(set(spreads)), of="polydispersity"))
+    dashes = dict(family(sorted(set(frictions)), of="friction", dashed=True))
+    return [
+        (material(delta, mu), dashes[mu] | {"color": colours[delta]["color"]})
+        for delta, mu in zip(spreads, frictions, strict=True)
+    ]
+
+
 def zero(*panels: Axes) -> None:
     """A faint line where there is no response, below everything."""
     for axes in panels:

@@ -8,9 +8,10 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageSequence
 
 from granular_response.inputs import read_json
 from granular_response.machine import threads
@@ -195,7 +196,7 @@ def embed(path: Path) -> Picture:
     return Picture(
         path.stem,
         path.parent.name,
-        _uri("gif", moving.read_bytes()) if moving.exists() else _webp(few.convert("RGB"), lossless=True, quality=76),
+        _moving(moving) if moving.exists() else _webp(few.convert("RGB"), lossless=True, quality=76),
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
@@ -205,11 +206,15 @@ def embed(path: Path) -> Picture:
     )
 
 
-def _webp(image: Image.Image, **options: bool | int) -> str:
+def _moving(path: Path) -> str:
+    """A GIF as an animated WebP with the same frames: a third as large."""
+    with Image.open(path) as image:
+        frames = [(frame.convert("RGB"), frame.info["duration"]) for frame in ImageSequence.Iterator(image)]
+    (first, *others), durations = zip(*frames, strict=True)
+    return _webp(first, lossless=True, quality=76, save_all=True, append_images=others, duration=durations, loop=0)
+
+
+def _webp(image: Image.Image, **options: Any) -> str:
     buffer = io.BytesIO()
     image.save(buffer, format="WEBP", method=4, **options)
-    return _uri("webp", buffer.getvalue())
-
-
-def _uri(kind: str, data: bytes) -> str:
-    return f"data:image/{kind};base64," + base64.b64encode(data).decode()
+    return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()

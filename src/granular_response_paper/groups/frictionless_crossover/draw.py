@@ -262,19 +262,14 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
 
-    index = 0
-    for stiffness in stiffnesses:
+    for stiffness, face in zip(stiffnesses, ("white", None), strict=False):  # colours as in (g)
         slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
-        for name in ("crossover", "teardrop_reaches_floor"):
+        for at, name in list(enumerate(EVENTS))[1:]:
             bracket = slabs[f"{name}_bracket"].values
             known = np.isfinite(bracket).all(axis=1)
-            events.plot(
-                slabs["layers"].values[known],
-                bracket[known].mean(axis=1),
-                **style.marked_line(index),
-                label=f"{EVENTS[name]}, {style.equals('k_N', stiffness, style.STIFFNESS_UNIT)}",
-            )
-            index += 1
+            look = style.marked_line(at) | ({"markeredgewidth": 0.8, "markerfacecolor": face} if face else {})
+            label = f"{EVENTS[name]}, {style.equals('k_N', stiffness, style.STIFFNESS_UNIT)}"
+            events.plot(slabs["layers"].values[known], bracket[known].mean(axis=1), label=label, **look)
     events.set(xlabel="layers", ylabel=f"onset force, {style.FORCE}")
     events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
     events.legend(fontsize=7, loc="upper left")
