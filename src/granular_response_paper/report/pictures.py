@@ -26,6 +26,9 @@ SMALL, SMALL_QUALITY = (256, 144), 45
 #: Largest width of a raster picture that only stands in for a vector one, in its own pixels, and its colours.
 STAND_IN, STAND_IN_COLOURS = 868, 32
 
+#: How hard smooth maps are compressed, from 0 to 100.
+MAP_QUALITY = 85
+
 #: Of 255: a picture that is brighter on average is a plot on white paper, which a dark page shows inverted.
 PAPER = 160.0
 
@@ -178,7 +181,8 @@ def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
 
 
 def embed(path: Path) -> Picture:
-    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG.
+    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG, or, where that
+    is smaller, as of a smooth map, in all colours with little loss.
 
     Where a vector picture is beside it, the raster one is smaller, for readers without scripts; where an animation is,
     that stands in its place.
@@ -193,10 +197,11 @@ def embed(path: Path) -> Picture:
     if vector:
         few.thumbnail((STAND_IN, plain.height))
     few = few.quantize(STAND_IN_COLOURS if vector else 256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    still = _webp(few.convert("RGB"), lossless=True, quality=76)
     return Picture(
         path.stem,
         path.parent.name,
-        _moving(moving) if moving.exists() else _webp(few.convert("RGB"), lossless=True, quality=76),
+        _moving(moving) if moving.exists() else min(still, _webp(plain, quality=MAP_QUALITY), key=len),
         _webp(small, quality=SMALL_QUALITY),
         plain.width,
         plain.height,
