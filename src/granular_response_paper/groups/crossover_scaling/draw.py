@@ -59,14 +59,25 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    slabs = datasets["slabs"]
-    said = of_scene(
-        parameters.base, friction=sorted(set(slabs["friction"].values.tolist())), normal_stiffness=None, packing=None
-    )
+    slabs, powers = datasets["slabs"], datasets["powers"]
+    drawn = {
+        "crossover_scaling": of_layers(powers),
+        "crossover_scaling_regions": regions_of(powers),
+        "crossover_scaling_apart": np.flatnonzero(powers["varied"].values != "layers").tolist(),
+    }
+    said = {
+        stem: of_scene(
+            parameters.base,
+            friction=sorted(set(powers["friction"].values[series].tolist())),
+            normal_stiffness=None,
+            packing=None,
+        )
+        for stem, series in drawn.items()
+    }
     surveyed = any(one.surveyed for one in parameters.series)
     return of_group(
         "crossover_scaling",
-        dict.fromkeys(("crossover_scaling", "crossover_scaling_regions", "crossover_scaling_apart"), said),
+        said,
         p=parameters,
         layers=sorted(set(slabs["layers"].values.tolist())),
         survey=" Black edges: slabs of the survey." if surveyed else "",
