@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import repeat
 from typing import Any, Literal
 
 import numpy as np
@@ -36,8 +37,9 @@ def family(
 
 
 def titles(
-    axes: Iterable[Axes], texts: Iterable[str], *, stem: str = "", place: Literal["inside", "above"] = "above"
-) -> None:
+    axes: Iterable[Axes], texts: Iterable[str] = repeat(""), *, stem: str = "",
+    place: Literal["inside", "above"] = "above",
+) -> None:  # fmt: skip
     """A letter and a text for each of ``axes``; letters are those of the picture ``stem``, by default from (a) on."""
     for panel, name, text in zip(axes, letters(stem), texts, strict=False):
         style.letter(panel, name, place=place, text=text)

@@ -181,11 +181,10 @@ def _said(folder: Path) -> dict[tuple[str, str], tuple[str, str]]:
 
 
 def embed(path: Path) -> Picture:
-    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG, or, where that
-    is smaller, as of a smooth map, in all colours with little loss.
+    """A drawn picture as a data URI: as many pixels as drawn in 256 colours, a third as large as the PNG.
 
-    Where a vector picture is beside it, the raster one is smaller, for readers without scripts; where an animation is,
-    that stands in its place.
+    A smooth map is in all colours, with little loss, which is smaller. Where a vector picture is beside it, the raster
+    one is smaller, for readers without scripts; where an animation is, that stands in its place.
     """
     with Image.open(path) as image:
         plain = image.convert("RGB")

@@ -210,7 +210,8 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     varied = powers["varied"].values
     kinds = [kind for kind in APART if (varied == kind).any()]
     figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
-    for letter, axes, kind in zip("abc", panels[0], kinds, strict=False):
+    titles(panels[0, : len(kinds)])
+    for axes, kind in zip(panels[0], kinds, strict=False):
         for series, look in family(np.flatnonzero(varied == kind).tolist(), of="friction"):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             x = {
@@ -235,6 +236,5 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if kind == "disks_per_layer":  # within a decade
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
         axes.legend(loc="upper left", fontsize=7)
-        style.letter(axes, letter, place="above")
     panels[0, 0].set_ylabel(f"onset of two peaks, {style.FORCE}")
     return figure

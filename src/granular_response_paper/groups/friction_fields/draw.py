@@ -94,22 +94,20 @@ def _force_chains(data: xr.Dataset) -> Figure:
 
 def _vertical_stress(data: xr.Dataset) -> Figure:
     """Maps on one scale, the harmonic lattice last, and beside them how far they are off it."""
-    frictions = data["friction"].values
     x, z = data["x"].values, data["z"].values
     lattice = to_floor(data["stress_zz_lattice"].values, z, float(data["stress_width"]))
     fields = to_floor(data["stress_zz"].values, z, float(data["stress_width"]))
-    maps = [(field, _friction(mu)) for field, mu in zip(fields, frictions, strict=True)]
-    rows, letters = len(maps) + 1, [chr(ord("a") + k) for k in range(2 * len(maps) + 1)]
+    names = list(map(_friction, data["friction"].values))
+    rows, last = len(names) + 1, "abcdefgh"[len(names)]
     figure, panels = style.figure(rows, 2, width="double", height=1.62 * rows + 0.3, sharex=True, sharey=True)
     half = min(MAP_HALF_WIDTH, float(x.max()))
-    largest = max(float(field.max()) for field in (*fields, lattice))
-    furthest = max(float(np.abs(field - lattice)[:, np.abs(x) <= half].max()) for field, _ in maps)
+    largest = float(max(fields.max(), lattice.max()))
+    furthest = float(np.abs(fields - lattice)[..., np.abs(x) <= half].max())
     norm, signed = root_norm(largest), root_norm(furthest, signed=True)
-    for index, (field, name) in enumerate([*maps, (lattice, "harmonic lattice")]):
+    for index, field in enumerate([*fields, lattice]):
         axes = panels[index, 0]
         image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=largest * np.array(LEVELS))
-        style.letter(axes, letters[index], place="above", text=name)
-    for index, (field, name) in enumerate(maps):
+    for index, field in enumerate(fields):
         axes = panels[index, 1]
         # white where there is no difference; lines tell the sign without colours, broken where it is negative
         off = field - lattice
@@ -118,8 +116,9 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         lines = sorted(level for level in levels if off.min() < level < off.max())
         if lines:
             axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
-        style.letter(axes, letters[rows + index], place="above", text=f"{name}, minus ({letters[len(maps)]})")
-    for axes in [*panels[:, 0], *panels[:-1, 1]]:
+    drawn = [*panels[:, 0], *panels[:-1, 1]]
+    titles(drawn, [*names, "harmonic lattice", *(f"{name}, minus ({last})" for name in names)])
+    for axes in drawn:
         network.draw_load(axes, (0.0, float(z.max())), length=3.0)
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
     for axes in (panels[-1, 0], panels[-2, 1]):

@@ -19,7 +19,7 @@ from matplotlib.ticker import FixedLocator
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import Caption, letters, of_group, of_scene, panels, values
+from granular_response_paper.captions import Caption, of_group, of_scene, panels, values
 from granular_response_paper.panels import family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
@@ -126,7 +126,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
     centre.xaxis.set_major_formatter("{x:g}")
     centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
-    style.letters(np.array([profiles, centre]), place="above")
+    titles((profiles, centre))
     return figure
 
 
@@ -142,8 +142,8 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
             continue
         one = states.isel(force=chosen[at])
         handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
-        force = float(one["force"])
-        style.letter(axes, chr(ord("a") + at), place="above", text=style.equals(style.F_EXT, force, style.WEIGHT))
+    forces = states["force"].values[chosen]
+    titles(panels.flat, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     return figure
 
@@ -230,7 +230,7 @@ def _stiffness(data: xr.Dataset) -> Figure:
     size.set_ylim(top=1.15 * size.get_ylim()[1])
     label_ends(size, ends[:2], ha="right", va="top")  # right above them lies the width under the larger force
     label_ends(size, ends[2:], ha="right", va="bottom")
-    style.letters(np.array([centre, size, events]), first=next(letters("fig05b_stiffness")), place="above")
+    titles((centre, size, events), stem="fig05b_stiffness")
     return figure
 
 

@@ -83,7 +83,7 @@ def _moduli(data: xr.Dataset) -> Figure:
     shear.set_ylabel(r"shear modulus $(a + b - 2c + 2d)\,/\,8k_N$")
     shape.set_ylabel(r"$a\,/\,b$, horizontal over vertical")
     shape.axhline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
-    style.letters([bulk, shear, shape], place="above")
+    titles((bulk, shear, shape))
     keys = [Line2D([], [], **look | {"linestyle": "none", "markersize": 4.5}) for _, look in cases]
     plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 4.5}
     keys += [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family
+from granular_response_paper.panels import family, titles
 
 from .parameters import Parameters
 
@@ -30,7 +30,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     _stop_energy(stop, datasets["stop_energy"])
     _restart(restart, datasets["restart"])
     _damping(damping, datasets["damping"])
-    style.letters(axes, place="above")
+    titles(axes.flat)
     return {"numerics": figure}
 
 

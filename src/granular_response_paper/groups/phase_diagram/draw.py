@@ -269,6 +269,7 @@ def _starts(starts: xr.Dataset) -> Figure:
     deltas = sorted(set(starts["polydispersity"].values.tolist()))
     frictions = sorted({mu for mu in starts["friction"].values.tolist() if mu <= 0.2 and mu != 0.05})
     figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
+    names: list[str] = []
     for column, delta in enumerate(deltas):
         touching = 2.0 / (1.0 - 0.5 * delta)
         dips, contacts = panels[:, column]
@@ -285,14 +286,9 @@ def _starts(starts: xr.Dataset) -> Figure:
         for axes in (dips, contacts):
             axes.axvline(touching, color=style.MUTED, linewidth=0.6, linestyle="--", zorder=0)
         dips.axhline(0.0, color=style.FAINT, linewidth=0.6, linestyle="-", zorder=0)
-        style.letter(
-            dips,
-            "abc"[column],
-            place="above",
-            text=f"$\\delta = {delta:g}$, $F_{{\\mathrm{{ext}}}} = {force:g}\\,{style.WEIGHT}$",
-        )
-        style.letter(contacts, "def"[column], place="above")
+        names.append(f"{packing(delta)}, {style.equals(style.F_EXT, force, style.WEIGHT)}")
         contacts.set_xlabel("initial lattice constant / $\\bar R$")
+    titles(panels.flat, [*names, *[""] * len(names)])
     panels[0, 0].set_ylabel("relative depth of the dip")
     panels[1, 0].set_ylabel("coordination number $z$, with walls")
     panels[0, 0].legend(loc="best")
