@@ -74,6 +74,10 @@ def materials(polydispersity: ArrayLike, friction: ArrayLike) -> list[tuple[str,
     ]
 
 
+#: Over symbols of slabs and packings of the survey.
+SURVEYED: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "white", "markeredgewidth": 0.9, "zorder": 3}
+
+
 def zero(*panels: Axes) -> None:
     """A faint line where there is no response, below everything."""
     for axes in panels:

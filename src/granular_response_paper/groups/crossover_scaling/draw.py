@@ -13,17 +13,12 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, label_ends, titles
+from granular_response_paper.panels import SURVEYED, family, label_ends, titles
 
 from .parameters import Parameters
 
 #: Height of a row of the lattice (radii).
 ROW = float(np.sqrt(3.0))
-
-#: Over symbols of slabs of the survey.
-SURVEYED: dict[str, Any] = {
-    "markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.9, "zorder": 3,
-}  # fmt: skip
 
 #: Behind an exponent: no curve runs through it.
 WHITE: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
@@ -80,7 +75,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         said,
         p=parameters,
         layers=sorted(set(slabs["layers"].values.tolist())),
-        survey=" Black edges: slabs of the survey." if surveyed else "",
+        survey=" Open symbols: slabs of the survey." if surveyed else "",
     )
 
 
@@ -122,10 +117,9 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             layers = one["layers"].values.astype(float)
             middle, half = _brackets(one, event)
             power = float(powers["exponent"].isel(series=series).sel(event=event)[0])
-            symbol = look | {"linestyle": "none"}
-            axes.errorbar(layers, middle, half, capsize=2, **symbol)
+            axes.errorbar(layers, middle, half, capsize=2, **look | {"linestyle": "none"})
             stored = one["surveyed"].values > 0
-            axes.plot(layers[stored], middle[stored], **symbol | SURVEYED)
+            axes.plot(layers[stored], middle[stored], **look | SURVEYED)
             ends = np.array([layers.min(), layers.max()])
             through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
             axes.plot(ends, through, **look | {"marker": ""})

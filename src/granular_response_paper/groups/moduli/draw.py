@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import label_ends, materials, outer, titles, zero
+from granular_response_paper.panels import SURVEYED, label_ends, materials, outer, titles, zero
 
 from .parameters import Parameters
 
@@ -53,7 +53,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         p=parameters,
         ensemble=f"{min(most)} to {max(most)}" if min(most) != max(most) else f"{most[0]}",
         survey=f" Of the survey: {', '.join(stored)}." if stored else "",
-        edges=" Black edges: at least half of the packings are the survey's." if stored else "",
+        edges=" Open symbols: at least half of the packings are the survey's." if stored else "",
         tolerances=[100.0 * tolerance for tolerance in parameters.tolerances],
     )
 
@@ -131,9 +131,7 @@ def _sizes(data: xr.Dataset) -> Figure:
             layers = data["layers"][case]
             axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=name, capsize=2.5, **look)
             stored = data["surveyed"].values[case] >= 0.5 * count
-            edge = {"linestyle": "none", "markerfacecolor": "none", "zorder": 3}
-            edge |= {"markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
-            axes.plot(layers[stored], mean[stored], **look | edge)
+            axes.plot(layers[stored], mean[stored], **look | SURVEYED)
         for tolerance in data["tolerance"].values:
             axes.axhline(tolerance, color=style.FAINT, linewidth=0.8, zorder=0)
         sizes = np.unique(data["layers"].values[np.isfinite(data["layers"].values)])
