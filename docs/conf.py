@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "src"))
+sys.path[:0] = [str(ROOT / "src"), str(ROOT / "docs")]
 os.environ.setdefault("MPLBACKEND", "agg")
 
 from granular_response import __version__ as release  # noqa: E402
@@ -55,6 +55,8 @@ sphinx_gallery_conf = {
     "capture_repr": (),
     "matplotlib_animations": True,
     "write_computation_times": False,
+    "reset_modules": ("matplotlib", "gallery_look.apply"),
+    "thumbnail_size": (700, 300),  # of most pictures; narrow.css shows the square in the middle
 }
 
 html_theme = "pydata_sphinx_theme"

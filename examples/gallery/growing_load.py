@@ -29,4 +29,4 @@ gr.plot.response(result)
 figure, panels = plt.subplots(2, 2, figsize=(9, 4.5), layout="constrained")
 for k, ax in enumerate(panels.flat):
     gr.plot.contacts(result, state=k + 1, ax=ax)
-    ax.set_title(f"F = {FORCES[k]:g}")
+    ax.set_title(f"F = {FORCES[k]:g} mg")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import repeat
 from typing import Any, Literal
 
 import numpy as np
@@ -36,8 +37,9 @@ def family(
 
 
 def titles(
-    axes: Iterable[Axes], texts: Iterable[str], *, stem: str = "", place: Literal["inside", "above"] = "above"
-) -> None:
+    axes: Iterable[Axes], texts: Iterable[str] = repeat(""), *, stem: str = "",
+    place: Literal["inside", "above"] = "above",
+) -> None:  # fmt: skip
     """A letter and a text for each of ``axes``; letters are those of the picture ``stem``, by default from (a) on."""
     for panel, name, text in zip(axes, letters(stem), texts, strict=False):
         style.letter(panel, name, place=place, text=text)
@@ -59,6 +61,21 @@ def packing(polydispersity: float) -> str:
 def material(polydispersity: float, friction: float) -> str:
     """A name for titles and legends."""
     return f"{packing(polydispersity)}, {style.equals(style.FRICTION, friction)}"
+
+
+def materials(polydispersity: ArrayLike, friction: ArrayLike) -> list[tuple[str, dict[str, Any]]]:
+    """Name and look of each of some materials (m,): colour by the polydispersity, marker and dashes by the friction."""
+    spreads, frictions = (np.asarray(values, dtype=float).tolist() for values in (polydispersity, friction))
+    colours = dict(family(sorted(set(spreads)), of="polydispersity"))
+    dashes = dict(family(sorted(set(frictions)), of="friction", dashed=True))
+    return [
+        (material(delta, mu), dashes[mu] | {"color": colours[delta]["color"]})
+        for delta, mu in zip(spreads, frictions, strict=True)
+    ]
+
+
+#: Over symbols of slabs and packings of the survey.
+SURVEYED: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "white", "markeredgewidth": 0.9, "zorder": 3}
 
 
 def zero(*panels: Axes) -> None:

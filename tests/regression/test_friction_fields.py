@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from granular_response.state import FLOOR
 from granular_response_paper.groups.friction_fields import draw as figures
 
 SCALARS = ("misalignment", "axis_angle", "axis_share", "distance_to_lattice", "antisymmetric_near")
@@ -33,6 +34,19 @@ def test_stress_carries_the_load(datasets) -> None:
     np.testing.assert_allclose(row["stress_zz"][0].sum("x") * step, 1.0, atol=0.01)  # some lies beyond the walls
     # frictional side walls take a little of it, or add to it
     np.testing.assert_allclose(row["stress_zz"][1:].sum("x") * step, 1.0, atol=0.03)
+
+
+def test_the_floor_carries_what_is_drawn_there(datasets) -> None:
+    """At the floor the drawn stress is the smoothed floor force, which is stored, within a twentieth."""
+    forces, stress = datasets["forces"], datasets["stress"]
+    on_floor = forces["wall_index"].values == FLOOR
+    w, disks = float(stress["stress_width"]), forces["wall_disk"].values[on_floor]
+    for index, field in enumerate(stress["stress_zz"].values):
+        at = forces["position"].values[index, disks, 0] - 0.5 * float(forces["width"])
+        pushed = forces["wall_added_force"].values[index, on_floor, 1] / float(forces["force"])
+        near = np.exp(-(((stress["x"].values[:, None] - at) / w) ** 2)) / (np.sqrt(np.pi) * w)
+        drawn = figures.to_floor(field, stress["z"].values, w)[0]
+        np.testing.assert_allclose(drawn, near @ pushed, atol=0.05 * drawn.max())
 
 
 def test_forces_are_those_of_the_load(datasets) -> None:

@@ -77,8 +77,7 @@ def test_contact_points_lie_between_the_surfaces() -> None:
 def test_force_lines_are_centred_and_scaled_by_magnitude(axes) -> None:
     point = nd.pair_points(POSITION, RADIUS, FIRST, SECOND)
     force = np.array([[3.0, 4.0], [-1.0, 0.0], [0.0, 2.0], [1e-4, 0.0]])
-    scale = nd.force_scale(force, longest=2.0, widest=3.0)
-    lines = nd.draw_force_chains(axes, point, force, smallest=1e-3, **scale)
+    lines = nd.draw_force_chains(axes, point, force, smallest=1e-3, length_per_force=0.4, width_per_force=0.6)
     segments = np.array(lines.get_segments())
     np.testing.assert_allclose(segments.mean(axis=1), point[:3])
     vector = segments[:, 1] - segments[:, 0]
@@ -105,5 +104,3 @@ def test_bad_input_is_named(axes) -> None:
         nd.draw_disks(axes, [1.0, 2.0], 1.0)
     with pytest.raises(ValueError, match="force: 1 given for 2"):
         nd.draw_force_chains(axes, POSITION[:2], POSITION[:1], length_per_force=1.0, width_per_force=1.0)
-    with pytest.raises(ValueError, match="forces"):
-        nd.force_scale(np.zeros((3, 2)))

@@ -16,7 +16,7 @@ def _drawn():
         axes[0, 0].plot([0.0, 1.0], [index, index + 1.0], label=f"$F = {index}\\,mg$")
     axes[0, 0].legend()
     axes[0, 1].set_xlabel("$x/R$")
-    style.letters(axes)
+    style.letter(axes[0, 0], "a")
     return drawn
 
 

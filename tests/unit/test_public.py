@@ -78,6 +78,15 @@ def test_the_response_at_a_place(result):
             result.response_at(**mistake)
 
 
+def test_results_are_subtracted_disk_by_disk_as_no_place_is_the_same(result):
+    """``x`` is where gravity has left a floor disk: as the index it would leave next to nothing of a difference."""
+    other = gr.solve(result.scene.updated({"contact.friction": 0.0}), load_factors=result.load_factors)
+    one, two = result.floor_response, other.floor_response
+    assert (one - two).shape == one.shape
+    placed = one.swap_dims(floor_disk="x") - two.swap_dims(floor_disk="x")
+    assert placed.sizes["x"] <= 1 < one.sizes["floor_disk"]
+
+
 def test_after_unloading_the_change_is_defined():
     unloaded = gr.solve(SMALL, load_factors=[1.0, 0.0])
     assert np.isnan(unloaded.floor_response.sel(load=0.0)).all()

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from chromium import BROWSER, Chromium
-from PIL import Image
+from PIL import Image, ImageSequence
 from xarray import Dataset
 
 from granular_response.store import files as store
@@ -419,10 +419,18 @@ def test_the_overview_stands_at_the_top_and_unknown_groups_at_the_end(root, tmp_
         path = tmp_path / "copy" / "figures" / f"{name}.png"
         path.parent.mkdir(exist_ok=True)
         Image.new("RGB", (1400, 500), "black").save(path)
-    (tmp_path / "copy" / "figures" / "overview" / "growing_force.gif").write_bytes(b"GIF89a")
+    frames = [Image.new("P", (70, 30), colour) for colour in (0, 1)]
+    for frame in frames:
+        frame.putpalette([0, 0, 0, 255, 255, 255])
+    moving = tmp_path / "copy" / "figures" / "overview" / "growing_force.gif"
+    frames[0].save(moving, save_all=True, append_images=frames[1:], duration=[160, 1500])
     text = report.page(tmp_path / "copy")
     part = text.partition('id="picture-growing_force"')[2]
-    assert part.index('src="data:image/gif;base64,R0lGODlh"') < part.index('href="overview/growing_force.gif">GIF</a>')
+    source = re.search(r'src="data:image/webp;base64,([^"]*)"', part)
+    assert source.start() < part.index('href="overview/growing_force.gif">GIF</a>')
+    with Image.open(io.BytesIO(base64.b64decode(source[1]))) as moving:
+        assert moving.n_frames == 2
+        assert [np.asarray(frame.convert("RGB")).mean() for frame in ImageSequence.Iterator(moving)] == [0.0, 255.0]
     assert text.index('id="picture-overview"') < text.index('class="tiles"') < text.index('id="picture-growing_force"')
     assert text.index('id="summary"') < text.index('id="picture-overview"') < text.index('id="try"')
     assert text.count('picture-overview"') == 1
@@ -766,6 +774,22 @@ def test_the_explorer_follows_mouse_and_keys(opened):
     tab.click(*tab.centre("input[name=friction][value='0.0']")[:2])
     assert "µ = 0, " in tab.run("document.getElementById('network').getAttribute('aria-label')")
     assert tab.problems == []
+
+
+def test_the_value_under_the_pointer_is_shown(opened):
+    tab = opened(1400)
+    shown = "(e => e.hidden ? '' : e.textContent)(document.getElementById('value'))"
+    for panel, expected in (("floor", f"x = 0 R\u0304: {1 / 7:.4f}"), ("range", f"F = 4 mg: {1 / 7:.4f}")):
+        x, y, width = tab.centre(f"#{panel}")
+        seen = set()
+        for across, over in itertools.product(np.linspace(0.0, 0.4 * width, 20), np.linspace(-140.0, 140.0, 20)):
+            tab.hover(x + across, y + over)
+            seen.add(tab.run(shown))
+            if expected in seen:
+                break
+        assert expected in seen
+    tab.hover(0.0, 0.0)
+    assert tab.run(shown) == "" and tab.problems == []
 
 
 def test_the_force_grows_by_itself_and_stops_at_the_end(opened):

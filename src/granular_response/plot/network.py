@@ -208,8 +208,7 @@ def draw_force_chains(
     """Draw each force (m, 2) as a line along it, centred at its contact ``point`` (m, 2) (Figs. 2, 13, 17, 18).
 
     Length (radii) and width (points) are both proportional to the magnitude, the width down to :data:`THINNEST`. Forces
-    below ``smallest`` are left out, which keeps the files of large packings small. Choose the factors with
-    :func:`force_scale`, one for all panels that are compared.
+    below ``smallest`` are left out, which keeps the files of large packings small.
     """
     centre, vector = _points(point, "point"), _points(force, "force")
     if len(centre) != len(vector):
@@ -244,18 +243,6 @@ def rescaled(force: ArrayLike, scale: Literal["linear", "sqrt", "percentile"], *
     size = np.zeros(len(vector))
     size[seen] = SCALES[scale](magnitude[seen] / largest)
     return vector * (size / np.where(seen, magnitude, 1.0))[:, None]
-
-
-def force_scale(*forces: ArrayLike, longest: float = 2.0, widest: float = 3.0) -> dict[str, float]:
-    """``length_per_force`` and ``width_per_force`` for :func:`draw_force_chains`.
-
-    With them the largest of all ``forces``, each (m, 2), is ``longest`` radii long and ``widest`` points
-    wide. Raises ValueError if every force is zero.
-    """
-    largest = max(float(np.max(np.linalg.norm(_points(f, "force"), axis=1), initial=0.0)) for f in forces)
-    if not largest > 0.0:
-        raise ValueError("forces: at least one must differ from zero")
-    return {"length_per_force": longest / largest, "width_per_force": widest / largest}
 
 
 def draw_load(axes: Axes, at: ArrayLike, direction: ArrayLike = (0.0, -1.0), *, length: float = 4.0) -> None:

@@ -249,7 +249,7 @@ def forces(
         crowded = 0.5 if scale == "percentile" else 1.0
         widest = crowded * _width_per_radius(axes, shown)
         factors = {"length_per_force": 4.0 * crowded, "width_per_force": widest}
-        kinds = {"presses more": (pushes, style.BLACK, 3), "presses less": (~pushes, style.VERMILION, 4)}
+        kinds = {"force increased": (pushes, style.BLACK, 3), "force decreased": (~pushes, style.VERMILION, 4)}
         for mask, colour, order in kinds.values():
             look = {"color": colour, "zorder": order, **factors, **lines}
             network.draw_force_chains(axes, point[mask], drawn[mask], smallest=0.02, **look)

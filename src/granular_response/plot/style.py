@@ -247,12 +247,6 @@ def letter(axes: Axes, name: str, *, place: Literal["inside", "above"] = "inside
             )
 
 
-def letters(axes: Sequence[Axes] | np.ndarray, *, first: str = "a", **keywords: Any) -> None:
-    """Panel letters from ``first`` on, on ``axes`` in reading order; keywords as of :func:`letter`."""
-    for index, panel in enumerate(np.asarray(axes, dtype=object).ravel()):
-        letter(panel, chr(ord(first) + index), **keywords)
-
-
 def drawn_letters(drawn: Figure) -> list[str]:
     """The panel letters that a figure has, sorted."""
     texts = [text for axes in drawn.axes for text in [axes.get_title("left"), *(t.get_text() for t in axes.texts)]]

@@ -82,7 +82,22 @@
     });
   }
 
+  // what is drawn, by panel: place and value, which is shown beside the pointer
+  const spots = {}, value = byId("value");
+  ["network", "floor", "range", "phase"].forEach(function (id) {
+    byId(id).addEventListener("mousemove", function (event) {
+      const away = function (spot) { return Math.hypot(spot[0] - event.offsetX, spot[1] - event.offsetY); };
+      const near = spots[id].reduce(function (a, b) { return away(b) < away(a) ? b : a; });
+      value.hidden = away(near) > 16;
+      value.textContent = near[2];
+      value.style.top = event.clientY + 14 + "px";
+      value.style.left = Math.min(event.clientX + 10, document.documentElement.clientWidth - value.offsetWidth - 4) + "px";
+    });
+    byId(id).addEventListener("mouseleave", function () { value.hidden = true; });
+  });
+
   function sheet(id, height) {
+    spots[id] = [];
     const canvas = byId(id), width = canvas.clientWidth, ratio = window.devicePixelRatio || 1;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height(width) * ratio);
@@ -143,15 +158,17 @@
     const widest = 2.2 * scale / data.strongest;
     const order = Array.from(frame.levels.keys()).sort(function (a, b) { return Math.abs(frame.levels[a]) - Math.abs(frame.levels[b]); });
     order.forEach(function (k) {
-      const level = frame.levels[k], ends = [[X(lines[4 * k]), Z(lines[4 * k + 1])], [X(lines[4 * k + 2]), Z(lines[4 * k + 3])]];
+      const level = frame.levels[k], sliding = frame.sliding(k), ends = [[X(lines[4 * k]), Z(lines[4 * k + 1])], [X(lines[4 * k + 2]), Z(lines[4 * k + 3])]];
       const middle = [(ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2];
       if (level === data.opened) {
         counts.opened += 1;
         const arm = Math.max(2.2, 0.45 * scale), x = middle[0], z = middle[1];
+        spots.network.push([x, z, "opened"]);
         line(pen, [[x - arm, z - arm], [x + arm, z + arm]], colour.opened, 1.6);
         line(pen, [[x - arm, z + arm], [x + arm, z - arm]], colour.opened, 1.6);
       } else {
         const part = data.strongest * (level / data.full) * (level / data.full), width = widest * part;
+        spots.network.push([middle[0], middle[1], (level < 0 ? "\u2212" : "+") + short(part) + " F" + (sliding ? ", at the Coulomb limit" : "")]);
         if (level > 0) { counts.most = Math.max(counts.most, part); } else { counts.least = Math.max(counts.least, part); }
         if (part >= 0.008) {
           pen.lineCap = level > 0 ? "round" : "butt";
@@ -165,7 +182,7 @@
           }
         }
       }
-      if (frame.sliding(k)) {
+      if (sliding) {
         counts.sliding += 1;
         dot(pen, middle[0], middle[1], Math.max(1.5, 0.28 * scale), colour.ink, true);
       }
@@ -200,24 +217,30 @@
     text(pen, "x/R\u0304", width, y, "right");
   }
 
-  function response(index) {
-    const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
-    const X = across(paper.width).X;
-    let top = 0.02, bottom = 0;
-    (slab.smoothed ? slab.smoothed.concat([slab.response[index]]) : slab.response).forEach(function (row) {
-      row.forEach(function (value) { top = Math.max(top, value); bottom = Math.min(bottom, value); });
-    });
-    const Y = function (value) { return 8 + (top - value) / (top - bottom) * (paper.height - 36); };
-    const step = [0.02, 0.05, 0.1, 0.2, 0.5, 1].find(function (s) { return (top - bottom) / s < 7; }) || 2;
-    for (let tick = Math.ceil(bottom / step); tick * step <= top; tick++) {
-      line(pen, [[LEFT, Y(tick * step)], [paper.width, Y(tick * step)]], tick ? colour.grid : colour.soft, 1);
+  // the axis along y of what `rows` hold, down to `bottom`, with lines as far as `right`
+  function linear(pen, rows, bottom, right) {
+    const values = [0, 0.02].concat(...rows), top = Math.max(...values), least = Math.min(...values);
+    const Y = function (value) { return 8 + (top - value) / (top - least) * (bottom - 8); };
+    const step = [0.02, 0.05, 0.1, 0.2, 0.5, 1].find(function (s) { return (top - least) / s < 7; }) || 2;
+    for (let tick = Math.ceil(least / step); tick * step <= top; tick++) {
+      line(pen, [[LEFT, Y(tick * step)], [right, Y(tick * step)]], tick ? colour.grid : colour.soft, 1);
       text(pen, typed((tick * step).toFixed(2)), LEFT - 4, Y(tick * step), "right");
     }
-    upright(pen, quantity(), (paper.height - 28) / 2);
+    upright(pen, quantity(), bottom / 2);
+    return Y;
+  }
+
+  function response(index) {
+    const paper = sheet("floor", function (width) { return Math.max(150, 0.3 * width); }), pen = paper.pen;
+    const X = across(paper.width).X, floor = slab.response[index];
+    const Y = linear(pen, slab.smoothed ? slab.smoothed.concat([floor]) : slab.response, paper.height - 28, paper.width);
     const rows = slab.smoothed || slab.response, values = rows[index];
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(rows[0][k])]; }), colour.soft, 3);
     line(pen, slab.x.map(function (x, k) { return [X(x), Y(values[k])]; }), colour.curve, 1.8);
-    slab.x.forEach(function (x, k) { dot(pen, X(x), Y(slab.response[index][k]), 2.1, colour.curve, Boolean(slab.smoothed)); });
+    slab.x.forEach(function (x, k) {
+      dot(pen, X(x), Y(floor[k]), 2.1, colour.curve, Boolean(slab.smoothed));
+      spots.floor.push([X(x), Y(floor[k]), "x = " + typed(x) + " R\u0304: " + mean(floor[k])]);
+    });
     xTicks(pen, X, paper.height - 10, paper.width);
   }
 
@@ -234,20 +257,10 @@
         .map(function (one) { return {friction: one.friction, force: one.forces, centre: one.centre}; })
       : data.range;
     const motion = slab.motion ? slab.forces.indexOf(slab.motion) : slab.forces.length;
-    let top = 0.01, bottom = 0;
-    others.concat([{centre: slab.centre}]).forEach(function (one) {
-      one.centre.forEach(function (value) { top = Math.max(top, value); bottom = Math.min(bottom, value); });
-    });
-    const X = logarithm(0.1, 110, LEFT, paper.width - 40);
-    const Y = function (value) { return 8 + (top - value) / (top - bottom) * (paper.height - 44); };
-    const step = [0.02, 0.05, 0.1, 0.2].find(function (s) { return (top - bottom) / s < 7; }) || 0.5;
-    for (let tick = Math.ceil(bottom / step); tick * step <= top; tick++) {
-      line(pen, [[LEFT, Y(tick * step)], [paper.width - 40, Y(tick * step)]], colour.grid, 1);
-      text(pen, typed((tick * step).toFixed(2)), LEFT - 4, Y(tick * step), "right");
-    }
+    const X = logarithm(0.1, 110, LEFT, paper.width - 40), rows = others.concat([slab]).map(function (one) { return one.centre; });
+    const Y = linear(pen, rows, paper.height - 36, paper.width - 40);
     [0.1, 1, 10, 100].forEach(function (force) { text(pen, String(force), X(force), paper.height - 26, "center"); });
     text(pen, "F / mg", (LEFT + paper.width) / 2, paper.height - 9, "center");
-    upright(pen, quantity(), (paper.height - 36) / 2);
     slab.paper.forEach(function (one) { line(pen, [[X(one.force), 8], [X(one.force), paper.height - 36]], colour.soft, 1, [2, 3]); });
     let low = -20;
     others.map(function (one) { return [Y(one.centre[one.centre.length - 1]), one]; })
@@ -257,7 +270,8 @@
         line(pen, one.force.map(function (f, k) { return [X(f), Y(one.centre[k])]; }), colour.soft, 1);
         text(pen, "\u00b5 " + short(one.friction), paper.width, low, "right");
       });
-    const own = slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k])]; });
+    const own = slab.forces.map(function (f, k) { return [X(f), Y(slab.centre[k]), "F = " + f + " mg: " + mean(slab.centre[k])]; });
+    spots.range = own;
     line(pen, own.slice(0, motion), colour.curve, 2);
     own.slice(motion).forEach(function (point) { dot(pen, point[0], point[1], 2.6, colour.curve, true); });
     const force = slab.forces[index];
@@ -305,6 +319,7 @@
       const points = one.friction.map(function (friction, k) { return [X(friction), Y(one.force[k])]; });
       line(pen, points.filter(function (_, k) { return !one.kind[k]; }), ink, mine ? 2 : 1, mine ? [] : [4, 3]);
       points.forEach(function (point, k) {
+        spots.phase.push([...point, "\u03b4 = " + one.polydispersity + ", \u00b5 = " + one.friction[k] + ": two peaks " + begins(one, k)]);
         if (mine && one.low[k] !== one.high[k]) {
           line(pen, [[point[0], Y(one.low[k] || low)], [point[0], Y(one.high[k] || 600)]], ink, 1);
         }
@@ -336,7 +351,10 @@
     const k = curve && slab.ratio === 0.8 ? curve.friction.indexOf(slab.friction) : -1;
     if (k < 0) { return ""; }
     return " Fig. 22 (" + (slab.polydispersity ? "mean of the ensemble, " : "") + walls(slab.friction) + ", " + smoothing(data.width) +
-      "): two peaks " + ["from ", "already below ", "not up to "][curve.kind[k]] + short(curve.force[k]) + " mg" + (curve.kind[k] ? "." : " on.");
+      "): two peaks " + begins(curve, k) + ".";
+  }
+  function begins(curve, k) {
+    return ["from ", "already below ", "not up to "][curve.kind[k]] + short(curve.force[k]) + " mg" + (curve.kind[k] ? "" : " on");
   }
   function shape(index) {
     const start = "The response (" + walls(slab.walls) + ", " + smoothing(slab.width) + ") ";
@@ -347,6 +365,7 @@
 
   function show() {
     readColours();
+    value.hidden = true;
     byId("range-of").textContent = slab.polydispersity ? "as in Fig. 20" : "Fig. 6";
     byId("floor-of").textContent = slab.width ? "Floor stress, " + smoothing(slab.width) + " (as in Fig. 20)" : "Normalized floor response";
     const index = Number(slider.value), force = slab.forces[index], counts = contacts(index);

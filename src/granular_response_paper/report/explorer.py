@@ -54,7 +54,7 @@ PAPER: tuple[tuple[float, float, str, str, tuple[str, ...]], ...] = (
     (0.2, 40.0, "a small third peak", "Sec. V.E", ("third_peak",)),
     (1.0, 6.0, "the first contact opens", "Sec. V.B", ("first_opening",)),
     (1.0, 50.0, "still one peak", "Sec. V.A", ()),
-    (1.0, 91.0, "the response loses its symmetry", "Sec. V.E", ("loss_of_symmetry",)),
+    (1.0, 91.0, "above it the response loses its symmetry", "Sec. V.E", ("loss_of_symmetry",)),
 )
 
 

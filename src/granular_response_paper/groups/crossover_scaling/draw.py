@@ -13,17 +13,15 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import family, label_ends, titles
+from granular_response_paper.panels import SURVEYED, family, label_ends, titles
 
 from .parameters import Parameters
 
 #: Height of a row of the lattice (radii).
 ROW = float(np.sqrt(3.0))
 
-#: Over symbols of slabs of the survey.
-SURVEYED: dict[str, Any] = {
-    "markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.9, "zorder": 3,
-}  # fmt: skip
+#: Behind an exponent: no curve runs through it.
+WHITE: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
 
 #: Least ratio of numbers of layers that are labelled.
 NEXT_LABEL = 1.25
@@ -56,17 +54,28 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    slabs = datasets["slabs"]
-    said = of_scene(
-        parameters.base, friction=sorted(set(slabs["friction"].values.tolist())), normal_stiffness=None, packing=None
-    )
+    slabs, powers = datasets["slabs"], datasets["powers"]
+    drawn = {
+        "crossover_scaling": of_layers(powers),
+        "crossover_scaling_regions": regions_of(powers),
+        "crossover_scaling_apart": np.flatnonzero(powers["varied"].values != "layers").tolist(),
+    }
+    said = {
+        stem: of_scene(
+            parameters.base,
+            friction=sorted(set(powers["friction"].values[series].tolist())),
+            normal_stiffness=None,
+            packing=None,
+        )
+        for stem, series in drawn.items()
+    }
     surveyed = any(one.surveyed for one in parameters.series)
     return of_group(
         "crossover_scaling",
-        dict.fromkeys(("crossover_scaling", "crossover_scaling_regions", "crossover_scaling_apart"), said),
+        said,
         p=parameters,
         layers=sorted(set(slabs["layers"].values.tolist())),
-        survey=" Black edges: slabs of the survey." if surveyed else "",
+        survey=" Open symbols: slabs of the survey." if surveyed else "",
     )
 
 
@@ -103,35 +112,40 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     titles(panels.flat, NAMES.values())
     for event, axes in zip(NAMES, panels.flat, strict=False):
         exponents = []
-        for look, series in enumerate(of_layers(powers)):
+        for look, series in zip(_symbols(powers), of_layers(powers), strict=True):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             layers = one["layers"].values.astype(float)
             middle, half = _brackets(one, event)
             power = float(powers["exponent"].isel(series=series).sel(event=event)[0])
-            axes.errorbar(layers, middle, half, capsize=2, **_symbol(look))
+            axes.errorbar(layers, middle, half, capsize=2, **look | {"linestyle": "none"})
             stored = one["surveyed"].values > 0
-            axes.plot(layers[stored], middle[stored], **_symbol(look) | SURVEYED)
+            axes.plot(layers[stored], middle[stored], **look | SURVEYED)
             ends = np.array([layers.min(), layers.max()])
             through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
-            colour = _symbol(look)["color"]
-            axes.plot(ends, through, color=colour, linewidth=0.9, linestyle=style.LINE_STYLES[look])
-            exponents.append((f"$N^{{{said(power)}}}$", float(ends[1]), float(through[1]), colour))
+            axes.plot(ends, through, **look | {"marker": ""})
+            exponents.append((f"$N^{{{said(power)}}}$", float(ends[1]), float(through[1]), look["color"]))
         style.logarithmic(axes)
         axes.set(xlabel="layers $N$", ylabel=style.FORCE)
         _plain(axes, apart(slabs["layers"].values.tolist()))
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.set_xlim(right=1.5 * float(slabs["layers"].max()))
-        label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=8.0)
+        label_ends(axes, [end for end in exponents if np.isfinite(end[2])], gap=8.0, bbox=WHITE)
     key = panels[1, 1]
     key.set_axis_off()
-    for look, series in enumerate(of_layers(powers)):
-        key.plot([], [], label=name(powers, series), **_symbol(look))
+    for look, series in zip(_symbols(powers), of_layers(powers), strict=True):
+        key.plot([], [], label=name(powers, series), **look)
     key.legend(loc="center")
     return figure
 
 
-def _symbol(look: int) -> dict[str, Any]:
-    return style.marked_line(look) | {"linestyle": "none", "markersize": 4.5}
+def _symbols(powers: xr.Dataset) -> list[dict[str, Any]]:
+    """Of the series of layers: colours by the friction, a marker and dashes of its own for each."""
+    frictions = powers["friction"].values[of_layers(powers)].tolist()
+    colours = dict(family(sorted(set(frictions)), of="friction"))
+    return [
+        {**style.marked_line(k, colour=colours[mu]["color"]), "linestyle": style.LINE_STYLES[k], "markersize": 4.5}
+        for k, mu in enumerate(frictions)
+    ]
 
 
 def apart(layers: Iterable[int]) -> list[int]:
@@ -190,8 +204,9 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     varied = powers["varied"].values
     kinds = [kind for kind in APART if (varied == kind).any()]
     figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
-    for letter, axes, kind in zip("abc", panels[0], kinds, strict=False):
-        for look, series in enumerate(np.flatnonzero(varied == kind).tolist()):
+    titles(panels[0, : len(kinds)])
+    for axes, kind in zip(panels[0], kinds, strict=False):
+        for series, look in family(np.flatnonzero(varied == kind).tolist(), of="friction"):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
             x = {
                 "disks_per_layer": one["disks_per_row"] / one["layers"],
@@ -202,7 +217,7 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             power, least, largest = powers["exponent"].isel(series=series).sel(event="crossover").values
             friction, layers = float(powers["friction"][series]), int(one["layers"][0])
             label = f"$\\mu = {friction:g}$, $N = {layers}$:\n{said(power)} ({said(least)} to {said(largest)})"
-            axes.errorbar(x, middle, half, capsize=2, label=label, **style.marked_line(look) | {"markersize": 4.5})
+            axes.errorbar(x, middle, half, capsize=2, label=label, **look | {"markersize": 4.5})
         style.logarithmic(axes)
         axes.set(xlabel=APART[kind])
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -215,6 +230,5 @@ def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
         if kind == "disks_per_layer":  # within a decade
             axes.set_xticks([2, 3, 4, 6], labels=["2", "3", "4", "6"])
         axes.legend(loc="upper left", fontsize=7)
-        style.letter(axes, letter, place="above")
     panels[0, 0].set_ylabel(f"onset of two peaks, {style.FORCE}")
     return figure

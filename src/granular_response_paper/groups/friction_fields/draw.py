@@ -7,10 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from scipy.special import erfc
 
 from granular_response.plot import network, style
 from granular_response.plot.field import draw_field, root_norm
-from granular_response.state import Box
+from granular_response.state import Box, FloatArray
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
 from granular_response_paper.panels import chain_key, chains, contact_ends, outer, titles
 
@@ -93,21 +94,20 @@ def _force_chains(data: xr.Dataset) -> Figure:
 
 def _vertical_stress(data: xr.Dataset) -> Figure:
     """Maps on one scale, the harmonic lattice last, and beside them how far they are off it."""
-    frictions = data["friction"].values
-    lattice = data["stress_zz_lattice"].values
-    maps = [(field, _friction(mu)) for field, mu in zip(data["stress_zz"].values, frictions, strict=True)]
-    rows, letters = len(maps) + 1, [chr(ord("a") + k) for k in range(2 * len(maps) + 1)]
+    x, z = data["x"].values, data["z"].values
+    lattice = to_floor(data["stress_zz_lattice"].values, z, float(data["stress_width"]))
+    fields = to_floor(data["stress_zz"].values, z, float(data["stress_width"]))
+    names = list(map(_friction, data["friction"].values))
+    rows, last = len(names) + 1, "abcdefgh"[len(names)]
     figure, panels = style.figure(rows, 2, width="double", height=1.62 * rows + 0.3, sharex=True, sharey=True)
-    x, z, width = data["x"].values, data["z"].values, float(data["stress_width"])
     half = min(MAP_HALF_WIDTH, float(x.max()))
-    largest = max(float(field.max()) for field in (*data["stress_zz"].values, lattice))
-    furthest = max(float(np.abs(field - lattice)[:, np.abs(x) <= half].max()) for field, _ in maps)
+    largest = float(max(fields.max(), lattice.max()))
+    furthest = float(np.abs(fields - lattice)[..., np.abs(x) <= half].max())
     norm, signed = root_norm(largest), root_norm(furthest, signed=True)
-    for index, (field, name) in enumerate([*maps, (lattice, "isotropic harmonic lattice")]):
+    for index, field in enumerate([*fields, lattice]):
         axes = panels[index, 0]
         image = draw_field(axes, x, z, np.clip(field, 0.0, None), norm=norm, levels=largest * np.array(LEVELS))
-        style.letter(axes, letters[index], place="above", text=name)
-    for index, (field, name) in enumerate(maps):
+    for index, field in enumerate(fields):
         axes = panels[index, 1]
         # white where there is no difference; lines tell the sign without colours, broken where it is negative
         off = field - lattice
@@ -116,12 +116,11 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         lines = sorted(level for level in levels if off.min() < level < off.max())
         if lines:
             axes.contour(x, z, off, lines, colors=style.MUTED, linewidths=0.5)
-        style.letter(axes, letters[rows + index], place="above", text=f"{name}, minus ({letters[len(maps)]})")
-    for axes in [*panels[:, 0], *panels[:-1, 1]]:
+    drawn = [*panels[:, 0], *panels[:-1, 1]]
+    titles(drawn, [*names, "harmonic lattice", *(f"{name}, minus ({last})" for name in names)])
+    for axes in drawn:
         network.draw_load(axes, (0.0, float(z.max())), length=3.0)
         axes.set(xlim=(-half, half), ylim=(0.0, z.max()))
-        axes.axhspan(0.0, width, facecolor="none", edgecolor=style.MUTED, hatch="//////", linewidth=0.0)
-        axes.axhline(width, color=style.MUTED, linewidth=0.5)
     for axes in (panels[-1, 0], panels[-2, 1]):
         axes.set_xlabel(style.POSITION)
         axes.tick_params(labelbottom=True)
@@ -140,6 +139,15 @@ def _vertical_stress(data: xr.Dataset) -> Figure:
         bar.ax.xaxis.set_major_formatter("{x:g}")
         bar.ax.tick_params(which="minor", size=0)
     return figure
+
+
+def to_floor(stress: FloatArray, z: FloatArray, width: float) -> FloatArray:
+    """The vertical stress (..., z, x) with the part of the floor (Weinhart et al., Granular Matter 14, 289 (2012)).
+
+    The line of a contact with the floor, z = 0, ends there; continued downwards it adds the floor force, smoothed along
+    x, times ``erfc(z/width)/2``. That force is twice the stress at the floor, which has the half of it that lies above.
+    """
+    return np.asarray(stress + stress[..., :1, :] * erfc(z[:, None] / width))
 
 
 def _force_profiles(data: xr.Dataset) -> Figure:

@@ -31,8 +31,8 @@ AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 #: Part of the slab that profiles show, to both sides of the load (radii): beyond it the walls matter.
 REACH = 40.0
 
-#: Symbols of a profile stand at every so many disks; half of the width of the enlarged part of Fig. 7b.
-SPREAD, CLOSE = 3, 8.0
+#: Symbols of a profile stand at every so many disks.
+SPREAD = 3
 
 #: What the paper says, in mean disk weights: forces that open the first contact, by friction (Sec. V.B), crossover and
 #: third peak at friction 0.2, and the last symmetric response at friction 1 (Sec. V.E).
@@ -125,7 +125,6 @@ def _profiles(response: xr.Dataset) -> Figure:
     for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
         one = response.sel(friction=friction)
         _plot_profiles(panel, at_forces(one, PROFILE_FORCES), "force", one.isel(force=0))
-    _enlarge(axes[0, 1])
     axes[0, 0].set(ylabel=style.RESPONSE, ylim=(0.0, None))
     handles, names = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, names, title=style.FORCE, loc="outside upper center", ncols=len(names), handlelength=2.8)
@@ -183,19 +182,6 @@ def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "fri
         look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD)}
         panel.plot(curves["x"], curves["floor_response"].isel({along: index}), label=f"{value:g}", **look)
     panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
-
-
-def _enlarge(panel: Axes) -> None:
-    """The tops of curves that nearly cover each other, in the upper right corner."""
-    inside = panel.inset_axes((0.67, 0.42, 0.24, 0.55))
-    for line in panel.get_lines():
-        x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
-        near = np.abs(x) <= CLOSE
-        (top,) = inside.plot(x[near], y[near])
-        top.update_from(line)
-        top.set(markevery=1, markersize=2.6, transform=inside.transData)
-    inside.set_xlim(-CLOSE, CLOSE)
-    inside.tick_params(labelsize=6, labelleft=False, labelright=True)
 
 
 def _contacts(states: xr.Dataset, friction: float) -> Figure:

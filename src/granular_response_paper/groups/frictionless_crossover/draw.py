@@ -19,7 +19,7 @@ from matplotlib.ticker import FixedLocator
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response.state import SLIDING
-from granular_response_paper.captions import Caption, letters, of_group, of_scene, panels, values
+from granular_response_paper.captions import Caption, of_group, of_scene, panels, values
 from granular_response_paper.panels import family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
@@ -126,7 +126,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
     centre.xaxis.set_major_formatter("{x:g}")
     centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
-    style.letters(np.array([profiles, centre]), place="above")
+    titles((profiles, centre))
     return figure
 
 
@@ -142,8 +142,8 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
             continue
         one = states.isel(force=chosen[at])
         handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
-        force = float(one["force"])
-        style.letter(axes, chr(ord("a") + at), place="above", text=style.equals(style.F_EXT, force, style.WEIGHT))
+    forces = states["force"].values[chosen]
+    titles(panels.flat, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     return figure
 
@@ -230,7 +230,7 @@ def _stiffness(data: xr.Dataset) -> Figure:
     size.set_ylim(top=1.15 * size.get_ylim()[1])
     label_ends(size, ends[:2], ha="right", va="top")  # right above them lies the width under the larger force
     label_ends(size, ends[2:], ha="right", va="bottom")
-    style.letters(np.array([centre, size, events]), first=next(letters("fig05b_stiffness")), place="above")
+    titles((centre, size, events), stem="fig05b_stiffness")
     return figure
 
 
@@ -262,19 +262,14 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     profiles.set(xlabel=style.SCALED_POSITION, ylabel=label, xlim=(-1.5, 1.5))
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
 
-    index = 0
-    for stiffness in stiffnesses:
+    for stiffness, face in zip(stiffnesses, ("white", None), strict=False):  # colours as in (g)
         slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
-        for name in ("crossover", "teardrop_reaches_floor"):
+        for at, name in list(enumerate(EVENTS))[1:]:
             bracket = slabs[f"{name}_bracket"].values
             known = np.isfinite(bracket).all(axis=1)
-            events.plot(
-                slabs["layers"].values[known],
-                bracket[known].mean(axis=1),
-                **style.marked_line(index),
-                label=f"{EVENTS[name]}, {style.equals('k_N', stiffness, style.STIFFNESS_UNIT)}",
-            )
-            index += 1
+            look = style.marked_line(at) | ({"markeredgewidth": 0.8, "markerfacecolor": face} if face else {})
+            label = f"{EVENTS[name]}, {style.equals('k_N', stiffness, style.STIFFNESS_UNIT)}"
+            events.plot(slabs["layers"].values[known], bracket[known].mean(axis=1), label=label, **look)
     events.set(xlabel="layers", ylabel=f"onset force, {style.FORCE}")
     events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
     events.legend(fontsize=7, loc="upper left")

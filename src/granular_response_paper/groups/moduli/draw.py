@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import label_ends, material, outer, titles, zero
+from granular_response_paper.panels import SURVEYED, label_ends, materials, outer, titles, zero
 
 from .parameters import Parameters
 
@@ -53,13 +53,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         p=parameters,
         ensemble=f"{min(most)} to {max(most)}" if min(most) != max(most) else f"{most[0]}",
         survey=f" Of the survey: {', '.join(stored)}." if stored else "",
-        edges=" Black edges: at least half of the packings are the survey's." if stored else "",
+        edges=" Open symbols: at least half of the packings are the survey's." if stored else "",
         tolerances=[100.0 * tolerance for tolerance in parameters.tolerances],
     )
-
-
-def _name(data: xr.Dataset, case: int) -> str:
-    return material(float(data["polydispersity"][case]), float(data["friction"][case]))
 
 
 def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
@@ -73,10 +69,11 @@ def _moduli(data: xr.Dataset) -> Figure:
     figure, ((bulk, shear, shape),) = style.figure(1, 3, width="double", height=3.2)
     a, b, c, d = (data["moduli"].sel(modulus=name) for name in "abcd")
     panels = ((bulk, 0.25 * (a + b + 2.0 * c)), (shear, 0.125 * (a + b - 2.0 * c) + 0.25 * d), (shape, a / b))
+    cases = materials(data["polydispersity"], data["friction"])
     for axes, modulus in panels:
-        for case in range(data.sizes["case"]):
+        for case, (_, look) in enumerate(cases):
             across, beside = _mean_and_spread(data["coordination"].isel(case=case))
-            look = style.marked_line(case) | {"markeredgewidth": 0.8, "markersize": 4.5, "capsize": 2, "linewidth": 0.7}
+            look = look | {"markeredgewidth": 0.8, "markersize": 4.5, "capsize": 2, "linewidth": 0.7}
             for following, filled in (("affine", False), ("free", True)):
                 mean, spread = _mean_and_spread(modulus.isel(case=case).sel(following=following))
                 face = look["color"] if filled else "white"
@@ -86,26 +83,23 @@ def _moduli(data: xr.Dataset) -> Figure:
     shear.set_ylabel(r"shear modulus $(a + b - 2c + 2d)\,/\,8k_N$")
     shape.set_ylabel(r"$a\,/\,b$, horizontal over vertical")
     shape.axhline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
-    style.letters([bulk, shear, shape], place="above")
-    keys = [
-        Line2D([], [], **(style.marked_line(case) | {"linestyle": "none", "markersize": 4.5}))
-        for case in range(data.sizes["case"])
-    ]
+    titles((bulk, shear, shape))
+    keys = [Line2D([], [], **look | {"linestyle": "none", "markersize": 4.5}) for _, look in cases]
     plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 4.5}
     keys += [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
-    names = [*(_name(data, case) for case in range(data.sizes["case"])), FOLLOWING["affine"], FOLLOWING["free"]]
+    names = [*(name for name, _ in cases), FOLLOWING["affine"], FOLLOWING["free"]]
     figure.legend(keys, names, loc="outside lower center", ncols=4)
     return figure
 
 
 def _responses(data: xr.Dataset) -> Figure:
     """Mean response of the largest packings of each case over that of the slabs of their moduli."""
-    cases = range(data.sizes["case"])
+    cases = materials(data["polydispersity"], data["friction"])
     columns = 3
     rows = -(-len(cases) // columns)
     figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharex=True, sharey=True)
     place = data["place"].values
-    for case, axes in zip(cases, panels.ravel(), strict=False):
+    for case, axes in zip(range(len(cases)), panels.ravel(), strict=False):
         one = data.isel(case=case, size=int(np.nanargmax(data["layers"].values[case])), smoothing=0)
         mean, spread = _mean_and_spread(one["response"])
         axes.fill_between(place, mean - spread, mean + spread, color=style.COLOURS[0], alpha=0.2, linewidth=0.0)
@@ -118,7 +112,7 @@ def _responses(data: xr.Dataset) -> Figure:
         zero(axes)
         axes.set_xlim(place[0], place[-1])
     layers = np.nanmax(data["layers"].values, axis=1)
-    titles(panels.flat, [f"{_name(data, case)}, {layers[case]:g} layers" for case in cases])
+    titles(panels.flat, [f"{name}, {deep:g} layers" for (name, _), deep in zip(cases, layers, strict=True)])
     outer(panels, style.SCALED_POSITION, style.PRESSURE)
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
@@ -130,16 +124,14 @@ def _sizes(data: xr.Dataset) -> Figure:
     smoothing = 1, 0  # a load by itself is compared on the scale of the slab, not of the disks
     both = data["single"], data["difference"].sel(solid="free")
     for axes, apart, width in zip(panels, both, smoothing, strict=True):
-        for case in range(data.sizes["case"]):
+        for case, (name, look) in enumerate(materials(data["polydispersity"], data["friction"])):
             mean, spread = _mean_and_spread(apart.isel(case=case, smoothing=width))
             count = np.maximum(apart.isel(case=case, smoothing=width).notnull().sum("realization").values, 1)
-            look = style.marked_line(case) | {"markersize": 4, "capsize": 2.5}
+            look = look | {"markersize": 4}
             layers = data["layers"][case]
-            axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=_name(data, case), **look)
+            axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=name, capsize=2.5, **look)
             stored = data["surveyed"].values[case] >= 0.5 * count
-            edge = {"linestyle": "none", "markerfacecolor": "none", "zorder": 3}
-            edge |= {"markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
-            axes.plot(layers[stored], mean[stored], **style.marked_line(case) | {"markersize": 4} | edge)
+            axes.plot(layers[stored], mean[stored], **look | SURVEYED)
         for tolerance in data["tolerance"].values:
             axes.axhline(tolerance, color=style.FAINT, linewidth=0.8, zorder=0)
         sizes = np.unique(data["layers"].values[np.isfinite(data["layers"].values)])

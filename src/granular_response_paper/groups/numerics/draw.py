@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import family, titles
 
 from .parameters import Parameters
 
@@ -29,7 +30,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     _stop_energy(stop, datasets["stop_energy"])
     _restart(restart, datasets["restart"])
     _damping(damping, datasets["damping"])
-    style.letters(axes, place="above")
+    titles(axes.flat)
     return {"numerics": figure}
 
 
@@ -40,27 +41,20 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 def _stop_energy(panel: Axes, study: xr.Dataset) -> None:
     study = study.sortby("stop_kinetic_energy")
-    index = 0
-    for friction in study["friction"].values:
-        curves = study.sel(friction=friction)
-        for name, text in (("loaded_error", "forces"), ("response_error", "response")):
-            panel.loglog(
-                curves["stop_kinetic_energy"],
-                curves[name],
-                label=f"{style.equals(style.FRICTION, friction)}, {text}",
-                **style.marked_line(index),
-            )
-            index += 1
+    for friction, look in family(study["friction"].values, of="friction"):
+        curves, mu = study.sel(friction=friction), style.equals(style.FRICTION, friction)
+        for name, text, dashes in (("loaded_error", "forces", "-"), ("response_error", "response", "--")):
+            energy = curves["stop_kinetic_energy"]
+            panel.loglog(energy, curves[name], label=f"{mu}, {text}", **look | {"linestyle": dashes})
     style.paper_value(panel, FORCE_ERROR, "paper: 1 %", along="y", at=0.45)
     panel.set(xlabel=rf"$E_\mathrm{{stop}}/{style.ENERGY_UNIT}$", ylabel="relative error")
     panel.legend(**BELOW)
 
 
 def _restart(panel: Axes, study: xr.Dataset) -> None:
-    for index, load in enumerate(study["load"].values):
-        curve = study["kinetic_energy"].isel(load=index)
+    for load, look in family(study["load"].values, of="force", marked=False, dashed=True):
         name = style.equals(style.F_EXT, load, style.WEIGHT)
-        panel.semilogy(study["step"] / 1e3, curve, label=name, **style.line(index))
+        panel.semilogy(study["step"] / 1e3, study["kinetic_energy"].sel(load=load), label=name, **look)
     style.paper_value(panel, RESTART_ENERGY, "paper: below $10^{-22}$", along="y")
     panel.set_ylim(top=RESTART_ENERGY * 100.0)
     panel.set(xlabel="thousands of time steps", ylabel=f"$E_k/{style.ENERGY_UNIT}$ per disk")

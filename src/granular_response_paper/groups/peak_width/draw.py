@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator
 
 from granular_response.plot import style
 from granular_response_paper.captions import RADIUS, WEIGHT, Caption, of_group, of_scene
-from granular_response_paper.panels import material, titles
+from granular_response_paper.panels import SURVEYED, family, material, titles
 
 from .parameters import Parameters
 
@@ -23,8 +23,6 @@ HALFWAY = 0.5 * (ELASTIC + DIFFUSIVE)
 #: Two definitions of the width: label, and filling of the symbols.
 DEFINITIONS = {"half_maximum": ("at half maximum", "full"), "half_force": ("with half of the force", "none")}
 GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5}
-#: Over symbols of packings of the survey.
-SURVEYED: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
 #: Half widths per depth that are shown.
 PER_DEPTH = 0.28, 2.0
 #: Labelled on logarithmic axes, in every decade.
@@ -59,7 +57,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
         {"peak_width_depth": said, "peak_width_powers": said},
         p=parameters,
         disorder=f"Disorder: mean profiles of {realizations} packings. " if counts else "",
-        edges=f"Black edges: {stored}. " if stored else "",
+        edges=f"Open symbols: {stored}. " if stored else "",
         along=f"With {stored}. " if stored else "",
         slabs=slabs,
     )
@@ -90,8 +88,12 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     figure, panels = style.figure(2, len(parts), width="double", height=5.0, sharex="row", sharey=True)
     for row, (data, label) in enumerate(((inside, "depth"), (floors, "height of the slab"))):
         for (_, cases), axes in zip(parts, panels[row], strict=True):
+            along = "polydispersity" if data["polydispersity"].values[cases].any() else "friction"
+            ramp = dict(family(sorted(set(data[along].values[cases].tolist())), of=along))
             for place, case in enumerate(cases):
-                _widths(axes, data.isel(case=case).sel(definition="half_maximum"), name(data, case), place)
+                colour = ramp[float(data[along][case])]["color"]
+                look = style.marked_line(place, colour=colour) | {"linestyle": "none", "markersize": 3.8}
+                _widths(axes, data.isel(case=case).sel(definition="half_maximum"), name(data, case), look)
             axes.set(xscale="log", yscale="log", xlabel=rf"{label}$\,/\,{style.RADIUS}$", ylim=PER_DEPTH)
             for axis, ticks in ((axes.xaxis, TICKS), (axes.yaxis, (1.0, 2.0, 4.0, 6.0))):
                 axis.set_major_locator(LogLocator(subs=ticks))
@@ -106,10 +108,9 @@ def _growth(inside: xr.Dataset, floors: xr.Dataset) -> Figure:
     return figure
 
 
-def _widths(axes: Axes, one: xr.Dataset, text: str, place: int) -> None:
-    """Half width at half maximum per depth, black edges where packings are stored; of the elastic slab a grey line."""
+def _widths(axes: Axes, one: xr.Dataset, text: str, look: dict[str, Any]) -> None:
+    """Half width at half maximum per depth, hollow where packings are stored; of the elastic slab a grey line."""
     depth = one["depth"].values
-    look = style.marked_line(place) | {"linestyle": "none", "markersize": 3.8}
     stored = np.broadcast_to(one["surveyed"].values > 0.0, depth.shape)  # inside all points are of one slab
     axes.plot(depth, one["length"] / depth, label=text, **look)
     axes.plot(depth[stored], (one["length"] / depth)[stored], **look | SURVEYED)

@@ -212,7 +212,7 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
     A column for each polydispersity, a row for each smoothing width, a line for each friction.
     """
     deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
-    frictions = sorted(set(crossovers["friction"].values.tolist()))
+    looks = dict(family(sorted(set(crossovers["friction"].values.tolist())), of="friction"))
     widths = crossovers["width"].values.tolist()
     tolerance, few = float(shapes.attrs["tolerance"]), shapes.isel(number=0)
     what = f"fraction of means of {int(few['number'])}"
@@ -225,9 +225,8 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
             row = few.sel(width=width).isel(case=case)
             two_peaked = row["two_peaked_means"].values
             agree = np.where(row["shape"].values > tolerance, two_peaked, 1.0 - two_peaked)
-            look = style.marked_line(frictions.index(friction)) | {"linewidth": 0.9}
             force = shapes["applied_force"].values[case] / float(one["force"][case])
-            (drawn[friction],) = axes.plot(force, agree, **look)
+            (drawn[friction],) = axes.plot(force, agree, **looks[friction])
         axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
         axes.set(xscale="log", ylim=(0.2, 1.05))
     order = sorted(drawn)
@@ -270,30 +269,26 @@ def _starts(starts: xr.Dataset) -> Figure:
     deltas = sorted(set(starts["polydispersity"].values.tolist()))
     frictions = sorted({mu for mu in starts["friction"].values.tolist() if mu <= 0.2 and mu != 0.05})
     figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
+    names: list[str] = []
     for column, delta in enumerate(deltas):
         touching = 2.0 / (1.0 - 0.5 * delta)
         dips, contacts = panels[:, column]
-        for k, friction in enumerate(frictions):
+        for friction, look in family(frictions, of="friction"):
             here = np.flatnonzero((starts["polydispersity"].values == delta) & (starts["friction"].values == friction))
             here = here[np.argsort(starts["distance"].values[here])]
             one = starts.isel(case=here)
             for axes, name, data in ((dips, "dip", one.isel(width=0)), (contacts, "contacts", one)):
                 value, ends = data[name].values, data[f"{name}_interval"].sel(level=list(THIN)).values
                 around = np.abs(ends.reshape(-1, 2).T - value)
-                look = style.marked_line(k) | {"markersize": 3.0, "elinewidth": 0.8, "capsize": 2.0}
-                axes.errorbar(one["distance"].values, value, around, **look, label=f"$\\mu = {friction:g}$")
+                bars = {"markersize": 3.0, "elinewidth": 0.8, "capsize": 2.0, "label": f"$\\mu = {friction:g}$"}
+                axes.errorbar(one["distance"].values, value, around, **look | bars)
             force = float(one["applied_force"].values[0])
         for axes in (dips, contacts):
             axes.axvline(touching, color=style.MUTED, linewidth=0.6, linestyle="--", zorder=0)
         dips.axhline(0.0, color=style.FAINT, linewidth=0.6, linestyle="-", zorder=0)
-        style.letter(
-            dips,
-            "abc"[column],
-            place="above",
-            text=f"$\\delta = {delta:g}$, $F_{{\\mathrm{{ext}}}} = {force:g}\\,{style.WEIGHT}$",
-        )
-        style.letter(contacts, "def"[column], place="above")
+        names.append(f"{packing(delta)}, {style.equals(style.F_EXT, force, style.WEIGHT)}")
         contacts.set_xlabel("initial lattice constant / $\\bar R$")
+    titles(panels.flat, [*names, *[""] * len(names)])
     panels[0, 0].set_ylabel("relative depth of the dip")
     panels[1, 0].set_ylabel("coordination number $z$, with walls")
     panels[0, 0].legend(loc="best")

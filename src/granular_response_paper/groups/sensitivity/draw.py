@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import family
 
 from .parameters import Parameters
 
@@ -25,10 +26,10 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     # the largest on top; for scale the peak of the response itself
     size = np.max([data["largest_difference"].values[1:] for data in datasets.values()], axis=0)
     places = np.argsort(np.argsort(size))
-    for index, (group, data) in enumerate(datasets.items()):
-        look = style.marked_line(index) | {"linestyle": "none"}
+    for group, look in family(list(datasets), of="friction"):
         label = style.equals(style.FRICTION, float(group.removeprefix("mu_")))
-        axes.plot(data["largest_difference"].values[1:], places, label=label, **look)
+        changes = datasets[group]["largest_difference"].values[1:]
+        axes.plot(changes, places, label=label, **look | {"linestyle": "none"})
     axes.set(xscale="log", xlabel=f"largest change of the {style.RESPONSE}", yticks=places)
     axes.set_yticklabels(names)
     axes.grid(axis="y", linewidth=0.3)

@@ -18,6 +18,9 @@ from .parameters import Parameters
 
 STEM = "fig01b_slab_comparison"
 
+#: In the order of their colours.
+FLOORS = ("smooth", "rough")
+
 #: What tells cases apart.
 _KEYS = ("friction", "floor", "gravity", "disks_per_layer")
 
@@ -66,7 +69,7 @@ def _profiles(axes: Axes, data: xr.Dataset) -> None:
     """A thin and a deep slab of the first case on a smooth and the last one on a rough floor."""
     cases = _cases(data)
     first = {floor: slabs for case, slabs in reversed(cases) for floor in [case[1]]}
-    shown = [first[floor] for floor in ("smooth", "rough") if floor in first]
+    shown = [first[floor] for floor in FLOORS if floor in first]
     for index, slabs in enumerate(shown):
         friction, floor = float(data["friction"][slabs[0]]), str(data["floor"].values[slabs[0]])
         for k, marker in zip((slabs[0], slabs[-1]), ("o.", "sx")[index], strict=True):
@@ -91,7 +94,8 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
     """Distance against the number of layers, one line for each case."""
     for index, (case, slabs) in enumerate(_cases(data)):
         layers, distance = data["layers"].values[slabs], data["distance"].values[slabs]
-        axes.plot(layers, distance, **style.marked_line(index), label=_name(case))
+        colour = style.COLOURS[FLOORS.index(case[1])]
+        axes.plot(layers, distance, **style.marked_line(index, colour=colour), label=_name(case))
         for k in np.flatnonzero(np.diff(np.log(distance)) > 1.0) + 1:
             axes.annotate(
                 "row opened", (layers[k], distance[k]), (0, 5), textcoords="offset points", ha="center", fontsize=7

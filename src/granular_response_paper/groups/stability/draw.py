@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from granular_response.plot import style
 from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, of_group
+from granular_response_paper.panels import titles
 
 from .parameters import Parameters
 
@@ -73,7 +74,7 @@ def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
     figure, panels = style.figure(rows, columns, width="double", height=0.5 + 1.9 * rows, sharey=True)
     for axes in panels.flat[len(names) :]:
         axes.set_axis_off()
-    for index, (axes, name) in enumerate(zip(panels.flat, names, strict=False)):
+    for axes, name in zip(panels.flat, names, strict=False):
         study = datasets[f"time_step_{name}"]
         for k, integrator in enumerate(integrators):
             outcome = study["outcome"].sel(integrator=integrator).transpose(name, "ratio").values
@@ -85,7 +86,7 @@ def _steps(datasets: Mapping[str, xr.Dataset]) -> Figure:
         axes.set_yticks([1.0, 2.0, 4.0], ["1", "2", "4"])
         axes.minorticks_off()
         axes.tick_params(axis="x", top=False, length=2.0)
-        style.letter(axes, chr(ord("a") + index), place="above")
+    titles(panels.flat[: len(names)])
     for axes in panels[:, 0]:
         axes.set_ylabel("time step / limit")
     handles, labels = panels.flat[0].get_legend_handles_labels()
@@ -126,7 +127,7 @@ def _motion(datasets: Mapping[str, xr.Dataset]) -> Figure:
     _sliding(axes[0, 1], datasets["drift"])
     _collisions(axes[1, 0], datasets["collisions"])
     _rolling(axes[1, 1], datasets["rolling"])
-    style.letters(axes)
+    titles(axes.flat, place="inside")
     return figure
 
 
@@ -224,5 +225,5 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     rounding.set_yticks(rows, names, fontsize=7, linespacing=0.9)
     rounding.set_ylim(-0.7, len(rows) - 0.3)
     rounding.set_xlabel("change of the response")
-    style.letters(axes, place="above")
+    titles(axes.flat)
     return figure

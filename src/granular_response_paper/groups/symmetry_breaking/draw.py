@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from granular_response.plot import style
 from granular_response.plot.network import draw_state_changes
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import titles, zero
+from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
 
@@ -80,23 +80,13 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
     """Asymmetry against force: colours for ramps, full and hollow markers for time steps."""
     ramps = sorted(set(runs["ramp_time"].values))
     steps = sorted(set(runs["time_step"].values), reverse=True)
-    for row, ramp in enumerate(ramps):
+    for ramp, look in family(ramps, of="other"):
         for column, step in enumerate(steps):
             chosen = (runs["ramp_time"].values == ramp) & (runs["time_step"].values == step)
             curve = runs.isel(run=np.flatnonzero(chosen)).sortby("force")
-            colour = style.COLOURS[row % len(style.COLOURS)]
-            panel.plot(
-                curve["force"],
-                curve["asymmetry"],
-                color=colour,
-                linestyle="-" if column == 0 else "none",
-                linewidth=0.9,
-                marker=style.MARKERS[row % len(style.MARKERS)],
-                markersize=3.2 if column == 0 else 6.0,
-                markerfacecolor=colour if column == 0 else "none",
-                markeredgewidth=0.8,
-                label=rf"ramp {ramp:g}, step {step:g}",
-            )
+            hollow = {"linestyle": "none", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 0.8}
+            label = rf"ramp {ramp:g}, step {step:g}"
+            panel.plot(curve["force"], curve["asymmetry"], label=label, **look | (hollow if column else {}))
     size = float(held["displacement"])
     panel.plot(
         held["force"],
