@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -66,6 +66,12 @@ def _known(found: float | Quantity) -> Quantity:
 def one_reading(summary: str, reading: str, *conditions: Condition, remark: str = "") -> Finding:
     """What was measured in one interpretation alone."""
     return Finding(summary, [Reading(reading, *conditions)], remark)
+
+
+def told(what: str, rows: Sequence[tuple[str, Reading]], remark: str = "", *, between: str = "; ") -> Finding:
+    """What was found in each reading, as a text, with the name of the reading in brackets."""
+    texts = between.join(f"{text} ({reading.name})" for text, reading in rows)
+    return Finding(what + texts, [reading for _, reading in rows], remark)
 
 
 def each(

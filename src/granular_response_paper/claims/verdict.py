@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from .. import TOO_LITTLE
 from .claim import Claim, Data, Finding, NotMeasured, Outcome, Reading, range_over
 from .words import Bounds, bounds
 
@@ -84,12 +85,18 @@ def robustness_of(readings: Sequence[Reading]) -> Robustness:
 
 
 def judge(claim: Claim, data: Data, words: Bounds | None = None) -> Entry:
-    """Measure a claim on stored data, with the words of the table or with others."""
+    """Measure a claim on stored data, with the words of the table or with others.
+
+    It is not measured if its function finds too little: a variable, a label, or all that is left to look at is missing.
+    """
     try:
         finding = claim.measure(data, bounds() if words is None else words)
         verdict = verdict_of(finding.readings, derivation=claim.derivation)
     except NotMeasured as missing:
         return Entry(claim, "not measured", None, str(missing))
+    except TOO_LITTLE as error:
+        problem = " ".join(f"{type(error).__name__}: {error}".split())
+        return Entry(claim, "not measured", None, f"data/{claim.group}.nc: holds too little ({problem})")
     return Entry(
         claim, verdict, finding, _reason(finding), robustness_of(finding.readings), _robustness_reason(finding)
     )

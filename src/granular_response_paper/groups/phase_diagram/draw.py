@@ -16,10 +16,9 @@ from granular_response.state import FloatArray
 from granular_response_paper.captions import Caption, Value, of_group
 from granular_response_paper.panels import family, label_ends, outer, packing, titles
 
+from .claims import ABOVE, FOUND
 from .parameters import Parameters
 
-#: Kinds of a crossover, as stored.
-FOUND, BELOW, ABOVE = 0, 1, 2
 #: Levels of the thick and of the thin bar.
 THICK, THIN = (0.16, 0.84), (0.025, 0.975)
 #: Experiments of Sec. VII: from what to what force, in particle weights; a caret is beyond the axis.
