@@ -26,8 +26,6 @@ from granular_response_paper.claims.claim import (
     Quantity,
     Reading,
     at,
-    rises,
-    sampled,
 )
 from granular_response_paper.claims.verdict import MEANINGS, ROBUSTNESS_MEANINGS, judge, robustness_of, verdict_of
 from granular_response_paper.groups import NAMES
@@ -547,7 +545,7 @@ def test_strict_bounds_leave_out_their_ends():
 
 def test_sampled_events_lie_at_most_a_word_below_the_papers_force():
     def outcome(low, high):
-        return sampled("event", Quantity.bracket(low, high), 10.0, words.bounds()).outcome
+        return asked.sampled("event", Quantity.bracket(low, high), 10.0, words.bounds()).outcome
 
     assert outcome(7.5, 10.0) == "holds"
     assert outcome(7.4, 7.6) == outcome(9.9, 10.1) == "open"
@@ -556,8 +554,8 @@ def test_sampled_events_lie_at_most_a_word_below_the_papers_force():
 
 def test_orders_use_the_smallest_step():
     up = [Quantity.bracket(1.0, 1.1), Quantity.bracket(2.0, 2.1), Quantity.bracket(3.0, NAN)]
-    assert rises("force", up).outcome == "holds" and rises("force", up[:2][::-1]).outcome == "fails"
-    assert rises("force", [*up[:2], Quantity.bracket(2.0, 2.2)]).outcome == "open"
+    assert asked.rises("force", up).outcome == "holds" and asked.rises("force", up[:2][::-1]).outcome == "fails"
+    assert asked.rises("force", [*up[:2], Quantity.bracket(2.0, 2.2)]).outcome == "open"
 
 
 def test_a_visible_dip_is_bracketed_from_either_side(good):

@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -328,24 +327,3 @@ def at(dataset: xr.Dataset, **labels: float) -> xr.Dataset:
             raise NotMeasured(f"nothing is stored at {name} = {label:g}")
         dataset = dataset.isel({name: int(near[0])})
     return dataset
-
-
-def sampled(what: str, event: Quantity, paper: float, words: Bounds) -> Condition:
-    """The paper's number is the first of its sampled forces at or above the event (mean disk weights)."""
-    return Condition(what, event, (1.0 - words["about"]) * paper, paper, ("about",), "mg")
-
-
-def about(what: str, found: Quantity, paper: float, words: Bounds, unit: str = "") -> Condition:
-    """The paper gives the number with "about"."""
-    return Condition(what, found, (1.0 - words["about"]) * paper, (1.0 + words["about"]) * paper, ("about",), unit)
-
-
-def rises(what: str, values: Sequence[Quantity]) -> Condition:
-    """Each of positive ``values`` is larger than the one before: their smallest ratio is above 1."""
-    steps = [after.per(before) for before, after in pairwise(values)]
-    if not steps:
-        raise NotMeasured(f"{what}: fewer than two values to compare")
-    smallest = Quantity(
-        min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), steps[0].kind
-    )
-    return Condition(f"{what}, smallest ratio of neighbours", smallest, least=1.0, strict=True)

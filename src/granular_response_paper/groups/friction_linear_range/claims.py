@@ -7,38 +7,21 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from granular_response.state import SLIDING, FloatArray
+from granular_response.state import SLIDING
 
 from ...claims import asked, preparations
-from ...claims.claim import (
-    Claims,
-    Condition,
-    Data,
-    Finding,
-    Measure,
-    Quantity,
-    Reading,
-    about,
-    at,
-    rises,
-    sampled,
-)
+from ...claims.claim import Claims, Condition, Data, Finding, Measure, Quantity, Reading, at
+from ...claims.preparations import OWN
 from ...claims.words import Bounds
 
 GROUP = "friction_linear_range"
 BREAKING = "symmetry_breaking"
 CLAIMS = Claims(GROUP)
 
-#: The paper's preparation.
-OWN = "gravity at once"
 
-
-def _ways(
-    data: Data, event: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]], own: str = OWN
-) -> list[Reading]:
-    """What is asked of the brackets of an event, in the reading ``own`` and with gravity brought otherwise."""
-    here = Reading(own, *conditions(*(data.event(GROUP, event, mu) for mu in frictions)))
-    return [here, *preparations.readings(data, event, frictions, conditions)]
+def _events(data: Data, name: str, *frictions: float) -> dict[float, Quantity]:
+    """The brackets of an event by friction."""
+    return {mu: data.event(GROUP, name, mu) for mu in frictions}
 
 
 def at_force(
@@ -48,15 +31,17 @@ def at_force(
 
     def measure(data: Data, words: Bounds) -> Finding:
         def wanted(end: Quantity) -> list[Condition]:
-            return [sampled(what, end, paper, words) if first_sampled else about(what, end, paper, words, "mg")]
+            if first_sampled:
+                return [asked.sampled(what, end, paper, words)]
+            return [asked.near(what, end, words, "about", paper, "mg")]
 
         own = "the first sampled force at or above it" if first_sampled else OWN
-        found = data.event(GROUP, event, friction)
-        readings = _ways(data, event, (friction,), wanted, own)
+        found = _events(data, event, friction)
+        readings = preparations.readings(data, event, found, wanted, own)
         if event == "crossover":
             visible = asked.dips_from(_curve(data, friction, "central_dip"), "force", words)
             readings.insert(1, Reading(asked.VISIBLE, *wanted(visible)))
-        return Finding(f"{text} {found.text('mg')}", readings)
+        return Finding(f"{text} {found[friction].text('mg')}", readings)
 
     return measure
 
@@ -71,36 +56,31 @@ for _k, _mu, _paper, _figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (
     )(at_force("first_opening", _mu, _paper, what="first opening", text="opens at", first_sampled=True))
 
 
-def _ranges(data: Data, frictions: tuple[float, ...]) -> dict[str, list[Quantity]]:
-    """The ends of the linear range at each friction, by what counts as its end."""
-    study = data.get(GROUP, "response", "response_at_centre", "force", "friction")
-    curves = [at(study, friction=mu) for mu in frictions]
-    return {
-        "response 1 % off": [data.event(GROUP, "linear_range", mu) for mu in frictions],
-        "response 2 % off": [asked.linear_until(curve, 0.02) for curve in curves],
-        "response 5 % off": [asked.linear_until(curve, 0.05) for curve in curves],
-        "first opening": [data.event(GROUP, "first_opening", mu) for mu in frictions],
-    }
-
-
 #: Ends of the linear range that other preparations have too, by event.
-_OTHERWISE = {"response 1 % off": "linear_range", "first opening": "first_opening"}
+_EVENTS = {"response 1 % off": "linear_range", "first opening": "first_opening"}
+
+
+def _ranges(data: Data, frictions: list[float]) -> dict[str, dict[float, Quantity]]:
+    """The ends of the linear range at each friction, by what counts as its end."""
+    curves = {mu: _curve(data, mu, "response_at_centre") for mu in frictions}
+    further = {
+        f"response {part:.0%} off".replace("%", " %"): {
+            mu: asked.linear_until(curve, part) for mu, curve in curves.items()
+        }
+        for part in (0.02, 0.05)
+    }
+    one, opening = ({name: _events(data, event, *frictions)} for name, event in _EVENTS.items())
+    return one | further | opening
 
 
 def _by_end(
-    data: Data, found: dict[str, list[Quantity]], frictions: tuple[float, ...], wanted: Callable[..., list[Condition]]
+    data: Data, found: dict[str, dict[float, Quantity]], wanted: Callable[..., list[Condition]]
 ) -> list[Reading]:
-    """What is asked of the ends at no friction and at ``frictions``; without it preparations do not differ."""
-    return [
-        *(Reading(name, *wanted(*ends)) for name, ends in found.items()),
-        *(
-            Reading(f"{name}, {reading.name}", *reading.conditions, change=reading.change)
-            for name, event in _OTHERWISE.items()
-            for reading in preparations.readings(
-                data, event, frictions, lambda *ends, without=found[name][0]: wanted(without, *ends)
-            )
-        ),
-    ]
+    """What is asked of the ends at all frictions: each as the paper prepares the slab, then in the other ways."""
+    others = []
+    for name, event in _EVENTS.items():
+        others += preparations.readings(data, event, found[name], wanted, named=f"{name}, ")[1:]
+    return [Reading(name, *wanted(*ends.values())) for name, ends in found.items()] + others
 
 
 @CLAIMS.add(
@@ -117,23 +97,26 @@ def linear_range(data: Data, words: Bounds) -> Finding:
             for mu, end in zip((0.2, 1.0), ends, strict=True)
         ]
 
-    found = _ranges(data, (0.0, 0.2, 1.0))
-    ratios = {name: [f"{end.per(ends[0]).value:.3g}" for end in ends[1:]] for name, ends in found.items()}
+    found = _ranges(data, [0.0, 0.2, 1.0])
+    ratios = {
+        name: " and ".join(f"{ends[mu].per(ends[0.0]).value:.3g}" for mu in (0.2, 1.0)) for name, ends in found.items()
+    }
     return Finding(
-        "at friction 0.2 and 1: " + ", ".join(f"{' and '.join(r)} times ({name})" for name, r in ratios.items()),
-        _by_end(data, found, (0.2, 1.0), wanted),
+        "at friction 0.2 and 1: " + ", ".join(f"{both} times ({name})" for name, both in ratios.items()),
+        _by_end(data, found, wanted),
         "The paper does not say how far off a response is no longer linear",
     )
 
 
-def _curve(data: Data, friction: float, *names: str) -> xr.Dataset:
-    curve = at(data.get(GROUP, "response", "force", "friction", *names), friction=friction)
-    return curve.isel(force=np.isfinite(curve[names[0]].values))
+def _curve(data: Data, friction: float, name: str) -> xr.Dataset:
+    """The response at a friction, at the forces at which this is measured."""
+    curve = at(data.get(GROUP, "response"), friction=friction)
+    return curve.isel(force=np.isfinite(curve[name].values))
 
 
-def _up_to_50(data: Data, *names: str) -> xr.Dataset:
+def _up_to_50(data: Data, name: str) -> xr.Dataset:
     """The curve at friction 1."""
-    curve = _curve(data, 1.0, *names)
+    curve = _curve(data, 1.0, name)
     force = curve["force"].values
     CLAIMS.needs(force.max(initial=0.0) >= 50.0, "response does not reach 50 mg at friction 1")
     return curve.isel(force=force <= 50.0)
@@ -141,24 +124,20 @@ def _up_to_50(data: Data, *names: str) -> xr.Dataset:
 
 @CLAIMS.add("R2a", "V.A, Fig. 7", "friction 1: forces up to 50 mg with two peaks", "a single peak up to 50 mg")
 def single_peak(data: Data, words: Bounds) -> Finding:
-    curve = _up_to_50(data, "double_peaked")
-    ways = {OWN: (curve["force"].values, curve["double_peaked"].values)}
-    ways |= preparations.curves(data, 1.0, "double_peaked")
-    double = {way: int(np.count_nonzero(values[force <= 50.0])) for way, (force, values) in ways.items()}
-    size = curve.sizes["force"]
+    curves = {OWN: _up_to_50(data, "double_peaked"), **preparations.responses(data, 1.0)}
+    what = "forces up to 50 mg with two peaks"
+    double = {
+        way: int(np.count_nonzero(curve["double_peaked"].values[curve["force"].values <= 50.0] > 0.0))
+        for way, curve in curves.items()
+    }
+    size = curves[OWN].sizes["force"]
+    readings = [
+        Reading(way, asked.none_of(what, number), change="" if way == OWN else preparations.CHANGE)
+        for way, number in double.items()
+    ]
     return Finding(
         f"one peak at {size - double[OWN]} of {size} forces up to 50 mg",
-        [
-            *(
-                Reading(
-                    way,
-                    asked.none_of("forces up to 50 mg with two peaks", number),
-                    change="" if way == OWN else preparations.CHANGE,
-                )
-                for way, number in double.items()
-            ),
-            *preparations.one_peak_at_15(data, 1.0, words),
-        ],
+        [*readings, *preparations.one_peak_at_15(data, 1.0, words)],
     )
 
 
@@ -169,7 +148,7 @@ def single_peak(data: Data, words: Bounds) -> Finding:
     "its shape becomes sharper",
 )
 def sharper(data: Data, words: Bounds) -> Finding:
-    curve = _up_to_50(data, "half_maximum_width", "peak_height")
+    curve = _up_to_50(data, "half_maximum_width")
     width, height = curve["half_maximum_width"].values, curve["peak_height"].values
     return asked.one_reading(
         f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[-1]:.1f} R, the height "
@@ -198,7 +177,6 @@ def third_peak_small(data: Data, words: Bounds) -> Finding:
     curve = _curve(data, 0.2, "third_peak_prominence")
     force, size = curve["force"].values, curve["third_peak_prominence"].values
     beyond = np.flatnonzero((force >= 40.0) & (size > 0.0))
-    CLAIMS.needs(beyond.size, "response holds no third peak from 40 mg on")
     return Finding(
         f"prominence {size[beyond[0]]:.3f} of the largest response at {force[beyond[0]]:g} mg, up to "
         f"{size[beyond].max():.3f} at {force[beyond][size[beyond].argmax()]:g} mg",
@@ -212,8 +190,7 @@ def third_peak_small(data: Data, words: Bounds) -> Finding:
 
 def _jump(data: Data) -> tuple[xr.Dataset, int]:
     """The dynamic runs at large forces, in order, and the index of the first asymmetric one."""
-    names = ("asymmetry", "force", "mobilised_contacts", "network_asymmetry", "floor_response", "asymmetry_sign")
-    runs = data.get(GROUP, "large_forces", *names).sortby("force")
+    runs = data.get(GROUP, "large_forces").sortby("force")
     lost = np.flatnonzero(runs["asymmetry"].values > 0.1)
     CLAIMS.needs(lost[:1].any(), "large_forces holds no forces on both sides of the loss of symmetry")
     return runs, int(lost[0])
@@ -260,7 +237,6 @@ def sliding_drops(data: Data, words: Bounds) -> Finding:
         for margin, before, after in cases
         if before > 0
     ]
-    CLAIMS.needs(readings, "large_forces holds no contact near the Coulomb limit before the change")
     return Finding(
         "contacts near the Coulomb limit before and after: "
         + ", ".join(f"{before:.0f} and {after:.0f} (within {margin:.0%})" for margin, before, after in cases),
@@ -299,8 +275,7 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     after = runs.isel(force=slice(first, None))
     response, force = after["floor_response"].values, after["force"].values
-    sign, x = after["asymmetry_sign"].values, after["x"].values
-    CLAIMS.needs(np.abs(x + x[::-1]).max() <= 0.1, "the floor disks are not symmetric about x = 0")
+    sign = after["asymmetry_sign"].values
     # the paper's pair lies between 91 and 95 mg
     pairs = [
         (float(np.abs(response[a] - response[b][::-1]).max() / response[a].max()), force[a], force[b])
@@ -311,7 +286,7 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     best = min(pairs, default=(1.0, float("nan"), float("nan")))
     turned = ""
     if BREAKING in data.groups:
-        copies = data.get(BREAKING, "copies", "asymmetry_sign")["asymmetry_sign"].values
+        copies = data.get(BREAKING, "copies")["asymmetry_sign"].values
         turned = (
             f"; copies of the packing that differ by rounding: {(copies > 0).sum()} to the right, "
             f"{(copies < 0).sum()} to the left"
@@ -329,14 +304,14 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     (8, 9),
 )
 def floor_earlier(data: Data, words: Bounds) -> Finding:
-    low, high = (data.event(GROUP, "reaches_floor", mu) for mu in (1.0, 0.2))
+    found = _events(data, "reaches_floor", 1.0, 0.2)
 
     def smaller(one: Quantity, other: Quantity) -> list[Condition]:
         return [Condition("force at friction 1 per that at 0.2", one.per(other), most=1.0, strict=True)]
 
     return Finding(
-        f"at the floor from {low.text('mg')} (friction 1) and {high.text('mg')} (friction 0.2)",
-        _ways(data, "reaches_floor", (1.0, 0.2), smaller),
+        f"at the floor from {found[1.0].text('mg')} (friction 1) and {found[0.2].text('mg')} (friction 0.2)",
+        preparations.readings(data, "reaches_floor", found, smaller),
     )
 
 
@@ -358,31 +333,19 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     "R9", "V.A, Fig. 7", "force of the crossover to two peaks against friction", "rapidly increases with friction"
 )
 def crossover_rises(data: Data, words: Bounds) -> Finding:
-    frictions = np.sort(data.get(GROUP, "response", "double_peaked", "force", "friction")["friction"].values).tolist()
-    found = {}
-    for mu in frictions:
+    found, visible = {}, []
+    for mu in np.sort(data.get(GROUP, "response")["friction"].values).tolist():
         curve = _curve(data, mu, "double_peaked")
-        force, double = np.append(curve["force"].values, np.nan), np.append(curve["double_peaked"].values, 1.0)
-        k = int(np.argmax(double > 0))
-        CLAIMS.needs(k > 0, f"response has two peaks at the smallest force, friction {mu:g}")
-        found[f"{mu:g}"] = Quantity.bracket(force[k - 1], force[k])
-    ends = list(found.values())
-    return Finding(
-        "two peaks from, by friction: " + asked.listed(found, unit="mg"),
-        [
-            Reading(OWN, rises("crossover force", ends)),
-            Reading(
-                asked.VISIBLE,
-                rises(
-                    "crossover force",
-                    [asked.dips_from(_curve(data, mu, "central_dip"), "force", words) for mu in frictions],
-                ),
-            ),
-            *preparations.readings(
-                data, "crossover", tuple(frictions[1:]), lambda *after: [rises("crossover force", [ends[0], *after])]
-            ),
-        ],
-    )
+        found[mu] = asked.first(curve, "force", curve["double_peaked"].values > 0.0)
+        visible.append(asked.dips_from(_curve(data, mu, "central_dip"), "force", words))
+
+    def rise(*ends: Quantity) -> list[Condition]:
+        return [asked.rises("crossover force", ends)]
+
+    readings = preparations.readings(data, "crossover", found, rise)
+    readings.insert(1, Reading(asked.VISIBLE, *rise(*visible)))
+    texts = asked.listed({f"{mu:g}": end for mu, end in found.items()}, unit="mg")
+    return Finding("two peaks from, by friction: " + texts, readings)
 
 
 @CLAIMS.add(
@@ -392,12 +355,10 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
     "the region of open contacts is considerably smaller",
 )
 def smaller_region(data: Data, words: Bounds) -> Finding:
-    names = ("teardrop_depth", "teardrop_width", "reaches_floor", "opened_contacts")
-    without, full = _curve(data, 0.0, *names), _curve(data, 0.2, *names)
+    without, full = (_curve(data, mu, "teardrop_depth") for mu in (0.0, 0.2))
     shared = [f for f in without["force"].values if f in full["force"].values]
     without, full = without.sel(force=shared), full.sel(force=shared)
     open_ = (without["teardrop_depth"].values > 2.0) & (full["reaches_floor"].values == 0)
-    CLAIMS.needs(open_.any(), "response holds no force at which the regions can be compared")
     ratio = full["opened_contacts"].values[open_] / without["opened_contacts"].values[open_]
     found = Quantity.range(ratio, float(np.median(ratio)))
     return asked.one_reading(
@@ -415,14 +376,14 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     "it reaches the floor only for a much larger force",
 )
 def floor_later(data: Data, words: Bounds) -> Finding:
-    late, early = (data.event(GROUP, "reaches_floor", mu) for mu in (0.2, 0.0))
+    found = _events(data, "reaches_floor", 0.0, 0.2)
 
-    def later(end: Quantity) -> list[Condition]:
-        return [asked.higher("force with friction per without", end.per(early), words, "marked")]
+    def later(early: Quantity, late: Quantity) -> list[Condition]:
+        return [asked.higher("force with friction per without", late.per(early), words, "marked")]
 
     return Finding(
-        f"at the floor from {late.text('mg')} (friction 0.2) and {early.text('mg')} (without)",
-        _ways(data, "reaches_floor", (0.2,), later),
+        f"at the floor from {found[0.2].text('mg')} (friction 0.2) and {found[0.0].text('mg')} (without)",
+        preparations.readings(data, "reaches_floor", found, later),
     )
 
 
@@ -455,7 +416,7 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
 )
 def region_and_friction(data: Data, words: Bounds) -> Finding:
     sizes = {"contacts": "opened_contacts", "depth": "teardrop_depth", "width": "teardrop_width"}
-    axis = data.get(GROUP, "friction_axis", *sizes.values(), "friction").sortby("friction")
+    axis = data.get(GROUP, "friction_axis").sortby("friction")
     readings = []
     for what, name in sizes.items():
         size = axis[name].values
@@ -472,22 +433,6 @@ def region_and_friction(data: Data, words: Bounds) -> Finding:
 NEAR = 6.0
 
 
-def _sliding(data: Data) -> dict[float, FloatArray]:
-    """Where sliding contacts are, seen from the load (n, 2), by force below that of the paper's crossover."""
-    names = ("position", "contact_disk", "contact_partner", "contact_status", "loaded_disk", "force")
-    states = data.get(GROUP, "states_mu_0.2", *names)
-    first, second = states["contact_disk"].values, states["contact_partner"].values
-    found = {}
-    for k, force in enumerate(states["force"].values.tolist()):
-        position = states["position"].values[k]
-        slides = states["contact_status"].values[k] == SLIDING
-        away = 0.5 * (position[first] + position[second])[slides] - position[int(states["loaded_disk"])]
-        if 0.0 < force < 20.0 and away.size:
-            found[force] = away
-    CLAIMS.needs(len(found) > 1, "states_mu_0.2 holds sliding contacts at fewer than two forces below 20 mg")
-    return found
-
-
 @CLAIMS.add(
     "R12",
     "V.E",
@@ -496,11 +441,20 @@ def _sliding(data: Data) -> dict[float, FloatArray]:
     8,
 )
 def sliding_near(data: Data, words: Bounds) -> Finding:
-    near = {force: float((np.hypot(*away.T) < NEAR).mean()) for force, away in _sliding(data).items()}
+    """At forces below that of the paper's crossover."""
+    states = data.get(GROUP, "states_mu_0.2")
+    first, second = states["contact_disk"].values, states["contact_partner"].values
+    near = {}
+    for k, force in enumerate(states["force"].values.tolist()):
+        position = states["position"].values[k]
+        slides = states["contact_status"].values[k] == SLIDING
+        away = 0.5 * (position[first] + position[second])[slides] - position[int(states["loaded_disk"])]
+        if 0.0 < force < 20.0 and away.size:
+            near[f"{force:g} mg"] = float((np.hypot(*away.T) < NEAR).mean())
     what = f"sliding contacts within {NEAR:g} radii of the load"
     return asked.each(
         f"{what}: ",
-        {f"{force:g} mg": part for force, part in near.items()},
+        near,
         lambda part: asked.at_least(what, part, words, "marked", "%"),
         "%",
         "The paper names no force",
@@ -515,12 +469,13 @@ def sliding_near(data: Data, words: Bounds) -> Finding:
     6,
 )
 def range_grows(data: Data, words: Bounds) -> Finding:
-    frictions = np.sort(np.unique(data.get(GROUP, "response", "friction")["friction"].values)).tolist()
-    found = _ranges(data, tuple(frictions))
+    frictions = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
+    found = _ranges(data, frictions)
+    texts = {name: ", ".join(f"{end.value:.3g}" for end in ends.values()) for name, ends in found.items()}
     return Finding(
         f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
-        + "; ".join(f"{name} at {', '.join(f'{e.value:.3g}' for e in ends)} mg" for name, ends in found.items()),
-        _by_end(data, found, tuple(frictions[1:]), lambda *ends: [rises("range", ends)]),
+        + "; ".join(f"{name} at {ends} mg" for name, ends in texts.items()),
+        _by_end(data, found, lambda *ends: [asked.rises("range", ends)]),
         "It grows up to friction 0.2 or 0.5 and is shorter at 1; at the paper's own three frictions the first opening "
         "grows",
     )
@@ -534,10 +489,10 @@ def range_grows(data: Data, words: Bounds) -> Finding:
     12,
 )
 def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
-    axis = data.get(GROUP, "friction_axis", "central_dip", "floor_response", "friction").sortby("friction")
+    axis = data.get(GROUP, "friction_axis").sortby("friction")
     dip = axis["central_dip"].values
-    largest = float(data.get(GROUP, "response", "friction")["friction"].max())
-    elastic = _curve(data, largest, "response_at_centre", "floor_response")
+    largest = float(data.get(GROUP, "response")["friction"].max())
+    elastic = _curve(data, largest, "response_at_centre")
     small = elastic["floor_response"].transpose("force", "floor_disk").values[0]
     response = axis["floor_response"].transpose("friction", "floor_disk").values
     off = np.sqrt(((response - small) ** 2).sum(axis=1) / (small**2).sum())
@@ -573,7 +528,7 @@ def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
 )
 def friction_crossover(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "friction_crossover")
-    axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
+    axis = data.get(GROUP, "friction_axis").sortby("friction")
     first, last = float(axis["central_dip"][0]), float(axis["central_dip"][-1])
 
     without = asked.at_least("dip without friction", first, words, "visible", "%")

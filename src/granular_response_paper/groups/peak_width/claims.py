@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...claims.claim import Claims, Data, Finding, Kind, Quantity, Reading, about
+from ...claims import asked
+from ...claims.claim import Claims, Data, Finding, Kind, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "peak_width"
@@ -50,7 +51,7 @@ def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
         readings.append(
             Reading(
                 material(one),
-                *(about(f"{what}, {width}", power(these), ELASTIC, words) for width, these in by.items()),
+                *(asked.near(f"{what}, {width}", power(these), words, "about", ELASTIC) for width, these in by.items()),
                 change="gravity" if str(one["gravity"].values) == "frictionless" else "",
             )
         )

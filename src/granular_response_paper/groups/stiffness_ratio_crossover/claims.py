@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...claims import asked
-from ...claims.claim import Claims, Data, Finding, Quantity, Reading, about
+from ...claims.claim import Claims, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "stiffness_ratio_crossover"
@@ -35,7 +35,7 @@ def crossover(data: Data, words: Bounds) -> Finding:
     ends = _ends(data)
     return Finding(
         ", ".join(f"{name}: {end.text()}" for name, end in ends.items()),
-        [Reading(name, about("crossover", end, CROSSOVER, words)) for name, end in ends.items()],
+        [Reading(name, asked.near("crossover", end, words, "about", CROSSOVER)) for name, end in ends.items()],
     )
 
 
