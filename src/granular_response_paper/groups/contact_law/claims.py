@@ -17,7 +17,7 @@ CLAIMS = Claims(GROUP)
     "a linear force describes the disks quite well",
 )
 def linear_fit(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "responses", "difference", "friction", "force")
+    study = data.get(GROUP, "responses")
     what = "largest difference of the responses, per largest response"
     largest = asked.by_friction(study.max("force"), "difference")
     values = largest.values()

@@ -14,7 +14,7 @@ CLAIMS = Claims(GROUP)
 
 def _dips(data: Data, case: str, wanted: Callable[..., Condition], words: Bounds) -> Finding:
     """The dip under the apex per largest value, by where it is read."""
-    stress, floor = data.get(GROUP, "stress", "dip", "case"), data.get(GROUP, "piles", "floor_dip", "case")
+    stress, floor = data.get(GROUP, "stress"), data.get(GROUP, "piles")
     dips = {
         "stress 4 radii above the floor": float(stress["dip"].sel(case=case)),
         "floor forces": float(floor["floor_dip"].sel(case=case)),
@@ -45,7 +45,7 @@ def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
 )
 def regions(data: Data, words: Bounds) -> Finding:
     names = {"central_open_contacts": "contacts", "central_height": "height", "central_width": "width"}
-    study = data.get(GROUP, "piles", *names, "case")
+    study = data.get(GROUP, "piles")
     ratios = {
         text: float(study[name].sel(case="frictional")) / float(study[name].sel(case="frictionless"))
         for name, text in names.items()

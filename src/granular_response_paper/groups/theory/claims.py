@@ -12,7 +12,7 @@ CLAIMS = Claims(GROUP)
 
 @CLAIMS.add("K2", "V.C", "root of r(beta) without horizontal springs", "0.2915", (10, 11), derivation=True)
 def root(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "peak_criterion", "root", "rotations")
+    study = data.get(GROUP, "peak_criterion")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
     return asked.one_reading(
         f"{roots['suppressed']:.6f}; with disks free to turn {roots['free']:.4f} (3/11)",
@@ -31,7 +31,7 @@ def root(data: Data, words: Bounds) -> Finding:
     derivation=True,
 )
 def moduli(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "moduli", "error", "rotations", "measured", "formula")
+    study = data.get(GROUP, "moduli")
     error = study.sel(rotations="suppressed")["error"].values
     return asked.one_reading(
         f"largest difference {error.max():.1e} of the largest modulus, {error.size} lattices",

@@ -23,7 +23,7 @@ NEAR, FAR = 6.0, 9.0
     "quite a large effect on the force chains",
 )
 def chains(data: Data, words: Bounds) -> Finding:
-    rings = data.get(GROUP, "reach", "force_change", "ring_outer", "torque").sortby("torque").isel(torque=-1)
+    rings = data.get(GROUP, "reach").sortby("torque").isel(torque=-1)
     near = rings["ring_outer"].values <= NEAR
     CLAIMS.needs(near.any(), f"reach holds no ring within {NEAR:g} radii")
     change = float(rings["force_change"].values[near].mean())
@@ -39,8 +39,8 @@ def chains(data: Data, words: Bounds) -> Finding:
 def _fields(data: Data) -> dict[str, np.ndarray]:
     """Change of the stress and of its antisymmetric part (z, x) by the largest torque, and the distance of the load."""
     components = ("stress_xx", "stress_xz", "stress_zx", "stress_zz")
-    study = data.get(GROUP, "stress", *components, "torque", "x", "z").sortby("torque")
-    disks = data.get(GROUP, "torques", "position", "loaded_disk", "torque").sortby("torque")
+    study = data.get(GROUP, "stress").sortby("torque")
+    disks = data.get(GROUP, "torques").sortby("torque")
     change = np.stack([study[name].values[-1] - study[name].values[0] for name in components])
     place = disks["position"].values[0, int(disks["loaded_disk"])]
     x, z = np.meshgrid(study["x"].values, study["z"].values)
@@ -59,7 +59,7 @@ def _fields(data: Data) -> dict[str, np.ndarray]:
     18,
 )
 def near_the_load(data: Data, words: Bounds) -> Finding:
-    rings = data.get(GROUP, "reach", "stress_change", "antisymmetric_change", "ring_outer", "ring_inner", "torque")
+    rings = data.get(GROUP, "reach")
     rings = rings.sortby("torque").isel(torque=-1)
     near, far = rings["ring_outer"].values <= NEAR, rings["ring_inner"].values >= FAR
     fields = _fields(data)
