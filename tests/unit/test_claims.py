@@ -829,5 +829,3 @@ def test_datasets_without_a_group_are_named():
     data = Data({"pile_dip": {"stress": xr.Dataset()}})
     with pytest.raises(NotMeasured, match=r"pile_dip\.nc holds no dataset piles"):
         data.get("pile_dip", "piles")
-    with pytest.raises(NotMeasured, match="stress holds no dip"):
-        data.get("pile_dip", "stress", "dip")

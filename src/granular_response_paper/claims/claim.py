@@ -293,21 +293,17 @@ class Data:
     def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]]) -> None:
         self.groups = groups
 
-    def get(self, group: str, name: str, *variables: str) -> xr.Dataset:
-        """Dataset ``name`` of ``group`` with at least ``variables``."""
+    def get(self, group: str, name: str) -> xr.Dataset:
+        """Dataset ``name`` of ``group``."""
         if group not in self.groups:
             raise NotMeasured(f"data/{group}.nc is missing")
         if name not in self.groups[group]:
             raise NotMeasured(f"data/{group}.nc holds no dataset {name}")
-        dataset = self.groups[group][name]
-        missing = [variable for variable in variables if variable not in dataset.variables]
-        if missing:
-            raise NotMeasured(f"data/{group}.nc: {name} holds no {', '.join(missing)}")
-        return dataset
+        return self.groups[group][name]
 
     def event(self, group: str, name: str, friction: float | None = None) -> Quantity:
         """The bracket of an event; ``friction`` None takes the first event of that name."""
-        events = self.get(group, "events", "name", "low", "high")
+        events = self.get(group, "events")
         at = events["name"].values == name
         if friction is not None and "friction" in events.variables:
             at = at & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))

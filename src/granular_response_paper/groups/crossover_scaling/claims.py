@@ -16,7 +16,7 @@ OF_WEIGHT = 2.0
 
 def _powers(data: Data, event: str) -> list[tuple[str, xr.Dataset]]:
     """What each series of layers is, and its powers of the layers."""
-    study = data.get(GROUP, "powers", "exponent", "extrapolated", "friction", "varied", "confined", "event", "end")
+    study = data.get(GROUP, "powers")
     found = []
     for k in range(study.sizes["series"]):
         one = study.isel(series=k).sel(event=event)
@@ -41,7 +41,7 @@ def _quantity(ends: xr.DataArray) -> Quantity:
 )
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     series = _powers(data, "crossover")
-    layers = float(data.get(GROUP, "powers", "extrapolated").attrs["layers"])
+    layers = float(data.get(GROUP, "powers").attrs["layers"])
     texts = [f"{_quantity(one['exponent']).text()} ({name})" for name, one in series]
     far = [f"{_quantity(one['extrapolated']).text('mg')} ({name})" for name, one in series]
     return Finding(

@@ -23,7 +23,7 @@ ELASTIC = 2.0
     "statically equivalent loads differ little far away, as in an elastic body (Saint-Venant)",
 )
 def saint_venant(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "saint_venant", "exponent", "polydispersity", "friction")
+    study = data.get(GROUP, "saint_venant")
     what = "power of the distance with which two equivalent loads differ less"
     readings, means = [], []
     for case in range(study.sizes["case"]):

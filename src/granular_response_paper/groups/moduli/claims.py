@@ -23,7 +23,7 @@ def _largest(study: xr.Dataset, case: int) -> xr.Dataset:
 
 
 def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
-    study = data.get(GROUP, "packings", "difference", "layers", "polydispersity", "friction")
+    study = data.get(GROUP, "packings")
     readings: list[Reading] = []
     values: dict[bool, list[float]] = {True: [], False: []}
     for case in range(study.sizes["case"]):

@@ -41,9 +41,7 @@ def on_floors(data: Data, words: Bounds) -> Finding:
 
 
 def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
-    study = data.get(
-        GROUP, name, "power", "interval", "elastic_power", "polydispersity", "friction", "gravity", "force"
-    )
+    study = data.get(GROUP, name)
     readings, elastic, found = [], [], []
     for case in range(study.sizes["case"]):
         one = study.isel(case=case)

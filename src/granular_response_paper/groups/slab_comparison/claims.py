@@ -20,7 +20,7 @@ CLAIMS = Claims(GROUP)
     1,
 )
 def large_systems(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "slabs", "distance", "layers", "friction", "floor", "gravity", "disks_per_layer")
+    study = data.get(GROUP, "slabs")
     columns = (study[name].values.tolist() for name in ("friction", "floor", "gravity", "disks_per_layer"))
     cases = list(zip(*columns, strict=True))
     layers, distance = study["layers"].values, study["distance"].values

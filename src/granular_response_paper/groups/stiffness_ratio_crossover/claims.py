@@ -17,7 +17,7 @@ CROSSOVER, LARGEST = 0.3, 1.0
 
 def _ends(data: Data) -> dict[str, Quantity]:
     """The crossover by what counts as one: two peaks end, end for good, the maximum at x = 0 begins."""
-    study = data.get(GROUP, "response", "double_peaked", "stiffness_ratio").sortby("stiffness_ratio")
+    study = data.get(GROUP, "response").sortby("stiffness_ratio")
     ratio, double = study["stiffness_ratio"].values, study["double_peaked"].values > 0
     last = np.flatnonzero(double)
     CLAIMS.needs(last.size and last[-1] + 1 < len(ratio), "response holds no end of two peaks")
@@ -46,7 +46,7 @@ def crossover(data: Data, words: Bounds) -> Finding:
     "nearly independent of k_T/k_N",
 )
 def independent(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "response", "floor_response", "response_at_centre", "stiffness_ratio")
+    study = data.get(GROUP, "response")
     study = study.sortby("stiffness_ratio")
     ratio = study["stiffness_ratio"].values
     response = study["floor_response"].transpose("stiffness_ratio", "floor_disk").values
@@ -69,7 +69,7 @@ def independent(data: Data, words: Bounds) -> Finding:
 
 @CLAIMS.add("K5", "V.B", "friction 10, F = 15 mg: contacts at the Coulomb limit", "no sliding occurs", 10)
 def no_sliding(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "response", "sliding_contacts", "stiffness_ratio")
+    study = data.get(GROUP, "response")
     sliding = study["sliding_contacts"].values[study["stiffness_ratio"].values > 0.0]
     return asked.one_reading(
         f"at most {sliding.max():.0f} contacts of disks at the Coulomb limit, at all ratios above 0",
@@ -86,7 +86,7 @@ def no_sliding(data: Data, words: Bounds) -> Finding:
     (10, 11),
 )
 def criterion(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "elastic", "root", "rotations")
+    study = data.get(GROUP, "elastic")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
     end = data.event(GROUP, "two_peaks_end")
     return Finding(

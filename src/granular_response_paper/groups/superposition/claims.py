@@ -16,7 +16,7 @@ CLAIMS = Claims(GROUP)
 def superposition(force: float, word: str) -> Measure:
     def measure(data: Data, words: Bounds) -> Finding:
         names = {"floor forces": "floor_error_largest", "all contact forces": "contact_error_largest"}
-        study = at(data.get(GROUP, "errors", *names.values(), "force", "distance"), force=force)
+        study = at(data.get(GROUP, "errors"), force=force)
         readings, texts = [], []
         for text, name in names.items():
             error = study[name].transpose("realization", "distance").values
@@ -52,7 +52,7 @@ CLAIMS.add(
 
 @CLAIMS.add("U2", "VI.B", "end of the linear range of that slab", "up to about 0.4 mg", 24)
 def linear_range(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "linear_range", "linear_until", "nonlinear_from")
+    study = data.get(GROUP, "linear_range")
     until, beyond = study["linear_until"].values, study["nonlinear_from"].values
     # a path that does not end is beyond all others
     ends = np.where(np.isfinite(beyond), 0.5 * (until + beyond), 1e6)
@@ -79,7 +79,7 @@ CLAIMS.add("U3", "VI.B, Fig. 24", "the same as U1 at 1 mg", "superposition holds
     24,
 )
 def falls_with_depth(data: Data, words: Bounds) -> Finding:
-    study = at(data.get(GROUP, "errors", "row_error", "force", "distance", "gap"), force=1.0).sortby("gap")
+    study = at(data.get(GROUP, "errors"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values
     if error.shape[2] < 2:
         raise NotMeasured(f"data/{GROUP}.nc: errors holds one depth")

@@ -20,7 +20,7 @@ PATH = "quasi-static path"
     "when it exceeds 91 mg",
 )
 def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
-    brackets = data.get(GROUP, "brackets", "low", "high", "ramp_time", "time_step")
+    brackets = data.get(GROUP, "brackets")
     columns = (brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step"))
     found = {
         f"ramp of {ramp:g} sqrt(R/g), step {step:g}": Quantity.bracket(low, high)
