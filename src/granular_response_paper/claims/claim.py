@@ -11,13 +11,16 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import resources
 from typing import Literal
 
 import numpy as np
 import xarray as xr
 
 from granular_response.errors import GranularError
+from granular_response.scene import text as yaml
 
+from .. import PACKAGE
 from .changes import CHANGES
 from .words import Bounds
 
@@ -247,30 +250,30 @@ class Claim:
         return self.id.startswith("B")
 
 
+#: Beside a group's ``claims.py``: what the paper says, by the number of the claim.
+TEXTS = "claims.yaml"
+
+
 class Claims(list[Claim]):
-    """The claims of a figure group, each said above the function that measures it."""
+    """The claims of a figure group, each with the function that measures it.
+
+    ``claims.yaml`` beside it has the ``place`` of each in the paper, the ``paper``'s words, what is ``measured``, the
+    ``figures`` that show it unless they are those that the place names, and whether it is a ``derivation``.
+    """
 
     def __init__(self, group: str) -> None:
         self.group = group
+        self._said = yaml.read(resources.files(f"{PACKAGE}.groups.{group}").joinpath(TEXTS).read_text("utf-8"))
 
-    def add(
-        self,
-        id: str,
-        place: str,
-        measured: str,
-        paper: str,
-        figures: int | tuple[int, ...] | None = None,
-        *,
-        derivation: bool = False,
-    ) -> Callable[[Measure], Measure]:
-        """``figures`` that show it; those that ``place`` names if None."""
-        shown = _figures(place) if figures is None else (figures,) if isinstance(figures, int) else figures
+    def measures(self, id: str) -> Callable[[Measure], Measure]:
+        """Said above the function that measures a claim. Raises KeyError if its text is missing."""
+        said = {"figures": _figures(self._said[id]["place"]), **self._said[id]}
 
-        def said(measure: Measure) -> Measure:
-            self.append(Claim(id, place, measured, paper, measure, shown, self.group, derivation))
+        def measured(measure: Measure) -> Measure:
+            self.append(Claim(id, measure=measure, group=self.group, **said | {"figures": tuple(said["figures"])}))
             return measure
 
-        return said
+        return measured
 
     def needs(self, there: object, what: str) -> None:
         """Raises NotMeasured, which says ``what`` the group's datasets hold or lack, unless ``there`` is true."""

@@ -10,12 +10,7 @@ GROUP = "contact_law"
 CLAIMS = Claims(GROUP)
 
 
-@CLAIMS.add(
-    "B10",
-    "beyond the paper, III.B",
-    "responses with the linear normal force against the 3/2 power, matched at the typical overlap",
-    "a linear force describes the disks quite well",
-)
+@CLAIMS.measures("B10")
 def linear_fit(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "responses")
     what = "largest difference of the responses, per largest response"

@@ -33,12 +33,7 @@ def _quantity(ends: xr.DataArray) -> Quantity:
     return Quantity.range((least, largest), value)
 
 
-@CLAIMS.add(
-    "B8",
-    "beyond the paper, IV.B, VIII",
-    "power of the number of layers with which the crossover force grows, without and with friction",
-    "under identical loads very deep systems have one peak and shallow ones two; with friction too",
-)
+@CLAIMS.measures("B8")
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     series = _powers(data, "crossover")
     layers = float(data.get(GROUP, "powers").attrs["layers"])
@@ -54,12 +49,7 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "B9",
-    "beyond the paper, IV.C",
-    "powers of the layers: of the force at which the open region reaches the floor, and of the crossover",
-    "contacts open in a competition of the force with the compression due to gravity",
-)
+@CLAIMS.measures("B9")
 def of_weight(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
     for event, what in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks")):

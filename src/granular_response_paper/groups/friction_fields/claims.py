@@ -15,13 +15,7 @@ CLAIMS = Claims(GROUP)
 NEAR, FAINT = 6.0, 0.1
 
 
-@CLAIMS.add(
-    "S1a",
-    "V.D, Fig. 13",
-    "F = 15 mg, no friction: mean angle of the added forces to the contact lines",
-    "forces are aligned with the lattice directions",
-    derivation=True,
-)
+@CLAIMS.measures("S1a")
 def along_lattice(data: Data, words: Bounds) -> Finding:
     tilt = float(at(data.get(GROUP, "stress"), friction=0.0)["misalignment"])
     return asked.one_reading(
@@ -31,12 +25,7 @@ def along_lattice(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "S1b",
-    "V.D, Fig. 13",
-    "F = 15 mg, friction 1: angle to the vertical of the forces below the load and their share of the force",
-    "a vertical chain is evident",
-)
+@CLAIMS.measures("S1b")
 def vertical_chain(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress")
     without, full = at(study, friction=0.0), at(study, friction=1.0)
@@ -57,12 +46,7 @@ def vertical_chain(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "S2",
-    "V.D, Fig. 14",
-    "F = 15 mg, friction 1: sigma_zz against that of a harmonic lattice",
-    "quite similar to the isotropic one",
-)
+@CLAIMS.measures("S2")
 def stress(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress")
     value = {mu: float(at(study, friction=mu)["distance_to_lattice"]) for mu in (0.0, 1.0)}
@@ -74,13 +58,7 @@ def stress(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "A3",
-    "abstract, V.D",
-    "F = 15 mg: difference of sigma_zz from the isotropic lattice at friction 0, 0.2 and 1",
-    "friction renders the response closer to that of isotropic elasticity",
-    14,
-)
+@CLAIMS.measures("A3")
 def closer_with_friction(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress").sortby("friction")
     distance = study["distance_to_lattice"].values
@@ -93,13 +71,7 @@ def closer_with_friction(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "S3",
-    "V.C",
-    "antisymmetric part of the stress over the pressure, within 6 radii of the load",
-    "only a few per cent of the pressure",
-    14,
-)
+@CLAIMS.measures("S3")
 def antisymmetric(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stress")
     x, z = np.meshgrid(study["x"].values, study["z"].values)
@@ -125,12 +97,7 @@ def antisymmetric(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "S4",
-    "V.D, Fig. 15",
-    "F = 150 mg: added contact forces below the load over the largest at the same depth",
-    "friction fits the measured profiles better: they have a vertical chain",
-)
+@CLAIMS.measures("S4")
 def profiles(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "profiles")
     off = float(at(study, friction=0.0)["axis_magnitude"].max())

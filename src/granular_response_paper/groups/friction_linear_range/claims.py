@@ -46,14 +46,10 @@ def at_force(
     return measure
 
 
-for _k, _mu, _paper, _figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (3, 1.0, 6.0, (9,))):
-    CLAIMS.add(
-        f"F{_k}",
-        "V.B",
-        f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, on the load path",
-        f"{_paper:g} mg",
-        _figures,
-    )(at_force("first_opening", _mu, _paper, what="first opening", text="opens at", first_sampled=True))
+for _id, _friction, _force in (("F1", 0.0, 0.75), ("F2", 0.2, 4.0), ("F3", 1.0, 6.0)):
+    CLAIMS.measures(_id)(
+        at_force("first_opening", _friction, _force, what="first opening", text="opens at", first_sampled=True)
+    )
 
 
 #: Ends of the linear range that other preparations have too, by event.
@@ -83,12 +79,7 @@ def _by_end(
     return [Reading(name, *wanted(*ends.values())) for name, ends in found.items()] + others
 
 
-@CLAIMS.add(
-    "R1",
-    "V.A, Fig. 6",
-    "end of the linear range at x = 0, and first opening, at friction 0.2 and 1 over those without",
-    "almost ten times larger",
-)
+@CLAIMS.measures("R1")
 def linear_range(data: Data, words: Bounds) -> Finding:
     def wanted(without: Quantity, *ends: Quantity) -> list[Condition]:
         least, most = (10.0 ** (1.0 + sign * words["almost"]) for sign in (-1.0, 1.0))
@@ -122,7 +113,7 @@ def _up_to_50(data: Data, name: str) -> xr.Dataset:
     return curve.isel(force=force <= 50.0)
 
 
-@CLAIMS.add("R2a", "V.A, Fig. 7", "friction 1: forces up to 50 mg with two peaks", "a single peak up to 50 mg")
+@CLAIMS.measures("R2a")
 def single_peak(data: Data, words: Bounds) -> Finding:
     curves = {OWN: _up_to_50(data, "double_peaked"), **preparations.responses(data, 1.0)}
     what = "forces up to 50 mg with two peaks"
@@ -141,12 +132,7 @@ def single_peak(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R2b",
-    "V.B, Fig. 7",
-    "friction 1: full width at half maximum at 50 mg over that at the smallest force",
-    "its shape becomes sharper",
-)
+@CLAIMS.measures("R2b")
 def sharper(data: Data, words: Bounds) -> Finding:
     curve = _up_to_50(data, "half_maximum_width")
     width, height = curve["half_maximum_width"].values, curve["peak_height"].values
@@ -158,21 +144,14 @@ def sharper(data: Data, words: Bounds) -> Finding:
     )
 
 
-CLAIMS.add("R3a", "V.E, Fig. 16a", "friction 0.2: force of the crossover to two peaks", "about 20 mg", (7, 16))(
-    at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from")
-)
-CLAIMS.add("R3b", "V.E, Fig. 8", "friction 0.2: force at which the open region reaches the lowest row", "about 20 mg")(
+CLAIMS.measures("R3a")(at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from"))
+CLAIMS.measures("R3b")(
     at_force("reaches_floor", 0.2, 20.0, what="open region at the floor", text="open region at the floor from")
 )
-CLAIMS.add(
-    "R4a",
-    "V.E, Fig. 16a",
-    "friction 0.2: force from which the response with two peaks has a third one at x = 0, on the load path",
-    "from about 40 mg",
-)(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
+CLAIMS.measures("R4a")(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
 
 
-@CLAIMS.add("R4b", "V.E, Fig. 16a", "prominence of that peak at each stored force from 40 mg on", "small")
+@CLAIMS.measures("R4b")
 def third_peak_small(data: Data, words: Bounds) -> Finding:
     curve = _curve(data, 0.2, "third_peak_prominence")
     force, size = curve["force"].values, curve["third_peak_prominence"].values
@@ -200,12 +179,7 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
 RAMP = "ramp of 20 sqrt(R/g)"
 
 
-@CLAIMS.add(
-    "R5b",
-    "V.E, Fig. 16b",
-    "change of the asymmetry between the two neighbouring forces around that event",
-    "a sharp transition",
-)
+@CLAIMS.measures("R5b")
 def sharp(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     asymmetry, force = runs["asymmetry"].values, runs["force"].values
@@ -218,13 +192,7 @@ def sharp(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R6a",
-    "V.E",
-    "contacts near the Coulomb limit on both sides of that change",
-    "a marked reduction in the number of sliding contacts",
-    16,
-)
+@CLAIMS.measures("R6a")
 def sliding_drops(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     sliding, margins = runs["mobilised_contacts"].transpose("force", "margin").values, runs["margin"].values
@@ -245,13 +213,7 @@ def sliding_drops(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R6b",
-    "V.E",
-    "contacts without a mirror image on both sides of that change",
-    "the contact network becomes asymmetric",
-    16,
-)
+@CLAIMS.measures("R6b")
 def network_changes(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     network = runs["network_asymmetry"].values
@@ -264,13 +226,7 @@ def network_changes(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R7",
-    "V.E",
-    "beyond that change: responses at nearly equal forces that lean to opposite sides, one mirrored",
-    "very close forces can give almost exactly the reflected response",
-    16,
-)
+@CLAIMS.measures("R7")
 def mirror_images(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     after = runs.isel(force=slice(first, None))
@@ -296,13 +252,7 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     return asked.one_reading(f"{seen}{turned}", RAMP, asked.at_most(what, best[0], words, "holds", "%"))
 
 
-@CLAIMS.add(
-    "R8a",
-    "V.B, Fig. 9",
-    "force at which the open region reaches the lowest row at friction 1 over that at 0.2",
-    "smaller than for 0.2",
-    (8, 9),
-)
+@CLAIMS.measures("R8a")
 def floor_earlier(data: Data, words: Bounds) -> Finding:
     found = _events(data, "reaches_floor", 1.0, 0.2)
 
@@ -315,7 +265,7 @@ def floor_earlier(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add("R8b", "V.B, Fig. 9", "peaks beyond it at friction 1", "one peak remains")
+@CLAIMS.measures("R8b")
 def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     floor = data.event(GROUP, "reaches_floor", 1.0)
     curve = _curve(data, 1.0, "double_peaked")
@@ -329,9 +279,7 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R9", "V.A, Fig. 7", "force of the crossover to two peaks against friction", "rapidly increases with friction"
-)
+@CLAIMS.measures("R9")
 def crossover_rises(data: Data, words: Bounds) -> Finding:
     found, visible = {}, []
     for mu in np.sort(data.get(GROUP, "response")["friction"].values).tolist():
@@ -348,12 +296,7 @@ def crossover_rises(data: Data, words: Bounds) -> Finding:
     return Finding("two peaks from, by friction: " + texts, readings)
 
 
-@CLAIMS.add(
-    "R10",
-    "V.B, Figs. 4, 8",
-    "opened contacts at friction 0.2 over those without friction under the same force",
-    "the region of open contacts is considerably smaller",
-)
+@CLAIMS.measures("R10")
 def smaller_region(data: Data, words: Bounds) -> Finding:
     without, full = (_curve(data, mu, "teardrop_depth") for mu in (0.0, 0.2))
     shared = [f for f in without["force"].values if f in full["force"].values]
@@ -369,12 +312,7 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R11",
-    "V.B, Figs. 4, 8",
-    "force at which the open region reaches the lowest row at friction 0.2 over that without friction",
-    "it reaches the floor only for a much larger force",
-)
+@CLAIMS.measures("R11")
 def floor_later(data: Data, words: Bounds) -> Finding:
     found = _events(data, "reaches_floor", 0.0, 0.2)
 
@@ -387,13 +325,7 @@ def floor_later(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F11",
-    "V.A, Fig. 6",
-    "without friction: change of the response at x = 0 over the forces at which no contact has opened",
-    "a linear range even for frictionless particles",
-    derivation=True,
-)
+@CLAIMS.measures("F11")
 def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "first_opening", 0.0)
     curve = _curve(data, 0.0, "response_at_centre")
@@ -407,13 +339,7 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F12",
-    "IV.A",
-    "size of the region of open contacts under 15 mg against friction: contacts, depth, width",
-    "its size decreases with friction",
-    (4, 8, 9),
-)
+@CLAIMS.measures("F12")
 def region_and_friction(data: Data, words: Bounds) -> Finding:
     sizes = {"contacts": "opened_contacts", "depth": "teardrop_depth", "width": "teardrop_width"}
     axis = data.get(GROUP, "friction_axis").sortby("friction")
@@ -433,13 +359,7 @@ def region_and_friction(data: Data, words: Bounds) -> Finding:
 NEAR = 6.0
 
 
-@CLAIMS.add(
-    "R12",
-    "V.E",
-    f"friction 0.2: part of the sliding contacts within {NEAR:g} radii of the load, at forces below 20 mg",
-    "sliding occurs mainly near the point of application",
-    8,
-)
+@CLAIMS.measures("R12")
 def sliding_near(data: Data, words: Bounds) -> Finding:
     """At forces below that of the paper's crossover."""
     states = data.get(GROUP, "states_mu_0.2")
@@ -461,13 +381,7 @@ def sliding_near(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "A1",
-    "abstract",
-    "end of the linear range, and first opening, against friction from 0 to 1",
-    "the larger the friction, the more extended the range of forces with an elastic response",
-    6,
-)
+@CLAIMS.measures("A1")
 def range_grows(data: Data, words: Bounds) -> Finding:
     frictions = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
     found = _ranges(data, frictions)
@@ -481,13 +395,7 @@ def range_grows(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "A2",
-    "abstract",
-    "floor response under 15 mg against friction: dip at x = 0, and rms difference from the elastic response",
-    "the larger the friction, the smaller the anisotropy",
-    12,
-)
+@CLAIMS.measures("A2")
 def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
     axis = data.get(GROUP, "friction_axis").sortby("friction")
     dip = axis["central_dip"].values
@@ -519,13 +427,7 @@ def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "K4",
-    "V.D, Fig. 12",
-    "F = 15 mg, k_T/k_N = 0.8: dip at x = 0 without and with much friction; friction at which two peaks turn into one, "
-    "by bisection",
-    "a crossover from two peaks to one",
-)
+@CLAIMS.measures("K4")
 def friction_crossover(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "friction_crossover")
     axis = data.get(GROUP, "friction_axis").sortby("friction")

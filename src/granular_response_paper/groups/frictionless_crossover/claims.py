@@ -28,13 +28,7 @@ def _crossovers(data: Data, words: Bounds) -> dict[str, Quantity]:
     }
 
 
-@CLAIMS.add(
-    "F4a",
-    "IV.A, Fig. 3",
-    "without friction: force at which the floor response gets two peaks, each above the response at x = 0",
-    "one peak turns into two as the force grows",
-    (3, 4),
-)
+@CLAIMS.measures("F4a")
 def crossover(data: Data, words: Bounds) -> Finding:
     ends = _crossovers(data, words)
     largest = float(data.get(GROUP, "response")["force"].max())
@@ -43,12 +37,7 @@ def crossover(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F4b",
-    "IV.A, Figs. 3, 4",
-    "that force per the force at which the open region reaches the lowest row",
-    "the crossover comes at slightly smaller forces than the open region's reaching the floor",
-)
+@CLAIMS.measures("F4b")
 def before_the_floor(data: Data, words: Bounds) -> Finding:
     ends, floor = _crossovers(data, words), data.event(GROUP, "teardrop_reaches_floor")
     what, least = "crossover per force at the floor", 1.0 - words["slightly"]
@@ -75,12 +64,7 @@ def _open_regions(data: Data) -> list[tuple[float, float, np.ndarray]]:
     return found
 
 
-@CLAIMS.add(
-    "F5a",
-    "IV.A, Fig. 4",
-    "without friction: directions of the opened contacts in their connected region below the load",
-    "horizontal contacts are opened",
-)
+@CLAIMS.measures("F5a")
 def horizontal(data: Data, words: Bounds) -> Finding:
     regions = _open_regions(data)
     least = min(share for _, share, _ in regions)
@@ -92,13 +76,7 @@ def horizontal(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F5b",
-    "IV.A, Fig. 4",
-    "rows and depth of that region at growing forces",
-    "the region has the shape of a teardrop and grows with the force",
-    (4, 5),
-)
+@CLAIMS.measures("F5b")
 def teardrop(data: Data, words: Bounds) -> Finding:
     regions = [counts for _, _, counts in _open_regions(data)]
     depth = data.get(GROUP, "response")["teardrop_depth"].values
@@ -131,13 +109,7 @@ def size_in_steps(size: np.ndarray, step: float) -> Quantity:
     return Quantity(mean, mean - off, mean + off, "bracket")
 
 
-@CLAIMS.add(
-    "F6",
-    "IV.B, Fig. 5",
-    "depth and width of the open region in deeper slabs over those in the thinnest, means over evenly spaced forces "
-    "at which the latter has not reached its floor",
-    "the size decreases only slightly as the depth of the slab increases",
-)
+@CLAIMS.measures("F6")
 def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
     for stiffness, slabs in _by_stiffness(data, "regions", paper_first=True):
@@ -186,13 +158,7 @@ def _deep_and_shallow(slabs: xr.Dataset, alike: str) -> list[tuple[int, int]]:
     ]
 
 
-@CLAIMS.add(
-    "F7",
-    "IV.B, VIII",
-    "crossover force in a deep slab over that in a shallow one",
-    "under the same load deep slabs have one peak, shallow ones two",
-    5,
-)
+@CLAIMS.measures("F7")
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     rows = []
     for name, alike in (("sizes", "width grows with depth"), ("widths", "same width")):
@@ -220,9 +186,7 @@ def _between(data: Data) -> xr.Dataset:
     return study.isel(normal_stiffness=chosen)
 
 
-@CLAIMS.add(
-    "F8", "IV.C", "without friction: change of the response at x = 0 over k_N from 1000 to 1e5", "only about 2 %", 5
-)
+@CLAIMS.measures("F8")
 def stiffness_response(data: Data, words: Bounds) -> Finding:
     study = _between(data)
     force, values = study["force"].values, study["response_at_centre"].transpose("normal_stiffness", "force").values
@@ -239,13 +203,7 @@ def stiffness_response(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F9",
-    "IV.C",
-    "depth and width of the open region against k_N, at forces at which it reaches no floor",
-    "they increase with k_N and saturate for k_N of 2000 and more",
-    5,
-)
+@CLAIMS.measures("F9")
 def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "stiffness").sortby("normal_stiffness")
     stiffness = study["normal_stiffness"].values
@@ -269,13 +227,7 @@ def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F10",
-    "IV.C",
-    "without friction: crossover force at k_N from 1000 up over that at 1e5",
-    "the crossover is essentially independent of the rigidity",
-    5,
-)
+@CLAIMS.measures("F10")
 def crossover_and_stiffness(data: Data, words: Bounds) -> Finding:
     study = _between(data)
 

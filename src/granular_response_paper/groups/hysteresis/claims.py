@@ -27,12 +27,7 @@ def over_packings(each: Sequence[Quantity]) -> Quantity:
     return Quantity(middle, min(one.low for one in each), max(one.high for one in each), "range")
 
 
-@CLAIMS.add(
-    "B2",
-    "beyond the paper, I and VII",
-    "range in which loading leaves nothing behind, over the range in which the response is linear",
-    "what is nonlinear is irreversible, and what is linear elastic",
-)
+@CLAIMS.measures("B2")
 def ranges(data: Data, words: Bounds) -> Finding:
     events = data.get(GROUP, "events")
     readings: list[Reading] = []
@@ -69,12 +64,7 @@ def _span(found: Sequence[Quantity]) -> str:
     return f"{low:.2g} to {high:.2g}" if np.isfinite(high) else f"above {low:.2g}"
 
 
-@CLAIMS.add(
-    "B3",
-    "beyond the paper, IV",
-    "what is lost and changed when the same force is applied a second time",
-    "with its contacts modified by the load, a packing is incrementally elastic",
-)
+@CLAIMS.measures("B3")
 def repeated(data: Data, words: Bounds) -> Finding:
     loops = data.get(GROUP, "loops")
     readings, lost, changed = [], [], []

@@ -16,12 +16,7 @@ CLAIMS = Claims(GROUP)
 ELASTIC = 2.0
 
 
-@CLAIMS.add(
-    "B1",
-    "beyond the paper, VI",
-    "power of the distance with which statically equivalent small loads differ on the floor",
-    "statically equivalent loads differ little far away, as in an elastic body (Saint-Venant)",
-)
+@CLAIMS.measures("B1")
 def saint_venant(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "saint_venant")
     what = "power of the distance with which two equivalent loads differ less"

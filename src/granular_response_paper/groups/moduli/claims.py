@@ -46,21 +46,11 @@ def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "B4",
-    "beyond the paper, I",
-    "response of disordered packings to small loads beside the elastic slab of their own measured moduli",
-    "large systems under small forces can be described by elasticity",
-)
+@CLAIMS.measures("B4")
 def by_their_moduli(data: Data, words: Bounds) -> Finding:
     return _described(data, words, "free", "elastic")
 
 
-@CLAIMS.add(
-    "B5",
-    "beyond the paper, I",
-    "the same beside the isotropic slab nearest to these moduli",
-    "large systems under small forces can be described by isotropic elasticity",
-)
+@CLAIMS.measures("B5")
 def isotropic(data: Data, words: Bounds) -> Finding:
     return _described(data, words, "isotropic", "isotropic")

@@ -16,13 +16,7 @@ CLAIMS = Claims(GROUP)
 FRICTIONLESS, FRICTIONAL = 4.0, 3.0
 
 
-@CLAIMS.add(
-    "B11",
-    "beyond the paper, VI",
-    "coefficient of variation of what normal forces above their mean exceed it by; 1 for an exponential, 0.76 for a "
-    "Gaussian",
-    "normal forces above their mean are distributed exponentially, as in granular packings under pressure",
-)
+@CLAIMS.measures("B11")
 def tail(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "statistics")
     readings = [
@@ -44,13 +38,7 @@ def tail(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "B12",
-    "beyond the paper, VI",
-    "contacts per disk without rattlers at rest, without friction and with the largest",
-    "packings have the isostatic 4 contacts a disk without friction, and with large friction go down to the 3 of "
-    "frictional ones",
-)
+@CLAIMS.measures("B12")
 def coordination(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "statistics").sel(state="rest")
     readings, numbers = [], []
@@ -70,12 +58,7 @@ def coordination(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "B13",
-    "beyond the paper, VI",
-    "force components at rest beyond the equations of balance, per equation, with friction",
-    "packings with friction are isostatic once fully mobilized contacts are counted (generalized isostaticity)",
-)
+@CLAIMS.measures("B13")
 def isostaticity(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "statistics").sel(state="rest")
     readings, found = [], []

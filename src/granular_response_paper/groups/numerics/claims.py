@@ -21,13 +21,7 @@ RULES = {
 }
 
 
-@CLAIMS.add(
-    "N1",
-    "III.C",
-    "floor forces of a run that stops at 1e-13 per disk against the static equilibrium it was settling to, at rest "
-    "and under 15 mg",
-    "below 1 %",
-)
+@CLAIMS.measures("N1")
 def stop_energy(data: Data, words: Bounds) -> Finding:
     study = at(data.get(GROUP, "stop_energy"), stop_kinetic_energy=1e-13)
     errors = {"at rest": study["rest_error"].values.tolist(), "under load": study["loaded_error"].values.tolist()}
@@ -46,12 +40,7 @@ def stop_energy(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "N2",
-    "III.C",
-    "statically finished frictionless states put back into the dynamics: largest kinetic energy per disk",
-    "below 1e-22",
-)
+@CLAIMS.measures("N2")
 def restart(data: Data, words: Bounds) -> Finding:
     largest = float(data.get(GROUP, "restart")["kinetic_energy"].max())
     return asked.one_reading(
@@ -61,12 +50,7 @@ def restart(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "N3a",
-    "III.C",
-    "friction 0.2, 15 mg, stopped at 1e-13: the other criteria of rest",
-    "network fixed for several hundred steps, two contacts for each disk, no sliding contact",
-)
+@CLAIMS.measures("N3a")
 def at_rest(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "at_rest")
     fixed, sliding, loose = (float(study[n]) for n in ("network_fixed_steps", "sliding_contacts", "loose_disks"))
@@ -80,7 +64,7 @@ def at_rest(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add("N3b", "III.C", "the same: mean acceleration of a disk", "below 1e-5 g")
+@CLAIMS.measures("N3b")
 def swing(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "swing")
     readings, texts = [], []
@@ -98,9 +82,7 @@ def swing(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "N4", "III.B", "friction 0.2, 15 mg: floor response with the paper's time step and with half of it", "no effect"
-)
+@CLAIMS.measures("N4")
 def time_step(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "time_step").sortby("time_step", ascending=False)
     step = study["time_step"].values
@@ -112,12 +94,7 @@ def time_step(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "N5",
-    "III",
-    "friction 0.2, 15 mg: floor response by Gear's method with five values and by Beeman's, same time step",
-    "no significant change",
-)
+@CLAIMS.measures("N5")
 def integrators(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "integrators")
     CLAIMS.needs(study["integrator"].values[0] == "beeman", "integrators compares with another method than beeman")
@@ -131,12 +108,7 @@ def _unseen(difference: float, words: Bounds) -> Reading:
     )
 
 
-@CLAIMS.add(
-    "N6",
-    "III.B",
-    "friction 0.2: time to rest under gravity against the damping of a contact",
-    "nu = sqrt(k), half of critical, relaxes fastest",
-)
+@CLAIMS.measures("N6")
 def damping(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "damping").sortby("damping_ratio")
     ratio, stable = study["damping_ratio"].values, study["beeman_limit"].values >= 5e-4  # the paper's step
@@ -161,12 +133,7 @@ def damping(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "N7",
-    "III.C",
-    "disordered averages stopped at 1e-9 per disk against statically finished ones",
-    "sufficient accuracy",
-)
+@CLAIMS.measures("N7")
 def disorder(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "disorder")
     stopped, finished = study["stopped"].values, study["finished"].values

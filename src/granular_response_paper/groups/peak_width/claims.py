@@ -18,23 +18,13 @@ ELASTIC = 1.0
 WIDTHS = {"half_maximum": "half maximum", "half_force": "half of the force"}
 
 
-@CLAIMS.add(
-    "B6",
-    "beyond the paper, II",
-    "power of the depth with which the width of the response inside a slab grows, by two definitions of the width",
-    "the width is proportional to the depth, as in an elastic body, not to its root",
-)
+@CLAIMS.measures("B6")
 def inside_slabs(data: Data, words: Bounds) -> Finding:
     """On lines inside the highest slab of each case."""
     return _growth(data, "inside", words, "power of the depth")
 
 
-@CLAIMS.add(
-    "B7",
-    "beyond the paper, II.B",
-    "power of the height of a slab with which the width of the response on its floor grows",
-    "the width on the floor is proportional to the depth of the slab",
-)
+@CLAIMS.measures("B7")
 def on_floors(data: Data, words: Bounds) -> Finding:
     """On the floors of slabs of growing height."""
     return _growth(data, "floors", words, "power of the height")

@@ -109,13 +109,7 @@ def _at_15(data: Data, name: str) -> dict[str, list[xr.Dataset]]:
     }
 
 
-@CLAIMS.add(
-    "D1",
-    "VI, Fig. 19",
-    f"delta = 0.01, 15 mg, w = 3: means of {SHOWN} packings, as in the paper, that have two peaks at friction 0, and "
-    "one at 0.2",
-    "two distinct peaks without friction, one with 0.2",
-)
+@CLAIMS.measures("D1")
 def two_peaks_or_one(data: Data, words: Bounds) -> Finding:
     """The paper shows one mean of each friction: what is asked is only that such ones are not rare."""
     rows, dips = [], []
@@ -270,22 +264,12 @@ def _orders(data: Data, words: Bounds, what: str, rising: str) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "D3a",
-    "VI.A, Figs. 21, 22",
-    "trend of the crossover force with friction at each polydispersity (0.01, 0.1, 0.25), and steps against it",
-    "the larger the friction, the larger the crossover force",
-)
+@CLAIMS.measures("D3a")
 def rises_with_friction(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "friction", "rises")
 
 
-@CLAIMS.add(
-    "D3b",
-    "VI.A, Figs. 21, 22",
-    "trend of the crossover force with polydispersity at each friction, and steps against it",
-    "the crossover force decreases with increasing polydispersity",
-)
+@CLAIMS.measures("D3b")
 def falls_with_disorder(data: Data, words: Bounds) -> Finding:
     return _orders(data, words, "polydispersity", "falls")
 
@@ -305,14 +289,7 @@ def _away(data: Data, words: Bounds) -> tuple[NDArray[np.bool_], NDArray[np.bool
     return below, above
 
 
-@CLAIMS.add(
-    "D5",
-    "VI.A",
-    "number of peaks of means of five realizations against that of the mean of all, at forces beyond the interval "
-    "of the crossover and more than half away from it, mean over these forces",
-    "five are sufficient when the force is not too close to its crossover",
-    21,
-)
+@CLAIMS.measures("D5")
 def five_enough(data: Data, words: Bounds) -> Finding:
     shapes = at(data.get(GROUP, "shapes"), width=6.0, number=FEW)
     two_peaked, shape = (shapes[name].transpose("case", "step").values for name in ("two_peaked_means", "shape"))
@@ -339,12 +316,7 @@ def five_enough(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "D6",
-    "VIII, Fig. 22",
-    "crossover force of disordered slabs over that of the lattice with the same friction",
-    "in polydisperse systems the anisotropy becomes large at smaller forces",
-)
+@CLAIMS.measures("D6")
 def below_lattice(data: Data, words: Bounds) -> Finding:
     rows = []
     for width, change in WIDTHS.items():
@@ -363,13 +335,7 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
     return asked.told("crossover force below that of the lattice: ", rows, remark, between=", ")
 
 
-@CLAIMS.add(
-    "D8",
-    "VI.A",
-    "delta = 0.01: crossover force from two starts of the packing",
-    "the crossover likely depends on the preparation too",
-    22,
-)
+@CLAIMS.measures("D8")
 def preparation(data: Data, words: Bounds) -> Finding:
     what, rows = "crossover from lattice constant 2 per that from touching disks", []
     for width, change in WIDTHS.items():
@@ -382,14 +348,7 @@ def preparation(data: Data, words: Bounds) -> Finding:
     return asked.told("delta = 0.01, crossover from the start with touching disks and from lattice constant 2: ", rows)
 
 
-@CLAIMS.add(
-    "D4",
-    "VI.A",
-    "friction 1, w = 6: largest change between neighbouring forces of the dip at x = 0 or the asymmetry, of the "
-    "mean response and of realizations",
-    "a rather gradual crossover even for friction 1",
-    21,
-)
+@CLAIMS.measures("D4")
 def gradual(data: Data, words: Bounds) -> Finding:
     studies = [at(data.get(GROUP, name), width=6.0) for name in ("shapes", "realizations", "crossovers")]
     singles, means, texts = [], [], []
@@ -411,12 +370,7 @@ def gradual(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "D7a",
-    "VII",
-    "delta = 0.01, friction 0: contacts per disk at rest, mean over realizations",
-    "about 4.25, well above the isostatic 4",
-)
+@CLAIMS.measures("D7a")
 def coordination(data: Data, words: Bounds) -> Finding:
     names = {
         "contacts of disks": "coordination_number",
@@ -438,12 +392,7 @@ def coordination(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "D7b",
-    "VII",
-    "the same: horizontal part of the contacts that are missing from the lattice",
-    "the missing contacts are predominantly horizontal",
-)
+@CLAIMS.measures("D7b")
 def missing_horizontal(data: Data, words: Bounds) -> Finding:
     study, shares = data.get(GROUP, "packings"), {}
     lattice = _case(study, 0.0, 0.0)
@@ -462,14 +411,7 @@ def missing_horizontal(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "D9",
-    "VI.A",
-    "w = 6: difference of a typical realization from the mean, at forces beyond the interval of the crossover and "
-    "more than half away from it",
-    "away from the crossover the typical response of a realization resembles the average",
-    21,
-)
+@CLAIMS.measures("D9")
 def resembles(data: Data, words: Bounds) -> Finding:
     """At forces that are known to be away from the crossover of their case."""
     study = at(data.get(GROUP, "realizations"), width=6.0)
@@ -489,12 +431,7 @@ def resembles(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "D10",
-    "VI, Fig. 19",
-    "delta = 0.01, 15 mg, w = 3: standard deviation over realizations without friction over that with 0.2",
-    "fluctuations are larger for the frictionless case",
-)
+@CLAIMS.measures("D10")
 def fluctuations(data: Data, words: Bounds) -> Finding:
     spreads = {
         start: [_with_interval(case, "spread") for case in cases] for start, cases in _at_15(data, "shapes").items()
@@ -523,13 +460,7 @@ def evident_samples(without: FloatArray, full: FloatArray, least: float) -> Quan
     return of_draws(part(without, full, 20000), drawn, test, number)
 
 
-@CLAIMS.add(
-    "D11",
-    "VI, Fig. 19",
-    f"delta = 0.01, 15 mg, w = 3: samples of {SHOWN} realizations at friction 0 and {SHOWN} at 0.2, as in the paper, "
-    "in which nearly every frictionless one has the deeper dip",
-    "the difference is quite evident even for individual realizations",
-)
+@CLAIMS.measures("D11")
 def evident(data: Data, words: Bounds) -> Finding:
     apart, pairs = {}, {}
     for start, cases in _at_15(data, "realizations").items():
@@ -612,13 +543,7 @@ def order_of(groups: Sequence[FloatArray], draws: int = 1000) -> Quantity:
     return of_draws(tau, drawn, "Jonckheere's statistic, bootstrap", samples)
 
 
-@CLAIMS.add(
-    "D2",
-    "VI.A, Fig. 20",
-    "delta = 0.01, w = 3: realizations whose linear range at x = 0 is shorter than that of the lattice with the same "
-    "friction",
-    "the range of linear response is smaller",
-)
+@CLAIMS.measures("D2")
 def shorter_range(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "linear_range")
     readings, texts = [], []
@@ -639,14 +564,7 @@ def shorter_range(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "A5",
-    "abstract",
-    "smooth walls, w = 3: end of the linear range of the whole response against polydispersity: lattice over 0.01, "
-    "order of the realizations from 0.01 to 0.25, and steps of the median against it",
-    "increasing polydispersity decreases the range of elastic response",
-    20,
-)
+@CLAIMS.measures("A5")
 def shorter_with_disorder(data: Data, words: Bounds) -> Finding:
     """The response as a whole, since that at x = 0 is near zero without friction."""
     study = data.get(GROUP, "linear_range")

@@ -28,9 +28,7 @@ def _ends(data: Data) -> dict[str, Quantity]:
     }
 
 
-@CLAIMS.add(
-    "K1a", "V.B, Fig. 10", "friction 10, F = 15 mg: ratio k_T/k_N at which two peaks turn into one", "about 0.3"
-)
+@CLAIMS.measures("K1a")
 def crossover(data: Data, words: Bounds) -> Finding:
     ends = _ends(data)
     return Finding(
@@ -39,12 +37,7 @@ def crossover(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "K1b",
-    "V.B, Fig. 10",
-    "change of the floor response from that at k_T/k_N = 0.8, for larger ratios than the crossover up to 1",
-    "nearly independent of k_T/k_N",
-)
+@CLAIMS.measures("K1b")
 def independent(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "response")
     study = study.sortby("stiffness_ratio")
@@ -67,7 +60,7 @@ def independent(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add("K5", "V.B", "friction 10, F = 15 mg: contacts at the Coulomb limit", "no sliding occurs", 10)
+@CLAIMS.measures("K5")
 def no_sliding(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "response")
     sliding = study["sliding_contacts"].values[study["stiffness_ratio"].values > 0.0]
@@ -78,13 +71,7 @@ def no_sliding(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "K6",
-    "V.C",
-    "root of the half plane's criterion r over the ratio at which the slab's two peaks end",
-    "the criterion fits the finite slab quite well",
-    (10, 11),
-)
+@CLAIMS.measures("K6")
 def criterion(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "elastic")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))

@@ -41,16 +41,10 @@ def superposition(force: float, word: str) -> Measure:
     return measure
 
 
-CLAIMS.add(
-    "U1",
-    "VI.B, Fig. 23",
-    "delta = 0.01, start with the largest disks touching, friction 0.05, 0.2 mg: response to two loads against the "
-    "sum of their single responses, force by force",
-    "superposition holds even for individual forces",
-)(superposition(0.2, "holds"))
+CLAIMS.measures("U1")(superposition(0.2, "holds"))
 
 
-@CLAIMS.add("U2", "VI.B", "end of the linear range of that slab", "up to about 0.4 mg", 24)
+@CLAIMS.measures("U2")
 def linear_range(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "linear_range")
     until, beyond = study["linear_until"].values, study["nonlinear_from"].values
@@ -66,18 +60,10 @@ def linear_range(data: Data, words: Bounds) -> Finding:
     )
 
 
-CLAIMS.add("U3", "VI.B, Fig. 24", "the same as U1 at 1 mg", "superposition holds quite well beyond the linear range")(
-    superposition(1.0, "quite well")
-)
+CLAIMS.measures("U3")(superposition(1.0, "quite well"))
 
 
-@CLAIMS.add(
-    "U4",
-    "VI.B, VIII",
-    "1 mg: difference of whole and sum against the depth below the loads",
-    "sufficiently far from the loads the response does not feel what happens near them",
-    24,
-)
+@CLAIMS.measures("U4")
 def falls_with_depth(data: Data, words: Bounds) -> Finding:
     study = at(data.get(GROUP, "errors"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values

@@ -13,12 +13,7 @@ CLAIMS = Claims(GROUP)
 PATH = "quasi-static path"
 
 
-@CLAIMS.add(
-    "R5a",
-    "V.E, Fig. 16b",
-    "friction 1: force at which the response loses its symmetry, for two ramps from rest and along the load path",
-    "when it exceeds 91 mg",
-)
+@CLAIMS.measures("R5a")
 def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
     brackets = data.get(GROUP, "brackets")
     columns = (brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step"))

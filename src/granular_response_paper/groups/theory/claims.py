@@ -10,7 +10,7 @@ GROUP = "theory"
 CLAIMS = Claims(GROUP)
 
 
-@CLAIMS.add("K2", "V.C", "root of r(beta) without horizontal springs", "0.2915", (10, 11), derivation=True)
+@CLAIMS.measures("K2")
 def root(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "peak_criterion")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
@@ -22,14 +22,7 @@ def root(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "K3",
-    "V.C, eqs. (7)-(10)",
-    "lattice moduli a, b, c, d against the moduli of a periodic lattice, strained and relaxed",
-    "exact",
-    11,
-    derivation=True,
-)
+@CLAIMS.measures("K3")
 def moduli(data: Data, words: Bounds) -> Finding:
     study = data.get(GROUP, "moduli")
     error = study.sel(rotations="suppressed")["error"].values

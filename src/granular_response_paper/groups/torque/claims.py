@@ -15,13 +15,7 @@ CLAIMS = Claims(GROUP)
 NEAR, FAR = 6.0, 9.0
 
 
-@CLAIMS.add(
-    "T1a",
-    "V.G, Fig. 18",
-    "25 x 13 disks, delta = 0.001, start with lattice constant 2, F = 10 mg at 30 degrees: what the largest torque "
-    "changes in the contact forces near the load",
-    "quite a large effect on the force chains",
-)
+@CLAIMS.measures("T1a")
 def chains(data: Data, words: Bounds) -> Finding:
     rings = data.get(GROUP, "reach").sortby("torque").isel(torque=-1)
     near = rings["ring_outer"].values <= NEAR
@@ -51,13 +45,7 @@ def _fields(data: Data) -> dict[str, np.ndarray]:
     }
 
 
-@CLAIMS.add(
-    "T1b",
-    "V.G",
-    "what it changes in the stress far from the load over near it",
-    "the effect on the stress, above all its antisymmetric part, is confined to a region close to the load",
-    18,
-)
+@CLAIMS.measures("T1b")
 def near_the_load(data: Data, words: Bounds) -> Finding:
     rings = data.get(GROUP, "reach")
     rings = rings.sortby("torque").isel(torque=-1)
