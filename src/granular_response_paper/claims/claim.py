@@ -195,7 +195,7 @@ class Finding:
     """What was measured for a claim; the first reading is an interpretation, the one this project uses.
 
     ``summary`` is for readers; ``quantity`` the number that stands for the claim, by default that of the first
-    condition over all interpretations; ``remark`` is shown beside the verdict.
+    condition over all interpretations; ``remark``, if it says numbers too, stands in place of the claim's own.
     """
 
     summary: str
@@ -233,7 +233,10 @@ Measure = Callable[["Data", Bounds], Finding]
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and how it is measured. A ``derivation`` is algebra that no simulation can fail."""
+    """A claim of the paper and how it is measured. A ``derivation`` is algebra that no simulation can fail.
+
+    The ``remark`` is shown beside the verdict.
+    """
 
     id: str
     place: str
@@ -243,6 +246,7 @@ class Claim:
     figures: tuple[int, ...] = ()
     group: str = ""
     derivation: bool = False
+    remark: str = ""
 
     @property
     def beyond(self) -> bool:
@@ -258,7 +262,8 @@ class Claims(list[Claim]):
     """The claims of a figure group, each with the function that measures it.
 
     ``claims.yaml`` beside it has the ``place`` of each in the paper, the ``paper``'s words, what is ``measured``, the
-    ``figures`` that show it unless they are those that the place names, and whether it is a ``derivation``.
+    ``figures`` that show it unless they are those that the place names, a ``remark``, and whether it is a
+    ``derivation``.
     """
 
     def __init__(self, group: str) -> None:

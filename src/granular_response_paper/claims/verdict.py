@@ -98,7 +98,7 @@ def judge(claim: Claim, data: Data, words: Bounds | None = None) -> Entry:
         problem = " ".join(f"{type(error).__name__}: {error}".split())
         return Entry(claim, "not measured", None, f"data/{claim.group}.nc: holds too little ({problem})")
     return Entry(
-        claim, verdict, finding, _reason(finding), robustness_of(finding.readings), _robustness_reason(finding)
+        claim, verdict, finding, _reason(claim, finding), robustness_of(finding.readings), _robustness_reason(finding)
     )
 
 
@@ -119,7 +119,7 @@ def _robustness_reason(finding: Finding) -> str:
     return text
 
 
-def _reason(finding: Finding) -> str:
+def _reason(claim: Claim, finding: Finding) -> str:
     parts = []
     interpretations = finding.interpretations
     named = len(interpretations) > 1
@@ -128,7 +128,8 @@ def _reason(finding: Finding) -> str:
         these = [reading for reading in interpretations if reading.outcome == outcome]
         if these:
             parts.append(f"{title}: {'; '.join(_why(reading, outcome, named) for reading in these)}.")
-    return " ".join([*parts, *([f"{finding.remark}."] if finding.remark else [])])
+    remark = finding.remark or claim.remark
+    return " ".join([*parts, *([f"{remark}."] if remark else [])])
 
 
 def _why(reading: Reading, outcome: Outcome, named: bool) -> str:

@@ -19,6 +19,4 @@ def linear_fit(data: Data, words: Bounds) -> Finding:
     return Finding(
         f"responses by the two laws are at most {min(values):.1%} to {max(values):.1%} of the largest response apart",
         [Reading(name, asked.at_most(what, one, words, "quite well", "%")) for name, one in largest.items()],
-        "Matched where both give the mean normal force at rest; the paper's statement is about its measured contacts, "
-        "here it is asked of the response",
     )

@@ -60,12 +60,7 @@ def of_weight(data: Data, words: Bounds) -> Finding:
             for name, power in series
         ]
     CLAIMS.needs(readings, "powers holds no series in which gravity could decide")
-    return Finding(
-        "powers of the layers: " + "; ".join(texts),
-        readings,
-        "A weight grows as the layers squared, in two dimensions. Without friction horizontal contacts bear what "
-        "the sides press on them, not the weight above",
-    )
+    return Finding("powers of the layers: " + "; ".join(texts), readings)
 
 
 def _by_itself(one: xr.Dataset) -> bool:

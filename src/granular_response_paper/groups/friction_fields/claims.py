@@ -93,7 +93,6 @@ def antisymmetric(data: Data, words: Bounds) -> Finding:
             Reading(name, asked.at_most("antisymmetric part over pressure", max(found), words, "few per cent", "%"))
             for name, found in values.items()
         ],
-        "The largest local ratio is where the pressure itself is small, a tenth of its maximum or little more",
     )
 
 
@@ -110,5 +109,4 @@ def profiles(data: Data, words: Bounds) -> Finding:
             Reading("a chain: half of the largest force", without, asked.hardly_lower(what, on, words, "marked")),
             Reading("the chain: the largest force", without, asked.hardly_lower(what, on, words, "visible")),
         ],
-        "The paper does not say how strong the chain is; the measured profiles themselves are not stored here",
     )

@@ -95,7 +95,6 @@ def linear_range(data: Data, words: Bounds) -> Finding:
     return Finding(
         "at friction 0.2 and 1: " + ", ".join(f"{both} times ({name})" for name, both in ratios.items()),
         _by_end(data, found, wanted),
-        "The paper does not say how far off a response is no longer linear",
     )
 
 
@@ -163,7 +162,6 @@ def third_peak_small(data: Data, words: Bounds) -> Finding:
             Reading(f"{force[k]:g} mg", asked.at_most("prominence per largest response", size[k], words, "small", "%"))
             for k in beyond
         ],
-        "It keeps growing; the paper does not say up to which force it looked",
     )
 
 
@@ -209,7 +207,6 @@ def sliding_drops(data: Data, words: Bounds) -> Finding:
         "contacts near the Coulomb limit before and after: "
         + ", ".join(f"{before:.0f} and {after:.0f} (within {margin:.0%})" for margin, before, after in cases),
         readings,
-        "In equilibrium a contact that slid rests just below the limit; how near counts as sliding is a choice",
     )
 
 
@@ -372,13 +369,7 @@ def sliding_near(data: Data, words: Bounds) -> Finding:
         if 0.0 < force < 20.0 and away.size:
             near[f"{force:g} mg"] = float((np.hypot(*away.T) < NEAR).mean())
     what = f"sliding contacts within {NEAR:g} radii of the load"
-    return asked.each(
-        f"{what}: ",
-        near,
-        lambda part: asked.at_least(what, part, words, "marked", "%"),
-        "%",
-        "The paper names no force",
-    )
+    return asked.each(f"{what}: ", near, lambda part: asked.at_least(what, part, words, "marked", "%"), "%")
 
 
 @CLAIMS.measures("A1")
@@ -390,8 +381,6 @@ def range_grows(data: Data, words: Bounds) -> Finding:
         f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
         + "; ".join(f"{name} at {ends} mg" for name, ends in texts.items()),
         _by_end(data, found, lambda *ends: [asked.rises("range", ends)]),
-        "It grows up to friction 0.2 or 0.5 and is shorter at 1; at the paper's own three frictions the first opening "
-        "grows",
     )
 
 
@@ -422,8 +411,6 @@ def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
                 asked.lower("the difference with the largest friction per without", off[-1] / off[0], words, "marked"),
             ),
         ],
-        "A response can be wider than the elastic one or narrower (Sec. II.A); a dip shows the first alone. Elastic is "
-        "the response to the smallest force at the largest friction",
     )
 
 

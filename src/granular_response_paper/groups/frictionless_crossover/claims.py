@@ -72,7 +72,6 @@ def horizontal(data: Data, words: Bounds) -> Finding:
         f"horizontal part of the opened contacts until their region reaches the floor: at least {least:.1%}",
         "until the region reaches the floor",
         asked.hardly_lower("smallest horizontal part of the opened contacts", least, words, "visible", "%"),
-        remark="At larger forces oblique contacts open too, close below the load; the paper describes none",
     )
 
 
@@ -123,12 +122,7 @@ def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
                 conditions.append(asked.hardly_lower(text, deep.per(thin), words, "slightly"))
             texts.append(f"{conditions[0].found.value:.2f} in {layers[k]} (k_N = {stiffness:g})")
             readings.append(Reading(f"{layers[k]}, k_N = {stiffness:g}", *conditions, change=_change(stiffness)))
-    return Finding(
-        "depth of the open region per that in the thinnest slab, same forces: " + ", ".join(texts),
-        readings,
-        "The paper does not name its sizes. With its stiffness gravity presses horizontal contacts of deep slabs "
-        "together, and they open later",
-    )
+    return Finding("depth of the open region per that in the thinnest slab, same forces: " + ", ".join(texts), readings)
 
 
 def _by_stiffness(data: Data, name: str, *, paper_first: bool = False) -> list[tuple[float, xr.Dataset]]:
@@ -172,8 +166,7 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
                     change=_change(stiffness),
                 )
                 rows.append((f"{deep.text('mg')} against {thin.text('mg')}", reading))
-    remark = "The paper does not say how wide its deeper slabs are"
-    return asked.told("crossover in the deep and in the shallow slab: ", rows, remark)
+    return asked.told("crossover in the deep and in the shallow slab: ", rows)
 
 
 def _between(data: Data) -> xr.Dataset:
@@ -199,7 +192,6 @@ def stiffness_response(data: Data, words: Bounds) -> Finding:
             Reading(f"{f:g} mg", Condition(what, Quantity.exact(c), most=most, words=("about",), unit="%"))
             for f, c in zip(force.tolist(), change.tolist(), strict=True)
         ],
-        "The paper does not name the force at which it compared",
     )
 
 

@@ -51,12 +51,7 @@ def ranges(data: Data, words: Bounds) -> Finding:
     parts = [
         f"{'with' if friction else 'without'} friction {_span(found)}" for friction, found in ends.items() if found
     ]
-    return Finding(
-        f"the reversible range over the linear one: {', '.join(parts)}",
-        readings,
-        "Reversible: a loop leaves no floor force changed by more than 1 % of the largest change under the load. "
-        "Linear: the response at x = 0 changes by less than 1 %",
-    )
+    return Finding(f"the reversible range over the linear one: {', '.join(parts)}", readings)
 
 
 def _span(found: Sequence[Quantity]) -> str:
@@ -87,8 +82,6 @@ def repeated(data: Data, words: Bounds) -> Finding:
         f"a second loading loses up to {100.0 * max(lost):.2g} % of the work, and changes the response by up to "
         f"{100.0 * max(changed):.1g} %",
         readings,
-        "From the largest force to none and back; the response by its largest change of a floor force. Elastic is "
-        "taken as losing less than 1 % of the work",
     )
 
 

@@ -34,5 +34,4 @@ def saint_venant(data: Data, words: Bounds) -> Finding:
         f"the difference of a force and its two halves falls as the power {min(means):.2g} to {max(means):.2g} of the "
         "distance; 2 in an elastic body",
         readings,
-        "Small loads on the disks of every row, at rest. Elastic is taken as the power 2 within a fifth",
     )

@@ -38,12 +38,7 @@ def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
         for friction, these in values.items()
         if these
     ]
-    return Finding(
-        f"part of the largest pressure by which they differ: {', '.join(parts)}",
-        readings,
-        "Mean over the small loads on the top disks of a packing, smoothed with w = 3; no parameter is fitted. Even in "
-        "the presence of friction, says the paper, which includes none",
-    )
+    return Finding(f"part of the largest pressure by which they differ: {', '.join(parts)}", readings)
 
 
 @CLAIMS.measures("B4")

@@ -32,9 +32,7 @@ def tail(data: Data, words: Bounds) -> Finding:
     ]
     found = [condition.found.value for reading in readings for condition in reading.conditions]
     return Finding(
-        f"the coefficient of variation is {min(found):.2f} to {max(found):.2f}; 1 for an exponential",
-        readings,
-        "Forces relative to the mean at their height, since they grow with depth",
+        f"the coefficient of variation is {min(found):.2f} to {max(found):.2f}; 1 for an exponential", readings
     )
 
 
@@ -53,9 +51,7 @@ def coordination(data: Data, words: Bounds) -> Finding:
                 asked.near(f"friction {largest:g}", rough, words, "nearly", FRICTIONAL),
             )
         )
-    return Finding(
-        f"contacts per disk from no friction to the largest: {', '.join(numbers)}", readings, "Gravity at once"
-    )
+    return Finding(f"contacts per disk from no friction to the largest: {', '.join(numbers)}", readings)
 
 
 @CLAIMS.measures("B13")

@@ -75,11 +75,7 @@ def swing(data: Data, words: Bounds) -> Finding:
         for what, value in (("mean over a swing", acceleration.mean()), ("largest of a swing", acceleration.max())):
             below = Condition("mean acceleration in g", Quantity.exact(value), most=1e-5, strict=True)
             readings.append(Reading(f"{RULES[rule]}, {what}", below))
-    return Finding(
-        "; ".join(texts),
-        readings,
-        "Kinetic energy first falls below the limit where the slab turns round and accelerates most",
-    )
+    return Finding("; ".join(texts), readings)
 
 
 @CLAIMS.measures("N4")
@@ -129,7 +125,6 @@ def damping(data: Data, words: Bounds) -> Finding:
         f"critical: {time[0]:.0f} to {time[-1]:.0f}; Beeman's method with the paper's step is stable up to a ratio of "
         f"{ratio[stable].max():g}",
         readings,
-        "Times by velocity Verlet and half the step; with the paper's integrator and step more damping is unstable",
     )
 
 

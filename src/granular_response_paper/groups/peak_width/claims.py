@@ -51,8 +51,6 @@ def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
         f"{max(elastic):.2g} in elastic slabs of the same heights; no interval goes below "
         f"{min(quantity.low for quantity in found):.2g}",
         readings,
-        "Proportional is taken as the power 1 within a quarter, nearer to 1 than to the 1/2 of force that diffuses, by "
-        "both definitions of the width",
     )
 
 

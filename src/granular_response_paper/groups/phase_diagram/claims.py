@@ -331,8 +331,7 @@ def below_lattice(data: Data, words: Bounds) -> Finding:
         clear = sum(condition.found.high <= 1.0 for condition in conditions)
         reading = Reading(f"w = {width:g}", *conditions, change=change)
         rows.append((f"{clear} of {len(conditions)} clear", reading))
-    remark = "Where packings collapse, the median of realizations is compared"
-    return asked.told("crossover force below that of the lattice: ", rows, remark, between=", ")
+    return asked.told("crossover force below that of the lattice: ", rows, between=", ")
 
 
 @CLAIMS.measures("D8")
@@ -557,11 +556,7 @@ def shorter_range(data: Data, words: Bounds) -> Finding:
                 conditions.append(Condition(what, part_of(ends < lattice[0]), 0.5, strict=True, unit="%"))
             texts.append(f"{', '.join(c.found.text('%') for c in conditions)} ({tolerance:.0%} off, {title(start)})")
             readings.append(Reading(f"response {tolerance:.0%} off, {title(start)}", *conditions))
-    return Finding(
-        "realizations with a shorter range than the lattice, by friction: " + "; ".join(texts),
-        readings,
-        "The paper shows one realization",
-    )
+    return Finding("realizations with a shorter range than the lattice, by friction: " + "; ".join(texts), readings)
 
 
 @CLAIMS.measures("A5")

@@ -37,5 +37,4 @@ def large_systems(data: Data, words: Bounds) -> Finding:
     return Finding(
         f"the floor response of the deepest slab is {min(values):.2%} to {max(values):.2%} off the elastic one",
         readings,
-        "Force of 0.01 mg; where gravity opens a row of contacts on the way (15 layers) the difference is 10 %",
     )

@@ -55,7 +55,6 @@ def independent(data: Data, words: Bounds) -> Finding:
         "largest change from the response at a ratio of 0.8: ",
         found,
         lambda largest: asked.at_most(what, largest, words, "nearly", "%"),
-        remark="The paper does not say from which ratio on",
         form=".1%",
     )
 

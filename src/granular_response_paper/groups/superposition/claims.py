@@ -35,7 +35,6 @@ def superposition(force: float, word: str) -> Measure:
             f"largest difference of whole and sum per largest added force, at the worst of {study.sizes['distance']} "
             f"distances, median of {len(worst)} realizations: " + "; ".join(texts),
             readings,
-            "The paper shows one realization",
         )
 
     return measure
@@ -55,8 +54,6 @@ def linear_range(data: Data, words: Bounds) -> Finding:
         f"median {np.median(ends):.3g} mg; single realizations end between {until.min():.3g} mg and {last}",
         "5 % off, one realization",
         *asked.one_of("an end of the linear range, mg,", ends, 0.4, words, "about"),
-        remark="The paper has one realization, so what is asked is only that such a value is not rare; it does not say "
-        "how far off a response is no longer linear",
     )
 
 
@@ -82,5 +79,4 @@ def falls_with_depth(data: Data, words: Bounds) -> Finding:
         "rms difference of whole and sum in the deepest row of contacts per the largest of any row, each per force in "
         "its row: " + ", ".join(f"{r.conditions[0].found.value:.2f} ({r.name})" for r in readings),
         readings,
-        "It falls with the distance of the loads from each other far more than with the depth below them",
     )

@@ -32,8 +32,7 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
         found,
         lambda event: Condition("loss of symmetry", event, 91.0, 95.0, unit="mg"),
         "mg",
-        "The paper does not say how long the force grows",
-        lambda name: (
+        changed=lambda name: (
             "walls" if "rough walls" in name else "" if name.startswith(("ramp", PATH)) else preparations.CHANGE
         ),
     )

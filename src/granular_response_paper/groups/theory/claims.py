@@ -18,7 +18,6 @@ def root(data: Data, words: Bounds) -> Finding:
         f"{roots['suppressed']:.6f}; with disks free to turn {roots['free']:.4f} (3/11)",
         "rotations suppressed, as in eq. (5)",
         Condition("root", Quantity.exact(roots["suppressed"]), 0.29145, 0.29155),
-        remark="Eq. (5) keeps the disks from turning; the paper's disks turn",
     )
 
 
@@ -30,6 +29,4 @@ def moduli(data: Data, words: Bounds) -> Finding:
         f"largest difference {error.max():.1e} of the largest modulus, {error.size} lattices",
         "rotations suppressed, as in eq. (5)",
         Condition("largest difference per largest modulus", Quantity.exact(error.max()), most=1e-10),
-        remark="Eq. (6) as printed gives shear half its energy: its d is twice that of eq. (10), which the paper's r "
-        "and root use",
     )

@@ -26,7 +26,6 @@ def chains(data: Data, words: Bounds) -> Finding:
         f"torque {torque:g}: contact forces within {NEAR:g} radii change by {change:.0%}",
         f"torque {torque:g}",
         asked.at_least("change of the contact forces", change, words, "marked", "%"),
-        remark="One realization; additional torques can, says the paper, have quite a large effect",
     )
 
 
@@ -70,6 +69,5 @@ def near_the_load(data: Data, words: Bounds) -> Finding:
             "whole stress, per stress of the ring": ring("stress_change"),
         },
         lambda ratio: asked.at_most("change far from the load per that near it", ratio, words, "small"),
-        remark="The stress of the force alone falls with the distance too, so that its relative change reaches farther",
         form=".3f",
     )
