@@ -29,7 +29,6 @@ from granular_response_paper.claims.claim import (
 )
 from granular_response_paper.claims.verdict import MEANINGS, ROBUSTNESS_MEANINGS, judge, robustness_of, verdict_of
 from granular_response_paper.groups import NAMES
-from granular_response_paper.groups.frictionless_crossover import claims as slab_claims
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
 from granular_response_paper.groups.phase_diagram.claims import FOUND, Crossover, evident_samples, order_of, trend
 
@@ -809,12 +808,6 @@ def test_the_readme_quotes_the_stored_table():
     text = (ROOT / "README.md").read_text()
     found = json.loads(stored.read_text())
     assert generated.replace(text, stored_table.BLOCK, stored_table.quoted(found)) == text, "make quote"
-
-
-def test_each_deeper_slab_is_compared_with_the_thinnest():
-    slabs = dataset(layers=("slab", [15, 15, 30, 40, 60]), disks_per_row=("slab", [61, 121, 62, 62, 242]))
-    assert slab_claims._deep_and_shallow(slabs, "width grows with depth") == [(0, 2), (0, 3), (0, 4)]
-    assert slab_claims._deep_and_shallow(slabs, "same width") == [(0, 2), (0, 3)]
 
 
 def test_the_stages_read_every_group_of_the_pipeline():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import xarray as xr
 
 from ...claims import asked
 from ...claims.bootstrap import over_brackets, over_realizations
@@ -34,24 +35,21 @@ def ranges(data: Data, words: Bounds) -> Finding:
     ends: dict[bool, list[Quantity]] = {True: [], False: []}
     for case in range(events.sizes["case"]):
         one = events.isel(case=case)
-        brackets = {
-            name: np.stack([one.sel(event=name)[end].values for end in ("low", "high")], axis=1)
-            for name in ("linear_range", "reversible_range")
-        }
-        each = [
-            Quantity.bracket(*reversible).per(Quantity.bracket(*linear))
-            for reversible, linear in zip(brackets["reversible_range"], brackets["linear_range"], strict=True)
-            if np.isfinite(linear[0])  # a realization that is there
-        ]
-        if not np.isfinite(brackets["linear_range"]).all(axis=1).any():
-            continue
-        found = over_packings(each)
-        ends[bool(one["friction"] > 0.0)].append(found)
-        readings.append(Reading(asked.material(one), asked.near("reversible over linear range", found, words, "about")))
+        linear, reversible = (_brackets(one.sel(event=name)) for name in ("linear_range", "reversible_range"))
+        there = [k for k, end in enumerate(linear) if np.isfinite(end.low)]  # realizations that are
+        if any(linear[k].happens for k in there):
+            found = over_packings([reversible[k].per(linear[k]) for k in there])
+            ends[bool(one["friction"] > 0.0)].append(found)
+            condition = asked.near("reversible over linear range", found, words, "about")
+            readings.append(Reading(asked.material(one), condition))
     parts = [
         f"{'with' if friction else 'without'} friction {_span(found)}" for friction, found in ends.items() if found
     ]
     return Finding(f"the reversible range over the linear one: {', '.join(parts)}", readings)
+
+
+def _brackets(event: xr.Dataset) -> list[Quantity]:
+    return [Quantity.bracket(*ends) for ends in zip(event["low"].values, event["high"].values, strict=True)]
 
 
 def _span(found: Sequence[Quantity]) -> str:
