@@ -2,3 +2,6 @@
 
 #: Whose code makes what tasks hand back, and whose classes hold it: see ``granular_response.sweeps.resources``.
 PACKAGE = __name__
+
+#: What simulating, drawing and measuring may raise where allowed parameters have left nothing of what they look at.
+TOO_LITTLE = (ArithmeticError, IndexError, KeyError, ValueError)

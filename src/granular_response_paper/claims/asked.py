@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
@@ -13,9 +14,25 @@ from .claim import Condition, Finding, NotMeasured, Quantity, Reading
 from .words import Bounds
 
 
-def near(what: str, found: float | Quantity, words: Bounds, word: str, of: float = 1.0) -> Condition:
+def near(what: str, found: float | Quantity, words: Bounds, word: str, of: float = 1.0, unit: str = "") -> Condition:
     """The number is off ``of`` by the word's part of it at most."""
-    return Condition(what, _known(found), (1.0 - words[word]) * of, (1.0 + words[word]) * of, (word,))
+    return Condition(what, _known(found), (1.0 - words[word]) * of, (1.0 + words[word]) * of, (word,), unit)
+
+
+def sampled(what: str, event: Quantity, paper: float, words: Bounds) -> Condition:
+    """The paper's number is the first of its sampled forces at or above the event (mean disk weights)."""
+    return Condition(what, event, (1.0 - words["about"]) * paper, paper, ("about",), "mg")
+
+
+def rises(what: str, values: Sequence[Quantity]) -> Condition:
+    """Each of positive ``values`` is larger than the one before: their smallest ratio is above 1."""
+    steps = [after.per(before) for before, after in pairwise(values)]
+    if not steps:
+        raise NotMeasured(f"{what}: fewer than two values to compare")
+    smallest = Quantity(
+        min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), steps[0].kind
+    )
+    return Condition(f"{what}, smallest ratio of neighbours", smallest, least=1.0, strict=True)
 
 
 def at_most(what: str, found: float | Quantity, words: Bounds, word: str, unit: str = "") -> Condition:
@@ -68,6 +85,12 @@ def one_reading(summary: str, reading: str, *conditions: Condition, remark: str 
     return Finding(summary, [Reading(reading, *conditions)], remark)
 
 
+def told(what: str, rows: Sequence[tuple[str, Reading]], remark: str = "", *, between: str = "; ") -> Finding:
+    """What was found in each reading, as a text, with the name of the reading in brackets."""
+    texts = between.join(f"{text} ({reading.name})" for text, reading in rows)
+    return Finding(what + texts, [reading for _, reading in rows], remark)
+
+
 def each(
     what: str,
     found: Mapping[str, float | Quantity],
@@ -103,30 +126,25 @@ def material(case: xr.Dataset) -> str:
 VISIBLE = "two peaks from a visible dip on"
 
 
-def dips_from(along: xr.Dataset, name: str, words: Bounds) -> Quantity:
-    """Between which stored values of the coordinate ``name`` the dip at x = 0 becomes visible, in their order.
+def first(curve: xr.Dataset, name: str, happened: ArrayLike) -> Quantity:
+    """Between which stored values of the coordinate ``name`` something has ``happened`` first, in their order.
 
-    Raises NotMeasured if it is visible at the first one.
+    Raises NotMeasured if it has at the first one.
     """
+    values, at = curve[name].values, np.flatnonzero(happened)
+    if not values.size or (at.size and at[0] == 0):
+        raise NotMeasured(f"no {name} is stored at which it has not happened yet")
+    return Quantity.bracket(*sorted(values[at[0] - 1 : at[0] + 1])) if at.size else Quantity.bracket(values[-1], np.nan)
+
+
+def dips_from(along: xr.Dataset, name: str, words: Bounds) -> Quantity:
+    """Between which values of ``name`` the dip at x = 0 becomes visible; see :func:`first`."""
     known = along.isel({name: np.isfinite(along["central_dip"].values)})
-    values, dip = known[name].values, known["central_dip"].values
-    deep = np.flatnonzero(dip > words["visible"])
-    if not values.size or (deep.size and deep[0] == 0):
-        raise NotMeasured(f"no {name} is stored at which the dip at x = 0 is not yet visible")
-    if not deep.size:
-        return Quantity.bracket(values[-1], np.nan)
-    return Quantity.bracket(*sorted(values[deep[0] - 1 : deep[0] + 1]))
+    return first(known, name, known["central_dip"].values > words["visible"])
 
 
 def linear_until(path: xr.Dataset, tolerance: float) -> Quantity:
-    """Where the response at x = 0 is more than ``tolerance`` off that to the smallest force, between stored forces.
-
-    Raises NotMeasured for a path without two forces.
-    """
-    value, force = path["response_at_centre"].values, path["force"].values
-    known = np.isfinite(value)
-    value, force = value[known], force[known]
-    if value.size < 2:
-        raise NotMeasured("a path of the linear range holds no forces")
-    off = np.flatnonzero(np.abs(value / value[0] - 1.0) > tolerance)
-    return Quantity.bracket(force[off[0] - 1], force[off[0]]) if off.size else Quantity.bracket(force[-1], np.nan)
+    """Where the response at x = 0 is more than ``tolerance`` off that to the smallest force; see :func:`first`."""
+    known = path.isel(force=np.isfinite(path["response_at_centre"].values))
+    response = known["response_at_centre"].values
+    return first(known, "force", np.abs(response / response[0] - 1.0) > tolerance)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,8 +15,21 @@ from .claim import NotMeasured, Quantity
 
 Statistic = Callable[..., FloatArray]
 
-#: Draws, and the part of them that an interval leaves out on both sides together.
+#: Draws, the part of them that an interval leaves out on both sides together, and its levels.
 DRAWS, OUTSIDE = 2000, 0.05
+LEVELS = (0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE)
+
+
+def of_draws(
+    value: float, draws: ArrayLike | tuple[FloatArray, FloatArray], test: str, samples: int, method: Any = "linear"
+) -> Quantity:
+    """A number with 95 % of its draws (d,), by the quantiles of numpy's ``method``.
+
+    Draws that are known within an interval are the two (d,) of its lower and its upper ends.
+    """
+    ends = draws if isinstance(draws, tuple) else (draws, draws)
+    low, high = (float(np.quantile(end, level, method=method)) for end, level in zip(ends, LEVELS, strict=True))
+    return Quantity(float(value), low, high, "confidence", test, samples)
 
 
 def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Quantity:
@@ -28,9 +42,8 @@ def over_realizations(values: ArrayLike, statistic: Statistic = np.median) -> Qu
     if found.size < 3:
         raise NotMeasured(f"{found.size} realizations: an interval needs three or more")
     picked = np.random.default_rng(0).integers(0, found.size, (DRAWS, found.size))
-    low, high = np.quantile(statistic(found[picked], axis=1), [0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE])
-    test = f"bootstrap of the {statistic.__name__}"
-    return Quantity(float(statistic(found, axis=0)), float(low), float(high), "confidence", test, found.size)
+    drawn = statistic(found[picked], axis=1)
+    return of_draws(float(statistic(found, axis=0)), drawn, f"bootstrap of the {statistic.__name__}", found.size)
 
 
 def part_of(hits: ArrayLike) -> Quantity:
@@ -40,8 +53,8 @@ def part_of(hits: ArrayLike) -> Quantity:
     number, hit = found.size, int(np.count_nonzero(found))
     if not number:
         raise NotMeasured("no realizations")
-    low = float(betaincinv(hit, number - hit + 1, 0.5 * OUTSIDE)) if hit else 0.0
-    high = float(betaincinv(hit + 1, number - hit, 1.0 - 0.5 * OUTSIDE)) if hit < number else 1.0
+    low = float(betaincinv(hit, number - hit + 1, LEVELS[0])) if hit else 0.0
+    high = float(betaincinv(hit + 1, number - hit, LEVELS[1])) if hit < number else 1.0
     return Quantity(hit / number, low, high, "confidence", "exact binomial interval", number)
 
 
@@ -59,7 +72,5 @@ def over_brackets(each: Sequence[Quantity]) -> Quantity:
     middle = float(np.median([one.value if np.isfinite(one.value) else 0.5 * (one.low + one.high) for one in each]))
     middle = middle if np.isfinite(middle) else float("nan")
     picked = np.random.default_rng(0).integers(0, len(each), (DRAWS, len(each)))
-    least, most = (np.median(ends[picked], axis=1) for ends in (low, high))
-    lowest = np.quantile(least, 0.5 * OUTSIDE, method="inverted_cdf")
-    highest = np.quantile(most, 1.0 - 0.5 * OUTSIDE, method="inverted_cdf")
-    return Quantity(middle, float(lowest), float(highest), "confidence", "bootstrap of the median", len(each))
+    drawn = np.median(low[picked], axis=1), np.median(high[picked], axis=1)
+    return of_draws(middle, drawn, "bootstrap of the median", len(each), "inverted_cdf")

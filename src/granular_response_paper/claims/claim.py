@@ -11,14 +11,16 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from importlib import resources
 from typing import Literal
 
 import numpy as np
 import xarray as xr
 
 from granular_response.errors import GranularError
+from granular_response.scene import text as yaml
 
+from .. import PACKAGE
 from .changes import CHANGES
 from .words import Bounds
 
@@ -193,7 +195,7 @@ class Finding:
     """What was measured for a claim; the first reading is an interpretation, the one this project uses.
 
     ``summary`` is for readers; ``quantity`` the number that stands for the claim, by default that of the first
-    condition over all interpretations; ``remark`` is shown beside the verdict.
+    condition over all interpretations; ``remark``, if it says numbers too, stands in place of the claim's own.
     """
 
     summary: str
@@ -231,7 +233,10 @@ Measure = Callable[["Data", Bounds], Finding]
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and how it is measured. A ``derivation`` is algebra that no simulation can fail."""
+    """A claim of the paper and how it is measured. A ``derivation`` is algebra that no simulation can fail.
+
+    The ``remark`` is shown beside the verdict.
+    """
 
     id: str
     place: str
@@ -241,6 +246,7 @@ class Claim:
     figures: tuple[int, ...] = ()
     group: str = ""
     derivation: bool = False
+    remark: str = ""
 
     @property
     def beyond(self) -> bool:
@@ -248,30 +254,31 @@ class Claim:
         return self.id.startswith("B")
 
 
+#: Beside a group's ``claims.py``: what the paper says, by the number of the claim.
+TEXTS = "claims.yaml"
+
+
 class Claims(list[Claim]):
-    """The claims of a figure group, each said above the function that measures it."""
+    """The claims of a figure group, each with the function that measures it.
+
+    ``claims.yaml`` beside it has the ``place`` of each in the paper, the ``paper``'s words, what is ``measured``, the
+    ``figures`` that show it unless they are those that the place names, a ``remark``, and whether it is a
+    ``derivation``.
+    """
 
     def __init__(self, group: str) -> None:
         self.group = group
+        self._said = yaml.read(resources.files(f"{PACKAGE}.groups.{group}").joinpath(TEXTS).read_text("utf-8"))
 
-    def add(
-        self,
-        id: str,
-        place: str,
-        measured: str,
-        paper: str,
-        figures: int | tuple[int, ...] | None = None,
-        *,
-        derivation: bool = False,
-    ) -> Callable[[Measure], Measure]:
-        """``figures`` that show it; those that ``place`` names if None."""
-        shown = _figures(place) if figures is None else (figures,) if isinstance(figures, int) else figures
+    def measures(self, id: str) -> Callable[[Measure], Measure]:
+        """Said above the function that measures a claim. Raises KeyError if its text is missing."""
+        said = {"figures": _figures(self._said[id]["place"]), **self._said[id]}
 
-        def said(measure: Measure) -> Measure:
-            self.append(Claim(id, place, measured, paper, measure, shown, self.group, derivation))
+        def measured(measure: Measure) -> Measure:
+            self.append(Claim(id, measure=measure, group=self.group, **said | {"figures": tuple(said["figures"])}))
             return measure
 
-        return said
+        return measured
 
     def needs(self, there: object, what: str) -> None:
         """Raises NotMeasured, which says ``what`` the group's datasets hold or lack, unless ``there`` is true."""
@@ -294,21 +301,17 @@ class Data:
     def __init__(self, groups: Mapping[str, Mapping[str, xr.Dataset]]) -> None:
         self.groups = groups
 
-    def get(self, group: str, name: str, *variables: str) -> xr.Dataset:
-        """Dataset ``name`` of ``group`` with at least ``variables``."""
+    def get(self, group: str, name: str) -> xr.Dataset:
+        """Dataset ``name`` of ``group``."""
         if group not in self.groups:
             raise NotMeasured(f"data/{group}.nc is missing")
         if name not in self.groups[group]:
             raise NotMeasured(f"data/{group}.nc holds no dataset {name}")
-        dataset = self.groups[group][name]
-        missing = [variable for variable in variables if variable not in dataset.variables]
-        if missing:
-            raise NotMeasured(f"data/{group}.nc: {name} holds no {', '.join(missing)}")
-        return dataset
+        return self.groups[group][name]
 
     def event(self, group: str, name: str, friction: float | None = None) -> Quantity:
         """The bracket of an event; ``friction`` None takes the first event of that name."""
-        events = self.get(group, "events", "name", "low", "high")
+        events = self.get(group, "events")
         at = events["name"].values == name
         if friction is not None and "friction" in events.variables:
             at = at & (np.abs(events["friction"].values - friction) <= _SAME * abs(friction))
@@ -328,24 +331,3 @@ def at(dataset: xr.Dataset, **labels: float) -> xr.Dataset:
             raise NotMeasured(f"nothing is stored at {name} = {label:g}")
         dataset = dataset.isel({name: int(near[0])})
     return dataset
-
-
-def sampled(what: str, event: Quantity, paper: float, words: Bounds) -> Condition:
-    """The paper's number is the first of its sampled forces at or above the event (mean disk weights)."""
-    return Condition(what, event, (1.0 - words["about"]) * paper, paper, ("about",), "mg")
-
-
-def about(what: str, found: Quantity, paper: float, words: Bounds, unit: str = "") -> Condition:
-    """The paper gives the number with "about"."""
-    return Condition(what, found, (1.0 - words["about"]) * paper, (1.0 + words["about"]) * paper, ("about",), unit)
-
-
-def rises(what: str, values: Sequence[Quantity]) -> Condition:
-    """Each of positive ``values`` is larger than the one before: their smallest ratio is above 1."""
-    steps = [after.per(before) for before, after in pairwise(values)]
-    if not steps:
-        raise NotMeasured(f"{what}: fewer than two values to compare")
-    smallest = Quantity(
-        min(s.value for s in steps), min(s.low for s in steps), min(s.high for s in steps), steps[0].kind
-    )
-    return Condition(f"{what}, smallest ratio of neighbours", smallest, least=1.0, strict=True)

@@ -7,7 +7,7 @@ words: the group ``sensitivity`` has responses at 15 mg in these interpretations
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import xarray as xr
@@ -20,8 +20,8 @@ from .words import Bounds
 
 GROUP, LOADING = "preparation", "sensitivity"
 
-#: What other preparations change.
-CHANGE = "gravity"
+#: The paper's preparation, and what others change.
+OWN, CHANGE = "gravity at once", "gravity"
 
 #: Other readings, by variant of ``sensitivity``; all but the first are interpretations.
 OPEN = {
@@ -38,7 +38,7 @@ WALL = 10.0
 
 def dips(data: Data, friction: float) -> dict[str, float]:
     """Central dip of the floor response at 15 mg, per largest response, by reading."""
-    study = data.get(LOADING, f"mu_{friction:g}", "variant", "x", "floor_response")
+    study = data.get(LOADING, f"mu_{friction:g}")
     x, names = study["x"].values, study["variant"].values.tolist()
     inside = np.abs(x) < np.abs(x).max() - WALL
     return {
@@ -74,59 +74,55 @@ def events(data: Data, name: str, friction: float, wall_friction: float = 0.0) -
     """
     if GROUP not in data.groups:
         return {}
-    found = data.get(GROUP, "events", "name", "low", "high", *_LABELS)
-    here = (found["name"].values == name) & _cases(found, friction, wall_friction)
-    return {
-        _text(found, k): Quantity.bracket(float(found["low"].values[k]), float(found["high"].values[k]))
-        for k in np.flatnonzero(here).tolist()
-        if _text(found, k) != _text(found, 0)
-    }
+    found = data.get(GROUP, "events")
+    found = found.isel(event=found["name"].values == name)
+    low, high = found["low"].values, found["high"].values
+    return {way: Quantity.bracket(low[k], high[k]) for way, k in _cases(found, friction, wall_friction).items()}
 
 
 def readings(
-    data: Data, name: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]]
+    data: Data,
+    event: str,
+    paper: Mapping[float, Quantity],
+    conditions: Callable[..., list[Condition]],
+    own: str = OWN,
+    named: str = "",
 ) -> list[Reading]:
-    """A variant for each other way to bring gravity of which the event is stored at all ``frictions``.
+    """What is asked of the brackets of an event at some frictions, with gravity at once and brought in each other way.
 
-    ``conditions`` makes its conditions of the brackets in that order.
+    ``conditions`` makes conditions of the brackets, in the order of those of the ``paper``'s preparation, whose reading
+    is ``own``. Those without friction are the same in all ways; a way without the event at a friction is left out.
+    ``named`` begins the names of the others.
     """
-    found = [events(data, name, friction) for friction in frictions]
-    return [
-        Reading(way, *conditions(*(brackets[way] for brackets in found)), change=CHANGE)
-        for way in found[-1]
-        if all(way in brackets for brackets in found)
-    ]
+    found = {friction: events(data, event, friction) for friction in paper if friction > 0.0}
+    every = [way for way in found.get(list(paper)[-1], {}) if all(way in brackets for brackets in found.values())]
+    ways = {way: [found[mu][way] if mu in found else bracket for mu, bracket in paper.items()] for way in every}
+    others = [Reading(named + way, *conditions(*brackets), change=CHANGE) for way, brackets in ways.items()]
+    return [Reading(own, *conditions(*paper.values())), *others]
 
 
-def curves(data: Data, friction: float, variable: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Forces and what is measured there, for each other way to bring gravity; none without the study."""
+def responses(data: Data, friction: float) -> dict[str, xr.Dataset]:
+    """What is measured along the force, for each other way to bring gravity; none without the study."""
     if GROUP not in data.groups:
         return {}
-    study = data.get(GROUP, "response", "force", variable, *_LABELS)
-    found = {}
-    for k in np.flatnonzero(_cases(study, friction, 0.0)).tolist():
-        values = study[variable].transpose("case", "force").values[k]
-        known = np.isfinite(values)
-        if _text(study, k) != _text(study, 0):
-            found[_text(study, k)] = study["force"].values[known], values[known]
-    return found
+    study = data.get(GROUP, "response")
+    return {way: study.isel(case=k) for way, k in _cases(study, friction, 0.0).items()}
 
 
-_LABELS = ("gravity", "ramp_time", "damping_ratio", "friction", "wall_friction")
-
-
-def _cases(found: xr.Dataset, friction: float, wall_friction: float) -> np.ndarray:
-    """Where the friction is this and the dashpots are those of the first case."""
+def _cases(found: xr.Dataset, friction: float, wall_friction: float) -> dict[str, int]:
+    """Where the friction is this and the dashpots are those of the first case, by the other ways to bring gravity."""
     damping = found["damping_ratio"].values
-    return (
+    here = (
         np.isclose(found["friction"].values, friction)
         & np.isclose(found["wall_friction"].values, wall_friction)
-        & (damping == damping[0])
+        & (damping == damping[:1])
     )
+    ways = {_text(found, k): k for k in np.flatnonzero(here).tolist()}
+    return {way: k for way, k in ways.items() if way != _text(found, 0)}
 
 
 def _text(found: xr.Dataset, k: int) -> str:
     gravity = str(found["gravity"].values[k])
     if gravity == "slow":
         return f"gravity grown over {float(found['ramp_time'].values[k]):g} sqrt(R/g)"
-    return {"at-once": "gravity at once", "frictionless": "gravity without friction first"}[gravity]
+    return {"at-once": OWN, "frictionless": "gravity without friction first"}[gravity]

@@ -10,10 +10,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
 
 from granular_response.state import SLIDING
 
-from .asked import listed
+from .. import TOO_LITTLE
+from .asked import listed, material
 from .claim import Data, NotMeasured, at
 
 #: The group that holds means of five and contact angles, and no claim.
@@ -32,8 +35,7 @@ class Sentence:
 
 
 def sliding_spreads(data: Data) -> str:
-    names = ("position", "contact_disk", "contact_partner", "contact_status", "loaded_disk", "force")
-    states = data.get("friction_linear_range", "states_mu_0.2", *names)
+    states = data.get("friction_linear_range", "states_mu_0.2")
     first, second = states["contact_disk"].values, states["contact_partner"].values
     depths = {}
     for k, force in enumerate(states["force"].values.tolist()):
@@ -46,7 +48,7 @@ def sliding_spreads(data: Data) -> str:
 
 
 def far_beyond(data: Data) -> str:
-    runs = data.get("friction_linear_range", "large_forces", "asymmetry", "force").sortby("force")
+    runs = data.get("friction_linear_range", "large_forces").sortby("force")
     beyond = runs.isel(force=runs["force"].values > 100.0)
     if not beyond.sizes["force"]:
         raise NotMeasured("data/friction_linear_range.nc: large_forces ends at 100 mg")
@@ -55,8 +57,7 @@ def far_beyond(data: Data) -> str:
 
 
 def rough_walls(data: Data) -> str:
-    names = ("name", "friction", "wall_friction", "way", "low", "damping_ratio")
-    events = data.get("preparation", "events", *names)
+    events = data.get("preparation", "events")
     parts = []
     for way in ("at once", "slow 100", "without friction"):
         here = (events["name"].values == "linear_range") & (events["friction"].values == 1.0)
@@ -69,32 +70,30 @@ def rough_walls(data: Data) -> str:
     return "Friction 1, end of the linear range (1 %) beside smooth and beside rough walls: " + ", ".join(parts)
 
 
+def _usual(study: xr.Dataset) -> NDArray[np.bool_]:
+    """(case,) where the start is that of the first case."""
+    starts = study["lattice_constant"].values.astype(str)
+    return np.asarray(starts == starts[0])
+
+
 def missing_contacts(data: Data) -> str:
-    shapes = at(
-        data.get("phase_diagram", "shapes", "shape", "applied_force", "polydispersity", "friction"), width=NARROW
-    )
-    usual = shapes["lattice_constant"].values.astype(str) == str(shapes["lattice_constant"].values[0])
+    shapes = at(data.get("phase_diagram", "shapes"), width=NARROW)
     dips = {}
-    for case in np.flatnonzero(usual & (shapes["friction"].values == 0.0)):
-        one = shapes.isel(case=int(case), step=0)
+    for case in np.flatnonzero(_usual(shapes) & (shapes["friction"].values == 0.0)):
+        one = shapes.isel(case=case, step=0)
         name = f"polydispersity {float(one['polydispersity']):g}, {float(one['applied_force']):g} mg"
         dips[name] = float(one["shape"])
     return "No friction, dip of the mean response under the smallest force: " + listed(dips, ".0%")
 
 
 def stopping_energy(data: Data) -> str:
-    study = data.get("numerics", "stop_energy", "response_error", "stop_kinetic_energy", "friction")
-    errors = {
-        f"{float(study['stop_kinetic_energy'][k]):g}": float(
-            study["response_error"].transpose(..., "friction")[k].max()
-        )
-        for k in range(study.sizes["stop_kinetic_energy"])
-    }
+    largest = data.get("numerics", "stop_energy")["response_error"].max("friction")
+    errors = {f"{float(one['stop_kinetic_energy']):g}": float(one) for one in largest}
     return "Largest error of the response by the energy at which a run stops: " + listed(errors, ".2%")
 
 
 def contact_angles(data: Data) -> str:
-    study = data.get(MEANS, "packings", "contact_angle_density", "angle", "polydispersity", "friction")
+    study = data.get(MEANS, "packings")
     angle = study["angle"].values
     near = np.zeros(angle.size, bool)
     for direction in np.radians([0.0, 60.0, 120.0, 180.0]):
@@ -112,21 +111,19 @@ def contact_angles(data: Data) -> str:
 
 
 def rearrangements(data: Data) -> str:
-    rows = data.get("phase_diagram", "realizations", "collapse_force", "realizations", "polydispersity", "friction")
-    usual = rows["lattice_constant"].values.astype(str) == str(rows["lattice_constant"].values[0])
+    rows = data.get("phase_diagram", "realizations")
     found = []
-    for case in np.flatnonzero(usual & (rows["polydispersity"].values > 0.0)):
-        one = rows.isel(case=int(case))
+    for case in np.flatnonzero(_usual(rows) & (rows["polydispersity"].values > 0.0)):
+        one = rows.isel(case=case)
         force = one["collapse_force"].values
         if np.isfinite(force).any():
-            name = f"polydispersity {float(one['polydispersity']):g}, friction {float(one['friction']):g}"
             gone = f"{np.isfinite(force).sum()} of {int(one['realizations'])}"
-            found.append(f"{gone} ({name}, from {np.nanmin(force):g} mg on)")
+            found.append(f"{gone} ({material(one)}, from {np.nanmin(force):g} mg on)")
     return "Packings that collapse: " + (", ".join(found) or "none")
 
 
 def nearly_symmetrical(data: Data) -> str:
-    few = at(data.get(MEANS, "averages", "mean_of_few", "polydispersity", "friction"), width=WIDE)
+    few = at(data.get(MEANS, "averages"), width=WIDE)
     mean = few["mean_of_few"].transpose("case", "step", "x").values[(few["polydispersity"].values > 0.0)]
     with np.errstate(invalid="ignore"):
         lean = (np.abs(mean - mean[..., ::-1]).max(axis=-1) / mean.max(axis=-1)).ravel()
@@ -175,7 +172,7 @@ def looked_at(data: Data) -> list[dict[str, str]]:
     for sentence in SENTENCES:
         try:
             text = sentence.found(data)
-        except NotMeasured as missing:
+        except (NotMeasured, *TOO_LITTLE) as missing:
             text = str(missing)
         found.append({"place": sentence.place, "paper": sentence.paper, "found": text})
     return found

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from .. import TOO_LITTLE
 from .claim import Claim, Data, Finding, NotMeasured, Outcome, Reading, range_over
 from .words import Bounds, bounds
 
@@ -84,14 +85,20 @@ def robustness_of(readings: Sequence[Reading]) -> Robustness:
 
 
 def judge(claim: Claim, data: Data, words: Bounds | None = None) -> Entry:
-    """Measure a claim on stored data, with the words of the table or with others."""
+    """Measure a claim on stored data, with the words of the table or with others.
+
+    It is not measured if its function finds too little: a variable, a label, or all that is left to look at is missing.
+    """
     try:
         finding = claim.measure(data, bounds() if words is None else words)
         verdict = verdict_of(finding.readings, derivation=claim.derivation)
     except NotMeasured as missing:
         return Entry(claim, "not measured", None, str(missing))
+    except TOO_LITTLE as error:
+        problem = " ".join(f"{type(error).__name__}: {error}".split())
+        return Entry(claim, "not measured", None, f"data/{claim.group}.nc: holds too little ({problem})")
     return Entry(
-        claim, verdict, finding, _reason(finding), robustness_of(finding.readings), _robustness_reason(finding)
+        claim, verdict, finding, _reason(claim, finding), robustness_of(finding.readings), _robustness_reason(finding)
     )
 
 
@@ -112,7 +119,7 @@ def _robustness_reason(finding: Finding) -> str:
     return text
 
 
-def _reason(finding: Finding) -> str:
+def _reason(claim: Claim, finding: Finding) -> str:
     parts = []
     interpretations = finding.interpretations
     named = len(interpretations) > 1
@@ -121,7 +128,8 @@ def _reason(finding: Finding) -> str:
         these = [reading for reading in interpretations if reading.outcome == outcome]
         if these:
             parts.append(f"{title}: {'; '.join(_why(reading, outcome, named) for reading in these)}.")
-    return " ".join([*parts, *([f"{finding.remark}."] if finding.remark else [])])
+    remark = finding.remark or claim.remark
+    return " ".join([*parts, *([f"{remark}."] if remark else [])])
 
 
 def _why(reading: Reading, outcome: Outcome, named: bool) -> str:

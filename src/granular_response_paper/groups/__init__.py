@@ -2,7 +2,7 @@
 
 A folder holds ``parameters.py`` (the class ``Parameters``, the group's section of ``params.yaml``), ``simulate.py``
 (parameters to datasets), ``draw.py`` (datasets to figures, and what these show) and, where the paper claims something,
-``claims.py`` (what is judged from its datasets).
+``claims.py`` (what is judged from its datasets) beside ``claims.yaml`` (what the paper says).
 """
 
 import json

@@ -13,9 +13,6 @@ from typing import Any
 from granular_response.errors import GranularError
 from granular_response_paper.groups import NAMES
 
-#: What simulating, drawing and measuring may raise where allowed parameters have left nothing of what they look at.
-TOO_LITTLE = (ArithmeticError, IndexError, KeyError, ValueError)
-
 
 class GroupError(GranularError):
     """A figure group, or its parameters, that does not exist. The message is one line."""

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from granular_response.scene import SceneError, text
 from granular_response.store import atomic
 from granular_response.store import files as store
-from granular_response_paper import captions
-from granular_response_paper.pipeline import TOO_LITTLE, GroupError, figures_folder, group_member, stored
+from granular_response_paper import TOO_LITTLE, captions
+from granular_response_paper.pipeline import GroupError, figures_folder, group_member, stored
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,9 +15,10 @@ from typing import Any
 import xarray as xr
 
 from granular_response.store import atomic
+from granular_response_paper import TOO_LITTLE
 from granular_response_paper.claims.claim import Claim, Data, rounded
 from granular_response_paper.claims.verdict import judge
-from granular_response_paper.pipeline import TOO_LITTLE, GroupError, group_member, stored
+from granular_response_paper.pipeline import GroupError, group_member, stored
 
 #: Datasets of a group to numbers by name.
 Numbers = Callable[[Mapping[str, xr.Dataset]], Mapping[str, float]]
@@ -81,10 +82,7 @@ def _claims(claims: Sequence[Claim], group: str, datasets: Mapping[str, xr.Datas
     outcomes: dict[str, list[str]] = {"holds": [], "fails": [], "open": [], "not measured": []}
     values = {}
     for claim in claims:
-        try:
-            finding = judge(claim, Data({group: datasets})).finding
-        except TOO_LITTLE:  # the table of claims, which has all datasets, is not as lenient
-            finding = None
+        finding = judge(claim, Data({group: datasets})).finding
         if finding is None:
             outcomes["not measured"].append(claim.id)
             continue

@@ -18,9 +18,9 @@ from granular_response.scene.base import Description
 from granular_response.store import files as store
 from granular_response.sweeps.errors import SweepError
 from granular_response.sweeps.resources import Progress, using
-from granular_response_paper import PACKAGE
+from granular_response_paper import PACKAGE, TOO_LITTLE
 from granular_response_paper.parameters import Common
-from granular_response_paper.pipeline import TOO_LITTLE, GroupError, data_path, group_member
+from granular_response_paper.pipeline import GroupError, data_path, group_member
 
 PARAMETERS = Path("params.yaml")
 

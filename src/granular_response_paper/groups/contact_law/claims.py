@@ -10,20 +10,13 @@ GROUP = "contact_law"
 CLAIMS = Claims(GROUP)
 
 
-@CLAIMS.add(
-    "B10",
-    "beyond the paper, III.B",
-    "responses with the linear normal force against the 3/2 power, matched at the typical overlap",
-    "a linear force describes the disks quite well",
-)
+@CLAIMS.measures("B10")
 def linear_fit(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "responses", "difference", "friction", "force")
+    study = data.get(GROUP, "responses")
     what = "largest difference of the responses, per largest response"
     largest = asked.by_friction(study.max("force"), "difference")
     values = largest.values()
     return Finding(
         f"responses by the two laws are at most {min(values):.1%} to {max(values):.1%} of the largest response apart",
         [Reading(name, asked.at_most(what, one, words, "quite well", "%")) for name, one in largest.items()],
-        "Matched where both give the mean normal force at rest; the paper's statement is about its measured contacts, "
-        "here it is asked of the response",
     )

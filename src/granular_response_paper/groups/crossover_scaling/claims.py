@@ -16,7 +16,7 @@ OF_WEIGHT = 2.0
 
 def _powers(data: Data, event: str) -> list[tuple[str, xr.Dataset]]:
     """What each series of layers is, and its powers of the layers."""
-    study = data.get(GROUP, "powers", "exponent", "extrapolated", "friction", "varied", "confined", "event", "end")
+    study = data.get(GROUP, "powers")
     found = []
     for k in range(study.sizes["series"]):
         one = study.isel(series=k).sel(event=event)
@@ -33,15 +33,10 @@ def _quantity(ends: xr.DataArray) -> Quantity:
     return Quantity.range((least, largest), value)
 
 
-@CLAIMS.add(
-    "B8",
-    "beyond the paper, IV.B, VIII",
-    "power of the number of layers with which the crossover force grows, without and with friction",
-    "under identical loads very deep systems have one peak and shallow ones two; with friction too",
-)
+@CLAIMS.measures("B8")
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     series = _powers(data, "crossover")
-    layers = float(data.get(GROUP, "powers", "extrapolated").attrs["layers"])
+    layers = float(data.get(GROUP, "powers").attrs["layers"])
     texts = [f"{_quantity(one['exponent']).text()} ({name})" for name, one in series]
     far = [f"{_quantity(one['extrapolated']).text('mg')} ({name})" for name, one in series]
     return Finding(
@@ -54,12 +49,7 @@ def deep_and_shallow(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "B9",
-    "beyond the paper, IV.C",
-    "powers of the layers: of the force at which the open region reaches the floor, and of the crossover",
-    "contacts open in a competition of the force with the compression due to gravity",
-)
+@CLAIMS.measures("B9")
 def of_weight(data: Data, words: Bounds) -> Finding:
     readings, texts = [], []
     for event, what in (("reaches_floor", "open region at the floor"), ("crossover", "two peaks")):
@@ -70,12 +60,7 @@ def of_weight(data: Data, words: Bounds) -> Finding:
             for name, power in series
         ]
     CLAIMS.needs(readings, "powers holds no series in which gravity could decide")
-    return Finding(
-        "powers of the layers: " + "; ".join(texts),
-        readings,
-        "A weight grows as the layers squared, in two dimensions. Without friction horizontal contacts bear what "
-        "the sides press on them, not the weight above",
-    )
+    return Finding("powers of the layers: " + "; ".join(texts), readings)
 
 
 def _by_itself(one: xr.Dataset) -> bool:

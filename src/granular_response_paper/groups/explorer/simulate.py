@@ -12,14 +12,14 @@ import numpy as np
 import xarray as xr
 
 from granular_response.errors import SolveError
-from granular_response.observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
+from granular_response.observe.floor import smoothed_response
 from granular_response.observe.peaks import peak_count
 from granular_response.scene import Scene
 from granular_response.state import State
 from granular_response.store.result import LENGTH, certificates_dataset, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.explorer.parameters import Parameters
-from granular_response_paper.slab_response import LoadPath, states_picture, wall_margin
+from granular_response_paper.slab_response import LoadPath, Measures, states_picture
 from granular_response_paper.tasks import computed
 
 
@@ -72,18 +72,16 @@ def states(scene: Scene, forces: tuple[float, ...], collapse_depth: float, width
 
 
 def _dataset(path: LoadPath, found: list[State], width: float) -> xr.Dataset:
-    scene, packing = path.scene, path.problem.packing
+    scene = path.scene
     pictures = states_picture(found, path.problem).drop_vars("angle")
-    disks = floor_disks(found, np.flatnonzero(packing.row == 0))
-    middle = float(path.rest.position[int(path.problem.load_disk[0]), 0])
-    x = path.rest.position[disks, 0] - middle
-    interior = interior_mask(x, packing.width, wall_margin(packing.width), left_wall=-middle)
-    response, smooth = np.full((2, len(found), len(disks)), np.nan)
+    measures = Measures(path)
+    x = measures.x
+    response, smooth = np.full((2, len(found), len(x)), np.nan)
     count = np.zeros(len(found))
     for k, state in enumerate(found[1:], 1):
-        response[k] = floor_response(path.rest, state, disks, state.load_factor)
+        response[k] = measures.response(state)
         smooth[k] = smoothed_response(x, x, response[k], width) if width else response[k]
-        count[k] = peak_count(x, smooth[k], interior=interior)
+        count[k] = peak_count(x, smooth[k], interior=measures.interior)
     if width:
         centre = smoothed_response([0.0], x, response, width)[:, 0]
         unit = "smoothed with the width w, in 1/mean radius: stress per applied force"

@@ -7,38 +7,21 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from granular_response.state import SLIDING, FloatArray
+from granular_response.state import SLIDING
 
 from ...claims import asked, preparations
-from ...claims.claim import (
-    Claims,
-    Condition,
-    Data,
-    Finding,
-    Measure,
-    Quantity,
-    Reading,
-    about,
-    at,
-    rises,
-    sampled,
-)
+from ...claims.claim import Claims, Condition, Data, Finding, Measure, Quantity, Reading, at
+from ...claims.preparations import OWN
 from ...claims.words import Bounds
 
 GROUP = "friction_linear_range"
 BREAKING = "symmetry_breaking"
 CLAIMS = Claims(GROUP)
 
-#: The paper's preparation.
-OWN = "gravity at once"
 
-
-def _ways(
-    data: Data, event: str, frictions: tuple[float, ...], conditions: Callable[..., list[Condition]], own: str = OWN
-) -> list[Reading]:
-    """What is asked of the brackets of an event, in the reading ``own`` and with gravity brought otherwise."""
-    here = Reading(own, *conditions(*(data.event(GROUP, event, mu) for mu in frictions)))
-    return [here, *preparations.readings(data, event, frictions, conditions)]
+def _events(data: Data, name: str, *frictions: float) -> dict[float, Quantity]:
+    """The brackets of an event by friction."""
+    return {mu: data.event(GROUP, name, mu) for mu in frictions}
 
 
 def at_force(
@@ -48,67 +31,55 @@ def at_force(
 
     def measure(data: Data, words: Bounds) -> Finding:
         def wanted(end: Quantity) -> list[Condition]:
-            return [sampled(what, end, paper, words) if first_sampled else about(what, end, paper, words, "mg")]
+            if first_sampled:
+                return [asked.sampled(what, end, paper, words)]
+            return [asked.near(what, end, words, "about", paper, "mg")]
 
         own = "the first sampled force at or above it" if first_sampled else OWN
-        found = data.event(GROUP, event, friction)
-        readings = _ways(data, event, (friction,), wanted, own)
+        found = _events(data, event, friction)
+        readings = preparations.readings(data, event, found, wanted, own)
         if event == "crossover":
             visible = asked.dips_from(_curve(data, friction, "central_dip"), "force", words)
             readings.insert(1, Reading(asked.VISIBLE, *wanted(visible)))
-        return Finding(f"{text} {found.text('mg')}", readings)
+        return Finding(f"{text} {found[friction].text('mg')}", readings)
 
     return measure
 
 
-for _k, _mu, _paper, _figures in ((1, 0.0, 0.75, (4, 6)), (2, 0.2, 4.0, (8,)), (3, 1.0, 6.0, (9,))):
-    CLAIMS.add(
-        f"F{_k}",
-        "V.B",
-        f"friction {_mu:g}: smallest force that opens a contact in the central third of the slab, on the load path",
-        f"{_paper:g} mg",
-        _figures,
-    )(at_force("first_opening", _mu, _paper, what="first opening", text="opens at", first_sampled=True))
-
-
-def _ranges(data: Data, frictions: tuple[float, ...]) -> dict[str, list[Quantity]]:
-    """The ends of the linear range at each friction, by what counts as its end."""
-    study = data.get(GROUP, "response", "response_at_centre", "force", "friction")
-    curves = [at(study, friction=mu) for mu in frictions]
-    return {
-        "response 1 % off": [data.event(GROUP, "linear_range", mu) for mu in frictions],
-        "response 2 % off": [asked.linear_until(curve, 0.02) for curve in curves],
-        "response 5 % off": [asked.linear_until(curve, 0.05) for curve in curves],
-        "first opening": [data.event(GROUP, "first_opening", mu) for mu in frictions],
-    }
+for _id, _friction, _force in (("F1", 0.0, 0.75), ("F2", 0.2, 4.0), ("F3", 1.0, 6.0)):
+    CLAIMS.measures(_id)(
+        at_force("first_opening", _friction, _force, what="first opening", text="opens at", first_sampled=True)
+    )
 
 
 #: Ends of the linear range that other preparations have too, by event.
-_OTHERWISE = {"response 1 % off": "linear_range", "first opening": "first_opening"}
+_EVENTS = {"response 1 % off": "linear_range", "first opening": "first_opening"}
+
+
+def _ranges(data: Data, frictions: list[float]) -> dict[str, dict[float, Quantity]]:
+    """The ends of the linear range at each friction, by what counts as its end."""
+    curves = {mu: _curve(data, mu, "response_at_centre") for mu in frictions}
+    further = {
+        f"response {part:.0%} off".replace("%", " %"): {
+            mu: asked.linear_until(curve, part) for mu, curve in curves.items()
+        }
+        for part in (0.02, 0.05)
+    }
+    one, opening = ({name: _events(data, event, *frictions)} for name, event in _EVENTS.items())
+    return one | further | opening
 
 
 def _by_end(
-    data: Data, found: dict[str, list[Quantity]], frictions: tuple[float, ...], wanted: Callable[..., list[Condition]]
+    data: Data, found: dict[str, dict[float, Quantity]], wanted: Callable[..., list[Condition]]
 ) -> list[Reading]:
-    """What is asked of the ends at no friction and at ``frictions``; without it preparations do not differ."""
-    return [
-        *(Reading(name, *wanted(*ends)) for name, ends in found.items()),
-        *(
-            Reading(f"{name}, {reading.name}", *reading.conditions, change=reading.change)
-            for name, event in _OTHERWISE.items()
-            for reading in preparations.readings(
-                data, event, frictions, lambda *ends, without=found[name][0]: wanted(without, *ends)
-            )
-        ),
-    ]
+    """What is asked of the ends at all frictions: each as the paper prepares the slab, then in the other ways."""
+    others = []
+    for name, event in _EVENTS.items():
+        others += preparations.readings(data, event, found[name], wanted, named=f"{name}, ")[1:]
+    return [Reading(name, *wanted(*ends.values())) for name, ends in found.items()] + others
 
 
-@CLAIMS.add(
-    "R1",
-    "V.A, Fig. 6",
-    "end of the linear range at x = 0, and first opening, at friction 0.2 and 1 over those without",
-    "almost ten times larger",
-)
+@CLAIMS.measures("R1")
 def linear_range(data: Data, words: Bounds) -> Finding:
     def wanted(without: Quantity, *ends: Quantity) -> list[Condition]:
         least, most = (10.0 ** (1.0 + sign * words["almost"]) for sign in (-1.0, 1.0))
@@ -117,59 +88,52 @@ def linear_range(data: Data, words: Bounds) -> Finding:
             for mu, end in zip((0.2, 1.0), ends, strict=True)
         ]
 
-    found = _ranges(data, (0.0, 0.2, 1.0))
-    ratios = {name: [f"{end.per(ends[0]).value:.3g}" for end in ends[1:]] for name, ends in found.items()}
+    found = _ranges(data, [0.0, 0.2, 1.0])
+    ratios = {
+        name: " and ".join(f"{ends[mu].per(ends[0.0]).value:.3g}" for mu in (0.2, 1.0)) for name, ends in found.items()
+    }
     return Finding(
-        "at friction 0.2 and 1: " + ", ".join(f"{' and '.join(r)} times ({name})" for name, r in ratios.items()),
-        _by_end(data, found, (0.2, 1.0), wanted),
-        "The paper does not say how far off a response is no longer linear",
+        "at friction 0.2 and 1: " + ", ".join(f"{both} times ({name})" for name, both in ratios.items()),
+        _by_end(data, found, wanted),
     )
 
 
-def _curve(data: Data, friction: float, *names: str) -> xr.Dataset:
-    curve = at(data.get(GROUP, "response", "force", "friction", *names), friction=friction)
-    return curve.isel(force=np.isfinite(curve[names[0]].values))
+def _curve(data: Data, friction: float, name: str) -> xr.Dataset:
+    """The response at a friction, at the forces at which this is measured."""
+    curve = at(data.get(GROUP, "response"), friction=friction)
+    return curve.isel(force=np.isfinite(curve[name].values))
 
 
-def _up_to_50(data: Data, *names: str) -> xr.Dataset:
+def _up_to_50(data: Data, name: str) -> xr.Dataset:
     """The curve at friction 1."""
-    curve = _curve(data, 1.0, *names)
+    curve = _curve(data, 1.0, name)
     force = curve["force"].values
     CLAIMS.needs(force.max(initial=0.0) >= 50.0, "response does not reach 50 mg at friction 1")
     return curve.isel(force=force <= 50.0)
 
 
-@CLAIMS.add("R2a", "V.A, Fig. 7", "friction 1: forces up to 50 mg with two peaks", "a single peak up to 50 mg")
+@CLAIMS.measures("R2a")
 def single_peak(data: Data, words: Bounds) -> Finding:
-    curve = _up_to_50(data, "double_peaked")
-    ways = {OWN: (curve["force"].values, curve["double_peaked"].values)}
-    ways |= preparations.curves(data, 1.0, "double_peaked")
-    double = {way: int(np.count_nonzero(values[force <= 50.0])) for way, (force, values) in ways.items()}
-    size = curve.sizes["force"]
+    curves = {OWN: _up_to_50(data, "double_peaked"), **preparations.responses(data, 1.0)}
+    what = "forces up to 50 mg with two peaks"
+    double = {
+        way: int(np.count_nonzero(curve["double_peaked"].values[curve["force"].values <= 50.0] > 0.0))
+        for way, curve in curves.items()
+    }
+    size = curves[OWN].sizes["force"]
+    readings = [
+        Reading(way, asked.none_of(what, number), change="" if way == OWN else preparations.CHANGE)
+        for way, number in double.items()
+    ]
     return Finding(
         f"one peak at {size - double[OWN]} of {size} forces up to 50 mg",
-        [
-            *(
-                Reading(
-                    way,
-                    asked.none_of("forces up to 50 mg with two peaks", number),
-                    change="" if way == OWN else preparations.CHANGE,
-                )
-                for way, number in double.items()
-            ),
-            *preparations.one_peak_at_15(data, 1.0, words),
-        ],
+        [*readings, *preparations.one_peak_at_15(data, 1.0, words)],
     )
 
 
-@CLAIMS.add(
-    "R2b",
-    "V.B, Fig. 7",
-    "friction 1: full width at half maximum at 50 mg over that at the smallest force",
-    "its shape becomes sharper",
-)
+@CLAIMS.measures("R2b")
 def sharper(data: Data, words: Bounds) -> Finding:
-    curve = _up_to_50(data, "half_maximum_width", "peak_height")
+    curve = _up_to_50(data, "half_maximum_width")
     width, height = curve["half_maximum_width"].values, curve["peak_height"].values
     return asked.one_reading(
         f"from the smallest force to 50 mg the full width falls from {width[0]:.1f} to {width[-1]:.1f} R, the height "
@@ -179,26 +143,18 @@ def sharper(data: Data, words: Bounds) -> Finding:
     )
 
 
-CLAIMS.add("R3a", "V.E, Fig. 16a", "friction 0.2: force of the crossover to two peaks", "about 20 mg", (7, 16))(
-    at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from")
-)
-CLAIMS.add("R3b", "V.E, Fig. 8", "friction 0.2: force at which the open region reaches the lowest row", "about 20 mg")(
+CLAIMS.measures("R3a")(at_force("crossover", 0.2, 20.0, what="crossover", text="two peaks from"))
+CLAIMS.measures("R3b")(
     at_force("reaches_floor", 0.2, 20.0, what="open region at the floor", text="open region at the floor from")
 )
-CLAIMS.add(
-    "R4a",
-    "V.E, Fig. 16a",
-    "friction 0.2: force from which the response with two peaks has a third one at x = 0, on the load path",
-    "from about 40 mg",
-)(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
+CLAIMS.measures("R4a")(at_force("third_peak", 0.2, 40.0, what="third peak", text="from", first_sampled=True))
 
 
-@CLAIMS.add("R4b", "V.E, Fig. 16a", "prominence of that peak at each stored force from 40 mg on", "small")
+@CLAIMS.measures("R4b")
 def third_peak_small(data: Data, words: Bounds) -> Finding:
     curve = _curve(data, 0.2, "third_peak_prominence")
     force, size = curve["force"].values, curve["third_peak_prominence"].values
     beyond = np.flatnonzero((force >= 40.0) & (size > 0.0))
-    CLAIMS.needs(beyond.size, "response holds no third peak from 40 mg on")
     return Finding(
         f"prominence {size[beyond[0]]:.3f} of the largest response at {force[beyond[0]]:g} mg, up to "
         f"{size[beyond].max():.3f} at {force[beyond][size[beyond].argmax()]:g} mg",
@@ -206,14 +162,12 @@ def third_peak_small(data: Data, words: Bounds) -> Finding:
             Reading(f"{force[k]:g} mg", asked.at_most("prominence per largest response", size[k], words, "small", "%"))
             for k in beyond
         ],
-        "It keeps growing; the paper does not say up to which force it looked",
     )
 
 
 def _jump(data: Data) -> tuple[xr.Dataset, int]:
     """The dynamic runs at large forces, in order, and the index of the first asymmetric one."""
-    names = ("asymmetry", "force", "mobilised_contacts", "network_asymmetry", "floor_response", "asymmetry_sign")
-    runs = data.get(GROUP, "large_forces", *names).sortby("force")
+    runs = data.get(GROUP, "large_forces").sortby("force")
     lost = np.flatnonzero(runs["asymmetry"].values > 0.1)
     CLAIMS.needs(lost[:1].any(), "large_forces holds no forces on both sides of the loss of symmetry")
     return runs, int(lost[0])
@@ -223,12 +177,7 @@ def _jump(data: Data) -> tuple[xr.Dataset, int]:
 RAMP = "ramp of 20 sqrt(R/g)"
 
 
-@CLAIMS.add(
-    "R5b",
-    "V.E, Fig. 16b",
-    "change of the asymmetry between the two neighbouring forces around that event",
-    "a sharp transition",
-)
+@CLAIMS.measures("R5b")
 def sharp(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     asymmetry, force = runs["asymmetry"].values, runs["force"].values
@@ -241,13 +190,7 @@ def sharp(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R6a",
-    "V.E",
-    "contacts near the Coulomb limit on both sides of that change",
-    "a marked reduction in the number of sliding contacts",
-    16,
-)
+@CLAIMS.measures("R6a")
 def sliding_drops(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     sliding, margins = runs["mobilised_contacts"].transpose("force", "margin").values, runs["margin"].values
@@ -260,22 +203,14 @@ def sliding_drops(data: Data, words: Bounds) -> Finding:
         for margin, before, after in cases
         if before > 0
     ]
-    CLAIMS.needs(readings, "large_forces holds no contact near the Coulomb limit before the change")
     return Finding(
         "contacts near the Coulomb limit before and after: "
         + ", ".join(f"{before:.0f} and {after:.0f} (within {margin:.0%})" for margin, before, after in cases),
         readings,
-        "In equilibrium a contact that slid rests just below the limit; how near counts as sliding is a choice",
     )
 
 
-@CLAIMS.add(
-    "R6b",
-    "V.E",
-    "contacts without a mirror image on both sides of that change",
-    "the contact network becomes asymmetric",
-    16,
-)
+@CLAIMS.measures("R6b")
 def network_changes(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     network = runs["network_asymmetry"].values
@@ -288,19 +223,12 @@ def network_changes(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R7",
-    "V.E",
-    "beyond that change: responses at nearly equal forces that lean to opposite sides, one mirrored",
-    "very close forces can give almost exactly the reflected response",
-    16,
-)
+@CLAIMS.measures("R7")
 def mirror_images(data: Data, words: Bounds) -> Finding:
     runs, first = _jump(data)
     after = runs.isel(force=slice(first, None))
     response, force = after["floor_response"].values, after["force"].values
-    sign, x = after["asymmetry_sign"].values, after["x"].values
-    CLAIMS.needs(np.abs(x + x[::-1]).max() <= 0.1, "the floor disks are not symmetric about x = 0")
+    sign = after["asymmetry_sign"].values
     # the paper's pair lies between 91 and 95 mg
     pairs = [
         (float(np.abs(response[a] - response[b][::-1]).max() / response[a].max()), force[a], force[b])
@@ -311,7 +239,7 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     best = min(pairs, default=(1.0, float("nan"), float("nan")))
     turned = ""
     if BREAKING in data.groups:
-        copies = data.get(BREAKING, "copies", "asymmetry_sign")["asymmetry_sign"].values
+        copies = data.get(BREAKING, "copies")["asymmetry_sign"].values
         turned = (
             f"; copies of the packing that differ by rounding: {(copies > 0).sum()} to the right, "
             f"{(copies < 0).sum()} to the left"
@@ -321,26 +249,20 @@ def mirror_images(data: Data, words: Bounds) -> Finding:
     return asked.one_reading(f"{seen}{turned}", RAMP, asked.at_most(what, best[0], words, "holds", "%"))
 
 
-@CLAIMS.add(
-    "R8a",
-    "V.B, Fig. 9",
-    "force at which the open region reaches the lowest row at friction 1 over that at 0.2",
-    "smaller than for 0.2",
-    (8, 9),
-)
+@CLAIMS.measures("R8a")
 def floor_earlier(data: Data, words: Bounds) -> Finding:
-    low, high = (data.event(GROUP, "reaches_floor", mu) for mu in (1.0, 0.2))
+    found = _events(data, "reaches_floor", 1.0, 0.2)
 
     def smaller(one: Quantity, other: Quantity) -> list[Condition]:
         return [Condition("force at friction 1 per that at 0.2", one.per(other), most=1.0, strict=True)]
 
     return Finding(
-        f"at the floor from {low.text('mg')} (friction 1) and {high.text('mg')} (friction 0.2)",
-        _ways(data, "reaches_floor", (1.0, 0.2), smaller),
+        f"at the floor from {found[1.0].text('mg')} (friction 1) and {found[0.2].text('mg')} (friction 0.2)",
+        preparations.readings(data, "reaches_floor", found, smaller),
     )
 
 
-@CLAIMS.add("R8b", "V.B, Fig. 9", "peaks beyond it at friction 1", "one peak remains")
+@CLAIMS.measures("R8b")
 def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     floor = data.event(GROUP, "reaches_floor", 1.0)
     curve = _curve(data, 1.0, "double_peaked")
@@ -354,50 +276,29 @@ def one_peak_beyond(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R9", "V.A, Fig. 7", "force of the crossover to two peaks against friction", "rapidly increases with friction"
-)
+@CLAIMS.measures("R9")
 def crossover_rises(data: Data, words: Bounds) -> Finding:
-    frictions = np.sort(data.get(GROUP, "response", "double_peaked", "force", "friction")["friction"].values).tolist()
-    found = {}
-    for mu in frictions:
+    found, visible = {}, []
+    for mu in np.sort(data.get(GROUP, "response")["friction"].values).tolist():
         curve = _curve(data, mu, "double_peaked")
-        force, double = np.append(curve["force"].values, np.nan), np.append(curve["double_peaked"].values, 1.0)
-        k = int(np.argmax(double > 0))
-        CLAIMS.needs(k > 0, f"response has two peaks at the smallest force, friction {mu:g}")
-        found[f"{mu:g}"] = Quantity.bracket(force[k - 1], force[k])
-    ends = list(found.values())
-    return Finding(
-        "two peaks from, by friction: " + asked.listed(found, unit="mg"),
-        [
-            Reading(OWN, rises("crossover force", ends)),
-            Reading(
-                asked.VISIBLE,
-                rises(
-                    "crossover force",
-                    [asked.dips_from(_curve(data, mu, "central_dip"), "force", words) for mu in frictions],
-                ),
-            ),
-            *preparations.readings(
-                data, "crossover", tuple(frictions[1:]), lambda *after: [rises("crossover force", [ends[0], *after])]
-            ),
-        ],
-    )
+        found[mu] = asked.first(curve, "force", curve["double_peaked"].values > 0.0)
+        visible.append(asked.dips_from(_curve(data, mu, "central_dip"), "force", words))
+
+    def rise(*ends: Quantity) -> list[Condition]:
+        return [asked.rises("crossover force", ends)]
+
+    readings = preparations.readings(data, "crossover", found, rise)
+    readings.insert(1, Reading(asked.VISIBLE, *rise(*visible)))
+    texts = asked.listed({f"{mu:g}": end for mu, end in found.items()}, unit="mg")
+    return Finding("two peaks from, by friction: " + texts, readings)
 
 
-@CLAIMS.add(
-    "R10",
-    "V.B, Figs. 4, 8",
-    "opened contacts at friction 0.2 over those without friction under the same force",
-    "the region of open contacts is considerably smaller",
-)
+@CLAIMS.measures("R10")
 def smaller_region(data: Data, words: Bounds) -> Finding:
-    names = ("teardrop_depth", "teardrop_width", "reaches_floor", "opened_contacts")
-    without, full = _curve(data, 0.0, *names), _curve(data, 0.2, *names)
+    without, full = (_curve(data, mu, "teardrop_depth") for mu in (0.0, 0.2))
     shared = [f for f in without["force"].values if f in full["force"].values]
     without, full = without.sel(force=shared), full.sel(force=shared)
     open_ = (without["teardrop_depth"].values > 2.0) & (full["reaches_floor"].values == 0)
-    CLAIMS.needs(open_.any(), "response holds no force at which the regions can be compared")
     ratio = full["opened_contacts"].values[open_] / without["opened_contacts"].values[open_]
     found = Quantity.range(ratio, float(np.median(ratio)))
     return asked.one_reading(
@@ -408,31 +309,20 @@ def smaller_region(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "R11",
-    "V.B, Figs. 4, 8",
-    "force at which the open region reaches the lowest row at friction 0.2 over that without friction",
-    "it reaches the floor only for a much larger force",
-)
+@CLAIMS.measures("R11")
 def floor_later(data: Data, words: Bounds) -> Finding:
-    late, early = (data.event(GROUP, "reaches_floor", mu) for mu in (0.2, 0.0))
+    found = _events(data, "reaches_floor", 0.0, 0.2)
 
-    def later(end: Quantity) -> list[Condition]:
-        return [asked.higher("force with friction per without", end.per(early), words, "marked")]
+    def later(early: Quantity, late: Quantity) -> list[Condition]:
+        return [asked.higher("force with friction per without", late.per(early), words, "marked")]
 
     return Finding(
-        f"at the floor from {late.text('mg')} (friction 0.2) and {early.text('mg')} (without)",
-        _ways(data, "reaches_floor", (0.2,), later),
+        f"at the floor from {found[0.2].text('mg')} (friction 0.2) and {found[0.0].text('mg')} (without)",
+        preparations.readings(data, "reaches_floor", found, later),
     )
 
 
-@CLAIMS.add(
-    "F11",
-    "V.A, Fig. 6",
-    "without friction: change of the response at x = 0 over the forces at which no contact has opened",
-    "a linear range even for frictionless particles",
-    derivation=True,
-)
+@CLAIMS.measures("F11")
 def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "first_opening", 0.0)
     curve = _curve(data, 0.0, "response_at_centre")
@@ -446,16 +336,10 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F12",
-    "IV.A",
-    "size of the region of open contacts under 15 mg against friction: contacts, depth, width",
-    "its size decreases with friction",
-    (4, 8, 9),
-)
+@CLAIMS.measures("F12")
 def region_and_friction(data: Data, words: Bounds) -> Finding:
     sizes = {"contacts": "opened_contacts", "depth": "teardrop_depth", "width": "teardrop_width"}
-    axis = data.get(GROUP, "friction_axis", *sizes.values(), "friction").sortby("friction")
+    axis = data.get(GROUP, "friction_axis").sortby("friction")
     readings = []
     for what, name in sizes.items():
         size = axis[name].values
@@ -472,72 +356,40 @@ def region_and_friction(data: Data, words: Bounds) -> Finding:
 NEAR = 6.0
 
 
-def _sliding(data: Data) -> dict[float, FloatArray]:
-    """Where sliding contacts are, seen from the load (n, 2), by force below that of the paper's crossover."""
-    names = ("position", "contact_disk", "contact_partner", "contact_status", "loaded_disk", "force")
-    states = data.get(GROUP, "states_mu_0.2", *names)
+@CLAIMS.measures("R12")
+def sliding_near(data: Data, words: Bounds) -> Finding:
+    """At forces below that of the paper's crossover."""
+    states = data.get(GROUP, "states_mu_0.2")
     first, second = states["contact_disk"].values, states["contact_partner"].values
-    found = {}
+    near = {}
     for k, force in enumerate(states["force"].values.tolist()):
         position = states["position"].values[k]
         slides = states["contact_status"].values[k] == SLIDING
         away = 0.5 * (position[first] + position[second])[slides] - position[int(states["loaded_disk"])]
         if 0.0 < force < 20.0 and away.size:
-            found[force] = away
-    CLAIMS.needs(len(found) > 1, "states_mu_0.2 holds sliding contacts at fewer than two forces below 20 mg")
-    return found
-
-
-@CLAIMS.add(
-    "R12",
-    "V.E",
-    f"friction 0.2: part of the sliding contacts within {NEAR:g} radii of the load, at forces below 20 mg",
-    "sliding occurs mainly near the point of application",
-    8,
-)
-def sliding_near(data: Data, words: Bounds) -> Finding:
-    near = {force: float((np.hypot(*away.T) < NEAR).mean()) for force, away in _sliding(data).items()}
+            near[f"{force:g} mg"] = float((np.hypot(*away.T) < NEAR).mean())
     what = f"sliding contacts within {NEAR:g} radii of the load"
-    return asked.each(
-        f"{what}: ",
-        {f"{force:g} mg": part for force, part in near.items()},
-        lambda part: asked.at_least(what, part, words, "marked", "%"),
-        "%",
-        "The paper names no force",
-    )
+    return asked.each(f"{what}: ", near, lambda part: asked.at_least(what, part, words, "marked", "%"), "%")
 
 
-@CLAIMS.add(
-    "A1",
-    "abstract",
-    "end of the linear range, and first opening, against friction from 0 to 1",
-    "the larger the friction, the more extended the range of forces with an elastic response",
-    6,
-)
+@CLAIMS.measures("A1")
 def range_grows(data: Data, words: Bounds) -> Finding:
-    frictions = np.sort(np.unique(data.get(GROUP, "response", "friction")["friction"].values)).tolist()
-    found = _ranges(data, tuple(frictions))
+    frictions = np.unique(data.get(GROUP, "response")["friction"].values).tolist()
+    found = _ranges(data, frictions)
+    texts = {name: ", ".join(f"{end.value:.3g}" for end in ends.values()) for name, ends in found.items()}
     return Finding(
         f"at friction {', '.join(f'{mu:g}' for mu in frictions)}: "
-        + "; ".join(f"{name} at {', '.join(f'{e.value:.3g}' for e in ends)} mg" for name, ends in found.items()),
-        _by_end(data, found, tuple(frictions[1:]), lambda *ends: [rises("range", ends)]),
-        "It grows up to friction 0.2 or 0.5 and is shorter at 1; at the paper's own three frictions the first opening "
-        "grows",
+        + "; ".join(f"{name} at {ends} mg" for name, ends in texts.items()),
+        _by_end(data, found, lambda *ends: [asked.rises("range", ends)]),
     )
 
 
-@CLAIMS.add(
-    "A2",
-    "abstract",
-    "floor response under 15 mg against friction: dip at x = 0, and rms difference from the elastic response",
-    "the larger the friction, the smaller the anisotropy",
-    12,
-)
+@CLAIMS.measures("A2")
 def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
-    axis = data.get(GROUP, "friction_axis", "central_dip", "floor_response", "friction").sortby("friction")
+    axis = data.get(GROUP, "friction_axis").sortby("friction")
     dip = axis["central_dip"].values
-    largest = float(data.get(GROUP, "response", "friction")["friction"].max())
-    elastic = _curve(data, largest, "response_at_centre", "floor_response")
+    largest = float(data.get(GROUP, "response")["friction"].max())
+    elastic = _curve(data, largest, "response_at_centre")
     small = elastic["floor_response"].transpose("force", "floor_disk").values[0]
     response = axis["floor_response"].transpose("friction", "floor_disk").values
     off = np.sqrt(((response - small) ** 2).sum(axis=1) / (small**2).sum())
@@ -559,21 +411,13 @@ def smaller_anisotropy(data: Data, words: Bounds) -> Finding:
                 asked.lower("the difference with the largest friction per without", off[-1] / off[0], words, "marked"),
             ),
         ],
-        "A response can be wider than the elastic one or narrower (Sec. II.A); a dip shows the first alone. Elastic is "
-        "the response to the smallest force at the largest friction",
     )
 
 
-@CLAIMS.add(
-    "K4",
-    "V.D, Fig. 12",
-    "F = 15 mg, k_T/k_N = 0.8: dip at x = 0 without and with much friction; friction at which two peaks turn into one, "
-    "by bisection",
-    "a crossover from two peaks to one",
-)
+@CLAIMS.measures("K4")
 def friction_crossover(data: Data, words: Bounds) -> Finding:
     event = data.event(GROUP, "friction_crossover")
-    axis = data.get(GROUP, "friction_axis", "central_dip", "friction").sortby("friction")
+    axis = data.get(GROUP, "friction_axis").sortby("friction")
     first, last = float(axis["central_dip"][0]), float(axis["central_dip"][-1])
 
     without = asked.at_least("dip without friction", first, words, "visible", "%")

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ...claims import asked
-from ...claims.claim import Claims, Condition, Data, Finding, NotMeasured, Quantity, Reading
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "frictionless_crossover"
@@ -21,53 +21,35 @@ ROW, DISK = float(np.sqrt(3.0)), 2.0
 
 def _crossovers(data: Data, words: Bounds) -> dict[str, Quantity]:
     """The crossover force by what counts as two peaks."""
-    response = data.get(GROUP, "response", "central_dip", "force")
+    response = data.get(GROUP, "response")
     return {
         "peaks on both sides": data.event(GROUP, "crossover"),
         asked.VISIBLE: asked.dips_from(response, "force", words),
     }
 
 
-@CLAIMS.add(
-    "F4a",
-    "IV.A, Fig. 3",
-    "without friction: force at which the floor response gets two peaks, each above the response at x = 0",
-    "one peak turns into two as the force grows",
-    (3, 4),
-)
+@CLAIMS.measures("F4a")
 def crossover(data: Data, words: Bounds) -> Finding:
     ends = _crossovers(data, words)
-    largest = float(data.get(GROUP, "response", "force")["force"].max())
+    largest = float(data.get(GROUP, "response")["force"].max())
     return asked.each(
         "two peaks from ", ends, lambda event: Condition("two peaks from", event, 0.0, largest, unit="mg"), "mg"
     )
 
 
-@CLAIMS.add(
-    "F4b",
-    "IV.A, Figs. 3, 4",
-    "that force per the force at which the open region reaches the lowest row",
-    "the crossover comes at slightly smaller forces than the open region's reaching the floor",
-)
+@CLAIMS.measures("F4b")
 def before_the_floor(data: Data, words: Bounds) -> Finding:
     ends, floor = _crossovers(data, words), data.event(GROUP, "teardrop_reaches_floor")
+    what, least = "crossover per force at the floor", 1.0 - words["slightly"]
     return Finding(
         f"two peaks from {asked.listed(ends, unit='mg')}, the open region at the floor from {floor.text('mg')}",
-        [
-            Reading(
-                name,
-                Condition(
-                    "crossover per force at the floor", end.per(floor), 1.0 - words["slightly"], 1.0, ("slightly",)
-                ),
-            )
-            for name, end in ends.items()
-        ],
+        [Reading(name, Condition(what, end.per(floor), least, 1.0, ("slightly",))) for name, end in ends.items()],
     )
 
 
 def _open_regions(data: Data) -> list[tuple[float, float, np.ndarray]]:
     """Force, horizontal share of the opened contacts, and contacts by row from below, until the floor is reached."""
-    states = data.get(GROUP, "states", "teardrop", "position", "contact_disk", "contact_partner", "force")
+    states = data.get(GROUP, "states")
     first, second = states["contact_disk"].values, states["contact_partner"].values
     found = []
     for k in range(states.sizes["force"]):
@@ -79,17 +61,10 @@ def _open_regions(data: Data) -> list[tuple[float, float, np.ndarray]]:
         rows = np.round(0.5 * (height[first] + height[second])[inside] / ROW).astype(int)
         if rows.min() > 1:
             found.append((float(states["force"].values[k]), share, np.bincount(rows - rows.min())))
-    if not found:
-        raise NotMeasured(f"data/{GROUP}.nc: no state with a region of opened contacts that has not reached the floor")
     return found
 
 
-@CLAIMS.add(
-    "F5a",
-    "IV.A, Fig. 4",
-    "without friction: directions of the opened contacts in their connected region below the load",
-    "horizontal contacts are opened",
-)
+@CLAIMS.measures("F5a")
 def horizontal(data: Data, words: Bounds) -> Finding:
     regions = _open_regions(data)
     least = min(share for _, share, _ in regions)
@@ -97,33 +72,21 @@ def horizontal(data: Data, words: Bounds) -> Finding:
         f"horizontal part of the opened contacts until their region reaches the floor: at least {least:.1%}",
         "until the region reaches the floor",
         asked.hardly_lower("smallest horizontal part of the opened contacts", least, words, "visible", "%"),
-        remark="At larger forces oblique contacts open too, close below the load; the paper describes none",
     )
 
 
-@CLAIMS.add(
-    "F5b",
-    "IV.A, Fig. 4",
-    "rows and depth of that region at growing forces",
-    "the region has the shape of a teardrop and grows with the force",
-    (4, 5),
-)
+@CLAIMS.measures("F5b")
 def teardrop(data: Data, words: Bounds) -> Finding:
     regions = [counts for _, _, counts in _open_regions(data)]
-    response = data.get(GROUP, "response", "teardrop_depth", "reaches_floor", "force")
-    depth = response["teardrop_depth"].values
+    depth = data.get(GROUP, "response")["teardrop_depth"].values
     widest = regions[-1]
-    if len(widest) < 4:
-        raise NotMeasured(f"data/{GROUP}.nc: no region of four rows that has not reached the floor")
+    CLAIMS.needs(len(widest) > 3, "no region of four rows that has not reached the floor")
     return asked.one_reading(
         f"contacts by row, from below, before the region reaches the floor: {', '.join(map(str, widest))}; depth grows "
         f"from {depth[0]:.1f} to {depth.max():.1f} R",
         "as described",
         Condition(
-            "widest row per the wider end",
-            Quantity.exact(widest.max() / max(widest[0], widest[-1])),
-            1.0,
-            strict=True,
+            "widest row per the wider end", Quantity.exact(widest.max() / max(widest[0], widest[-1])), 1.0, strict=True
         ),
         Condition(
             "smallest growth of the depth with the force, rows (known to half a row)",
@@ -145,45 +108,30 @@ def size_in_steps(size: np.ndarray, step: float) -> Quantity:
     return Quantity(mean, mean - off, mean + off, "bracket")
 
 
-@CLAIMS.add(
-    "F6",
-    "IV.B, Fig. 5",
-    "depth and width of the open region in deeper slabs over those in the thinnest, means over evenly spaced forces "
-    "at which the latter has not reached its floor",
-    "the size decreases only slightly as the depth of the slab increases",
-)
+@CLAIMS.measures("F6")
 def teardrop_and_depth(data: Data, words: Bounds) -> Finding:
-    names = ("layers", "normal_stiffness", "force", "teardrop_depth", "teardrop_width", "reaches_floor")
-    study = data.get(GROUP, "regions", *names).sortby("layers")
-    stiffnesses = np.unique(study["normal_stiffness"].values)
-    stiffnesses = stiffnesses[np.argsort(np.abs(stiffnesses - STIFFNESS))]
     readings, texts = [], []
-    for stiffness in stiffnesses.tolist():
-        slabs = study.isel(slab=np.isclose(study["normal_stiffness"].values, stiffness))
-        sizes = (("depth", "teardrop_depth", ROW), ("width", "teardrop_width", DISK))
+    for stiffness, slabs in _by_stiffness(data, "regions", paper_first=True):
+        layers = [f"{count:.0f} layers" for count in slabs["layers"].values]
         use = (slabs["reaches_floor"].values[0] == 0) & (slabs["teardrop_depth"].values[0] > 2.0 * ROW)
-        if slabs.sizes["slab"] < 2 or not use.any():
-            raise NotMeasured(f"data/{GROUP}.nc: regions holds one depth, or no open region away from the floor")
-        for k in range(1, slabs.sizes["slab"]):
+        for k in range(1, len(layers)):
             conditions = []
-            for what, name, step in sizes:
-                thin, deep = (size_in_steps(slabs[name].values[slab, use], step) for slab in (0, k))
-                ratio = deep.per(thin)
-                conditions.append(
-                    asked.hardly_lower(
-                        f"{what} per that in {slabs['layers'].values[0]:.0f} layers", ratio, words, "slightly"
-                    )
-                )
-                if what == "depth":
-                    texts.append(f"{ratio.value:.2f} in {slabs['layers'].values[k]:.0f} layers (k_N = {stiffness:g})")
-            name = f"{slabs['layers'].values[k]:.0f} layers, k_N = {stiffness:g}"
-            readings.append(Reading(name, *conditions, change=_change(stiffness)))
-    return Finding(
-        "depth of the open region per that in the thinnest slab, same forces: " + ", ".join(texts),
-        readings,
-        "The paper does not name its sizes. With its stiffness gravity presses horizontal contacts of deep slabs "
-        "together, and they open later",
-    )
+            for what, step in (("depth", ROW), ("width", DISK)):
+                thin, deep = (size_in_steps(slabs[f"teardrop_{what}"].values[slab, use], step) for slab in (0, k))
+                text = f"{what} per that in {layers[0]}"
+                conditions.append(asked.hardly_lower(text, deep.per(thin), words, "slightly"))
+            texts.append(f"{conditions[0].found.value:.2f} in {layers[k]} (k_N = {stiffness:g})")
+            readings.append(Reading(f"{layers[k]}, k_N = {stiffness:g}", *conditions, change=_change(stiffness)))
+    return Finding("depth of the open region per that in the thinnest slab, same forces: " + ", ".join(texts), readings)
+
+
+def _by_stiffness(data: Data, name: str, *, paper_first: bool = False) -> list[tuple[float, xr.Dataset]]:
+    """Slabs by the number of their layers, for each stiffness of contacts; in order, or the paper's first."""
+    study = data.get(GROUP, name).sortby("layers")
+    stiffnesses = np.unique(study["normal_stiffness"].values).tolist()
+    if paper_first:
+        stiffnesses.sort(key=lambda stiffness: abs(stiffness - STIFFNESS))
+    return [(one, study.isel(slab=np.isclose(study["normal_stiffness"].values, one))) for one in stiffnesses]
 
 
 def _change(stiffness: float) -> str:
@@ -204,82 +152,57 @@ def _deep_and_shallow(slabs: xr.Dataset, alike: str) -> list[tuple[int, int]]:
     ]
 
 
-@CLAIMS.add(
-    "F7",
-    "IV.B, VIII",
-    "crossover force in a deep slab over that in a shallow one",
-    "under the same load deep slabs have one peak, shallow ones two",
-    5,
-)
+@CLAIMS.measures("F7")
 def deep_and_shallow(data: Data, words: Bounds) -> Finding:
-    readings, texts = [], []
+    rows = []
     for name, alike in (("sizes", "width grows with depth"), ("widths", "same width")):
-        study = data.get(GROUP, name, "layers", "disks_per_row", "normal_stiffness", "crossover_bracket")
-        for stiffness in np.unique(study["normal_stiffness"].values).tolist():
-            slabs = study.isel(slab=np.isclose(study["normal_stiffness"].values, stiffness)).sortby("layers")
-            for thin, deep in _deep_and_shallow(slabs, alike):
-                ends = [Quantity.bracket(*slabs["crossover_bracket"].values[k]) for k in (thin, deep)]
-                shapes = [f"{slabs['layers'].values[k]} x {slabs['disks_per_row'].values[k]}" for k in (deep, thin)]
-                where = f"{shapes[0]} against {shapes[1]} disks, k_N = {stiffness:g}"
-                readings.append(
-                    Reading(
-                        where,
-                        Condition("crossover force, deep per shallow", ends[1].per(ends[0]), 1.0, strict=True),
-                        change=_change(stiffness),
-                    )
+        for stiffness, slabs in _by_stiffness(data, name):
+            for pair in _deep_and_shallow(slabs, alike):
+                thin, deep = (Quantity.bracket(*slabs["crossover_bracket"].values[k]) for k in pair)
+                shapes = [f"{slabs['layers'].values[k]} x {slabs['disks_per_row'].values[k]}" for k in pair]
+                reading = Reading(
+                    f"{shapes[1]} against {shapes[0]} disks, k_N = {stiffness:g}",
+                    Condition("crossover force, deep per shallow", deep.per(thin), 1.0, strict=True),
+                    change=_change(stiffness),
                 )
-                texts.append(f"{ends[1].text('mg')} against {ends[0].text('mg')} ({where})")
-    if not readings:
-        raise NotMeasured(f"data/{GROUP}.nc: no deep slab to compare with a thin one")
-    return Finding(
-        "crossover in the deep and in the shallow slab: " + "; ".join(texts),
-        readings,
-        "The paper does not say how wide its deeper slabs are",
-    )
+                rows.append((f"{deep.text('mg')} against {thin.text('mg')}", reading))
+    return asked.told("crossover in the deep and in the shallow slab: ", rows)
 
 
-@CLAIMS.add(
-    "F8", "IV.C", "without friction: change of the response at x = 0 over k_N from 1000 to 1e5", "only about 2 %", 5
-)
-def stiffness_response(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "stiffness", "response_at_centre", "normal_stiffness", "force")
-    stiffness, force = study["normal_stiffness"].values, study["force"].values
+def _between(data: Data) -> xr.Dataset:
+    """The study of stiffness for k_N from 1000 to 1e5. Raises NotMeasured if it does not span them."""
+    study = data.get(GROUP, "stiffness").sortby("normal_stiffness")
+    stiffness = study["normal_stiffness"].values
     chosen = (stiffness >= 999.0) & (stiffness <= 1.001e5)
-    if stiffness[chosen].size < 2 or stiffness[chosen].max() < 0.99e5 or stiffness[chosen].min() > 1001.0:
-        raise NotMeasured(f"data/{GROUP}.nc: stiffness does not span 1000 to 1e5")
-    values = study["response_at_centre"].transpose("normal_stiffness", "force").values[chosen]
-    change = np.ptp(values, axis=0) / np.abs(values[stiffness[chosen].argmax()])
-    most = (1.0 + words["about"]) * 0.02
+    there = chosen.any() and stiffness[chosen].min() < 1001.0 and stiffness[chosen].max() > 0.99e5
+    CLAIMS.needs(there, "stiffness does not span 1000 to 1e5")
+    return study.isel(normal_stiffness=chosen)
+
+
+@CLAIMS.measures("F8")
+def stiffness_response(data: Data, words: Bounds) -> Finding:
+    study = _between(data)
+    force, values = study["force"].values, study["response_at_centre"].transpose("normal_stiffness", "force").values
+    change = np.ptp(values, axis=0) / np.abs(values[-1])
+    what, most = "change of the response at x = 0", (1.0 + words["about"]) * 0.02
     return Finding(
         f"changes by {change.min():.2%} (at {force[change.argmin()]:g} mg) to {change.max():.1%} (at "
         f"{force[change.argmax()]:g} mg)",
         [
-            Reading(
-                f"{f:g} mg",
-                Condition("change of the response at x = 0", Quantity.exact(c), most=most, words=("about",), unit="%"),
-            )
+            Reading(f"{f:g} mg", Condition(what, Quantity.exact(c), most=most, words=("about",), unit="%"))
             for f, c in zip(force.tolist(), change.tolist(), strict=True)
         ],
-        "The paper does not name the force at which it compared",
     )
 
 
-@CLAIMS.add(
-    "F9",
-    "IV.C",
-    "depth and width of the open region against k_N, at forces at which it reaches no floor",
-    "they increase with k_N and saturate for k_N of 2000 and more",
-    5,
-)
+@CLAIMS.measures("F9")
 def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "stiffness", "teardrop_depth", "teardrop_width", "reaches_floor", "normal_stiffness")
-    study = study.sortby("normal_stiffness")
+    study = data.get(GROUP, "stiffness").sortby("normal_stiffness")
     stiffness = study["normal_stiffness"].values
     depth, width = study["teardrop_depth"].values, study["teardrop_width"].values
     use = (depth[-1] > 2.0 * ROW) & ~study["reaches_floor"].values.astype(bool).any(axis=0)
     high = stiffness >= 2000.0
-    if not use.any() or high.all() or high.sum() < 2:
-        raise NotMeasured(f"data/{GROUP}.nc: stiffness holds no force or too few stiffnesses to compare")
+    CLAIMS.needs(high.sum() > 1 and not high.all(), "stiffness holds too few stiffnesses to compare")
     conditions = []
     for what, size in (("depth", depth[:, use]), ("width", width[:, use])):
         spread = float((np.ptp(size[high], axis=0) / size[-1]).max())
@@ -296,20 +219,9 @@ def stiffness_teardrop(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.add(
-    "F10",
-    "IV.C",
-    "without friction: crossover force at k_N from 1000 up over that at 1e5",
-    "the crossover is essentially independent of the rigidity",
-    5,
-)
+@CLAIMS.measures("F10")
 def crossover_and_stiffness(data: Data, words: Bounds) -> Finding:
-    names = ("crossover_bracket", "crossovers", "dip", "normal_stiffness")
-    study = data.get(GROUP, "stiffness", *names).sortby("normal_stiffness")
-    stiffness = study["normal_stiffness"].values
-    study = study.isel(normal_stiffness=(stiffness >= 999.0) & (stiffness <= 1.001e5))
-    if study.sizes["normal_stiffness"] < 2:
-        raise NotMeasured(f"data/{GROUP}.nc: stiffness holds too few stiffnesses from 1000 to 1e5")
+    study = _between(data)
 
     def spread_of(brackets: np.ndarray) -> Quantity:
         ratios = [Quantity.bracket(*one).per(Quantity.bracket(*brackets[-1])) for one in brackets[:-1]]

@@ -16,14 +16,9 @@ CLAIMS = Claims(GROUP)
 ELASTIC = 2.0
 
 
-@CLAIMS.add(
-    "B1",
-    "beyond the paper, VI",
-    "power of the distance with which statically equivalent small loads differ on the floor",
-    "statically equivalent loads differ little far away, as in an elastic body (Saint-Venant)",
-)
+@CLAIMS.measures("B1")
 def saint_venant(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "saint_venant", "exponent", "polydispersity", "friction")
+    study = data.get(GROUP, "saint_venant")
     what = "power of the distance with which two equivalent loads differ less"
     readings, means = [], []
     for case in range(study.sizes["case"]):
@@ -39,5 +34,4 @@ def saint_venant(data: Data, words: Bounds) -> Finding:
         f"the difference of a force and its two halves falls as the power {min(means):.2g} to {max(means):.2g} of the "
         "distance; 2 in an elastic body",
         readings,
-        "Small loads on the disks of every row, at rest. Elastic is taken as the power 2 within a fifth",
     )

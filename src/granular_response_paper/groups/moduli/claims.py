@@ -23,7 +23,7 @@ def _largest(study: xr.Dataset, case: int) -> xr.Dataset:
 
 
 def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
-    study = data.get(GROUP, "packings", "difference", "layers", "polydispersity", "friction")
+    study = data.get(GROUP, "packings")
     readings: list[Reading] = []
     values: dict[bool, list[float]] = {True: [], False: []}
     for case in range(study.sizes["case"]):
@@ -38,29 +38,14 @@ def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
         for friction, these in values.items()
         if these
     ]
-    return Finding(
-        f"part of the largest pressure by which they differ: {', '.join(parts)}",
-        readings,
-        "Mean over the small loads on the top disks of a packing, smoothed with w = 3; no parameter is fitted. Even in "
-        "the presence of friction, says the paper, which includes none",
-    )
+    return Finding(f"part of the largest pressure by which they differ: {', '.join(parts)}", readings)
 
 
-@CLAIMS.add(
-    "B4",
-    "beyond the paper, I",
-    "response of disordered packings to small loads beside the elastic slab of their own measured moduli",
-    "large systems under small forces can be described by elasticity",
-)
+@CLAIMS.measures("B4")
 def by_their_moduli(data: Data, words: Bounds) -> Finding:
     return _described(data, words, "free", "elastic")
 
 
-@CLAIMS.add(
-    "B5",
-    "beyond the paper, I",
-    "the same beside the isotropic slab nearest to these moduli",
-    "large systems under small forces can be described by isotropic elasticity",
-)
+@CLAIMS.measures("B5")
 def isotropic(data: Data, words: Bounds) -> Finding:
     return _described(data, words, "isotropic", "isotropic")

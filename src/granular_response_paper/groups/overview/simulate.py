@@ -37,7 +37,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         "protocol.stop_kinetic_energy": experiment.stop_kinetic_energy,
     }
     tasks = {
-        f"slab_{k}": partial(respond, base.updated({"contact.friction": friction}), parameters.forces)
+        f"slab_{k}": partial(states, base.updated({"contact.friction": friction}), parameters.forces, elastic=True)
         for k, friction in enumerate(parameters.frictions)
     }
     for k, delta in enumerate(experiment.polydispersities):
@@ -66,8 +66,3 @@ def states(scene: Scene, forces: tuple[float, ...], *, elastic: bool = False) ->
             "floor_disk", -found, "floor response to a small load, all contacts sticking, per applied force"
         )
     )
-
-
-def respond(scene: Scene, forces: tuple[float, ...]) -> xr.Dataset:
-    """:func:`states` with the elastic response."""
-    return states(scene, forces, elastic=True)

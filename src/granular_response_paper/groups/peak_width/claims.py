@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...claims.claim import Claims, Data, Finding, Kind, Quantity, Reading, about
+from ...claims import asked
+from ...claims.claim import Claims, Data, Finding, Kind, Quantity, Reading
 from ...claims.words import Bounds
 
 GROUP = "peak_width"
@@ -17,32 +18,20 @@ ELASTIC = 1.0
 WIDTHS = {"half_maximum": "half maximum", "half_force": "half of the force"}
 
 
-@CLAIMS.add(
-    "B6",
-    "beyond the paper, II",
-    "power of the depth with which the width of the response inside a slab grows, by two definitions of the width",
-    "the width is proportional to the depth, as in an elastic body, not to its root",
-)
+@CLAIMS.measures("B6")
 def inside_slabs(data: Data, words: Bounds) -> Finding:
     """On lines inside the highest slab of each case."""
     return _growth(data, "inside", words, "power of the depth")
 
 
-@CLAIMS.add(
-    "B7",
-    "beyond the paper, II.B",
-    "power of the height of a slab with which the width of the response on its floor grows",
-    "the width on the floor is proportional to the depth of the slab",
-)
+@CLAIMS.measures("B7")
 def on_floors(data: Data, words: Bounds) -> Finding:
     """On the floors of slabs of growing height."""
     return _growth(data, "floors", words, "power of the height")
 
 
 def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
-    study = data.get(
-        GROUP, name, "power", "interval", "elastic_power", "polydispersity", "friction", "gravity", "force"
-    )
+    study = data.get(GROUP, name)
     readings, elastic, found = [], [], []
     for case in range(study.sizes["case"]):
         one = study.isel(case=case)
@@ -50,7 +39,7 @@ def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
         readings.append(
             Reading(
                 material(one),
-                *(about(f"{what}, {width}", power(these), ELASTIC, words) for width, these in by.items()),
+                *(asked.near(f"{what}, {width}", power(these), words, "about", ELASTIC) for width, these in by.items()),
                 change="gravity" if str(one["gravity"].values) == "frictionless" else "",
             )
         )
@@ -62,8 +51,6 @@ def _growth(data: Data, name: str, words: Bounds, what: str) -> Finding:
         f"{max(elastic):.2g} in elastic slabs of the same heights; no interval goes below "
         f"{min(quantity.low for quantity in found):.2g}",
         readings,
-        "Proportional is taken as the power 1 within a quarter, nearer to 1 than to the 1/2 of force that diffuses, by "
-        "both definitions of the width",
     )
 
 

@@ -14,7 +14,7 @@ CLAIMS = Claims(GROUP)
 
 def _dips(data: Data, case: str, wanted: Callable[..., Condition], words: Bounds) -> Finding:
     """The dip under the apex per largest value, by where it is read."""
-    stress, floor = data.get(GROUP, "stress", "dip", "case"), data.get(GROUP, "piles", "floor_dip", "case")
+    stress, floor = data.get(GROUP, "stress"), data.get(GROUP, "piles")
     dips = {
         "stress 4 radii above the floor": float(stress["dip"].sel(case=case)),
         "floor forces": float(floor["floor_dip"].sel(case=case)),
@@ -22,30 +22,20 @@ def _dips(data: Data, case: str, wanted: Callable[..., Condition], words: Bounds
     return asked.each("", dips, lambda dip: wanted("dip per largest value", dip, words, "visible", "%"), form=".2%")
 
 
-@CLAIMS.add(
-    "P1",
-    "V.F, Fig. 17",
-    "pile of 11 layers without friction: vertical stress on the axis below the lower maximum beside it",
-    "a dip under the apex",
-)
+@CLAIMS.measures("P1")
 def dip_without_friction(data: Data, words: Bounds) -> Finding:
     return _dips(data, "frictionless", asked.at_least, words)
 
 
-@CLAIMS.add("P2", "V.F, Fig. 17", "the same with friction 0.94, walls 0.35, k_T/k_N = 0.5", "no dip")
+@CLAIMS.measures("P2")
 def no_dip_with_friction(data: Data, words: Bounds) -> Finding:
     return _dips(data, "frictional", asked.at_most, words)
 
 
-@CLAIMS.add(
-    "P3",
-    "V.F, Fig. 17e, f",
-    "size of the region of open contacts on the axis, with friction over without; and its shape, width per height",
-    "quite similar in size, but its shape is different",
-)
+@CLAIMS.measures("P3")
 def regions(data: Data, words: Bounds) -> Finding:
     names = {"central_open_contacts": "contacts", "central_height": "height", "central_width": "width"}
-    study = data.get(GROUP, "piles", *names, "case")
+    study = data.get(GROUP, "piles")
     ratios = {
         text: float(study[name].sel(case="frictional")) / float(study[name].sel(case="frictionless"))
         for name, text in names.items()

@@ -16,7 +16,7 @@ CLAIMS = Claims(GROUP)
 def superposition(force: float, word: str) -> Measure:
     def measure(data: Data, words: Bounds) -> Finding:
         names = {"floor forces": "floor_error_largest", "all contact forces": "contact_error_largest"}
-        study = at(data.get(GROUP, "errors", *names.values(), "force", "distance"), force=force)
+        study = at(data.get(GROUP, "errors"), force=force)
         readings, texts = [], []
         for text, name in names.items():
             error = study[name].transpose("realization", "distance").values
@@ -35,24 +35,17 @@ def superposition(force: float, word: str) -> Measure:
             f"largest difference of whole and sum per largest added force, at the worst of {study.sizes['distance']} "
             f"distances, median of {len(worst)} realizations: " + "; ".join(texts),
             readings,
-            "The paper shows one realization",
         )
 
     return measure
 
 
-CLAIMS.add(
-    "U1",
-    "VI.B, Fig. 23",
-    "delta = 0.01, start with the largest disks touching, friction 0.05, 0.2 mg: response to two loads against the "
-    "sum of their single responses, force by force",
-    "superposition holds even for individual forces",
-)(superposition(0.2, "holds"))
+CLAIMS.measures("U1")(superposition(0.2, "holds"))
 
 
-@CLAIMS.add("U2", "VI.B", "end of the linear range of that slab", "up to about 0.4 mg", 24)
+@CLAIMS.measures("U2")
 def linear_range(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "linear_range", "linear_until", "nonlinear_from")
+    study = data.get(GROUP, "linear_range")
     until, beyond = study["linear_until"].values, study["nonlinear_from"].values
     # a path that does not end is beyond all others
     ends = np.where(np.isfinite(beyond), 0.5 * (until + beyond), 1e6)
@@ -61,25 +54,15 @@ def linear_range(data: Data, words: Bounds) -> Finding:
         f"median {np.median(ends):.3g} mg; single realizations end between {until.min():.3g} mg and {last}",
         "5 % off, one realization",
         *asked.one_of("an end of the linear range, mg,", ends, 0.4, words, "about"),
-        remark="The paper has one realization, so what is asked is only that such a value is not rare; it does not say "
-        "how far off a response is no longer linear",
     )
 
 
-CLAIMS.add("U3", "VI.B, Fig. 24", "the same as U1 at 1 mg", "superposition holds quite well beyond the linear range")(
-    superposition(1.0, "quite well")
-)
+CLAIMS.measures("U3")(superposition(1.0, "quite well"))
 
 
-@CLAIMS.add(
-    "U4",
-    "VI.B, VIII",
-    "1 mg: difference of whole and sum against the depth below the loads",
-    "sufficiently far from the loads the response does not feel what happens near them",
-    24,
-)
+@CLAIMS.measures("U4")
 def falls_with_depth(data: Data, words: Bounds) -> Finding:
-    study = at(data.get(GROUP, "errors", "row_error", "force", "distance", "gap"), force=1.0).sortby("gap")
+    study = at(data.get(GROUP, "errors"), force=1.0).sortby("gap")
     error = study["row_error"].transpose("distance", "realization", "gap").values
     if error.shape[2] < 2:
         raise NotMeasured(f"data/{GROUP}.nc: errors holds one depth")
@@ -96,5 +79,4 @@ def falls_with_depth(data: Data, words: Bounds) -> Finding:
         "rms difference of whole and sum in the deepest row of contacts per the largest of any row, each per force in "
         "its row: " + ", ".join(f"{r.conditions[0].found.value:.2f} ({r.name})" for r in readings),
         readings,
-        "It falls with the distance of the loads from each other far more than with the depth below them",
     )

@@ -13,14 +13,9 @@ CLAIMS = Claims(GROUP)
 PATH = "quasi-static path"
 
 
-@CLAIMS.add(
-    "R5a",
-    "V.E, Fig. 16b",
-    "friction 1: force at which the response loses its symmetry, for two ramps from rest and along the load path",
-    "when it exceeds 91 mg",
-)
+@CLAIMS.measures("R5a")
 def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
-    brackets = data.get(GROUP, "brackets", "low", "high", "ramp_time", "time_step")
+    brackets = data.get(GROUP, "brackets")
     columns = (brackets[name].values.tolist() for name in ("low", "high", "ramp_time", "time_step"))
     found = {
         f"ramp of {ramp:g} sqrt(R/g), step {step:g}": Quantity.bracket(low, high)
@@ -37,8 +32,7 @@ def loss_of_symmetry(data: Data, words: Bounds) -> Finding:
         found,
         lambda event: Condition("loss of symmetry", event, 91.0, 95.0, unit="mg"),
         "mg",
-        "The paper does not say how long the force grows",
-        lambda name: (
+        changed=lambda name: (
             "walls" if "rough walls" in name else "" if name.startswith(("ramp", PATH)) else preparations.CHANGE
         ),
     )

@@ -10,33 +10,23 @@ GROUP = "theory"
 CLAIMS = Claims(GROUP)
 
 
-@CLAIMS.add("K2", "V.C", "root of r(beta) without horizontal springs", "0.2915", (10, 11), derivation=True)
+@CLAIMS.measures("K2")
 def root(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "peak_criterion", "root", "rotations")
+    study = data.get(GROUP, "peak_criterion")
     roots = dict(zip(study["rotations"].values.tolist(), study["root"].values.tolist(), strict=True))
     return asked.one_reading(
         f"{roots['suppressed']:.6f}; with disks free to turn {roots['free']:.4f} (3/11)",
         "rotations suppressed, as in eq. (5)",
         Condition("root", Quantity.exact(roots["suppressed"]), 0.29145, 0.29155),
-        remark="Eq. (5) keeps the disks from turning; the paper's disks turn",
     )
 
 
-@CLAIMS.add(
-    "K3",
-    "V.C, eqs. (7)-(10)",
-    "lattice moduli a, b, c, d against the moduli of a periodic lattice, strained and relaxed",
-    "exact",
-    11,
-    derivation=True,
-)
+@CLAIMS.measures("K3")
 def moduli(data: Data, words: Bounds) -> Finding:
-    study = data.get(GROUP, "moduli", "error", "rotations", "measured", "formula")
+    study = data.get(GROUP, "moduli")
     error = study.sel(rotations="suppressed")["error"].values
     return asked.one_reading(
         f"largest difference {error.max():.1e} of the largest modulus, {error.size} lattices",
         "rotations suppressed, as in eq. (5)",
         Condition("largest difference per largest modulus", Quantity.exact(error.max()), most=1e-10),
-        remark="Eq. (6) as printed gives shear half its energy: its d is twice that of eq. (10), which the paper's r "
-        "and root use",
     )
