@@ -1,4 +1,4 @@
-"""Claim B14, beyond the paper: what the contacts at the Coulomb limit at rest decide (Sec. V)."""
+"""Claim B18, beyond the paper: what the contacts at the Coulomb limit at rest decide (Sec. V)."""
 
 from __future__ import annotations
 
@@ -16,16 +16,10 @@ NONE, FEWEST = 1e-3, 4
 EVENTS = {"linear_range": "end of the linear range", "first_opening": "first opening", "crossover": "two peaks"}
 
 
-@CLAIMS.add(
-    "B14",
-    "beyond the paper, V",
-    "rank correlation of the force of an event with the part of the contacts that are fully mobilized at rest, over "
-    "preparations of one ordered slab; and largest over smallest force of those without such contacts",
-    "what the preparation changes is decided by the contacts that are fully mobilized at rest",
-)
+@CLAIMS.measures("B18")
 def mobilized(data: Data, words: Bounds) -> Finding:
     """For each slab with :data:`FEWEST` preparations: a falling trend, and one force without mobilized contacts."""
-    study = data.get(GROUP, "mobilized", "mobilized_part", "force", "friction", "wall_friction", "polydispersity")
+    study = data.get(GROUP, "mobilized")
     study = study.isel(case=study["polydispersity"].values == 0.0)
     slabs = list(zip(study["wall_friction"].values.tolist(), study["friction"].values.tolist(), strict=True))
     readings, trends, spreads = [], [], []
