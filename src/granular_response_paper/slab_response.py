@@ -440,11 +440,14 @@ def events_dataset(found: Sequence[Event]) -> xr.Dataset:
     return table(found, "event", kind=Event)
 
 
-def states_picture(states: Sequence[State], problem: Problem, dimension: str = "state") -> xr.Dataset:
-    """What pictures of the contact network need of ``states``."""
+def states_picture(
+    states: Sequence[State], problem: Problem, dimension: str = "state", variables: Sequence[str] | None = PICTURE
+) -> xr.Dataset:
+    """What pictures of the contact network need of ``states``: these ``variables`` or, for None, all."""
     packing = problem.packing
     states = common_candidates(states, packing.radius)
-    dataset = states_dataset(states, dimension)[list(PICTURE)]
+    dataset = states_dataset(states, dimension)
+    dataset = dataset[list(variables)] if variables else dataset
     dataset["axis"].attrs.update(long_name="axis labels", units="1")
     force = np.array([abs(state.load_factor) for state in states])
     dataset["force"] = variable(dimension, force, f"applied force {FORCE}")

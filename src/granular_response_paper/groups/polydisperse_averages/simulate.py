@@ -22,7 +22,7 @@ from granular_response.observe.floor import smoothed_response
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH, common_candidates, states_dataset, variable
+from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import AT_REST, datasets, smoothed
 from granular_response_paper.ensembles.averages import at_rest, averages_dataset
@@ -30,7 +30,7 @@ from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Loaded, Realization, ensemble_task
 from granular_response_paper.groups.polydisperse_averages.parameters import Individual, LinearRange, Parameters
 from granular_response_paper.records import column, columns, record, table
-from granular_response_paper.slab_response import linear_end
+from granular_response_paper.slab_response import linear_end, states_picture
 from granular_response_paper.tasks import computed
 
 
@@ -60,13 +60,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks: dict[tuple[str, int, int], partial[Realization]] = {
         ("ensembles", *place): ensemble_task(asked, cases[place[0]], place[1]) for place in datasets.places(cases)
     }
-    shown = next(
-        ("ensembles", c, picture.realization)
-        for c, case in enumerate(cases)
-        if (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
-        and picture.realization < case.realizations
-        and picture.force in case.forces
-    )
+    shown = "ensembles", asked.pictured[0], picture.realization
     tasks[shown] = partial(tasks[shown], keep=(picture.force,))
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for k, (delta, mu) in enumerate(grid):
@@ -149,19 +143,10 @@ def _linear_range(asked: LinearRange, grid: Sequence[tuple[float, float]], found
 
 def _forces_dataset(scene: Scene, found: Realization, polydispersity: float) -> xr.Dataset:
     """The states of Fig. 2: at rest, and under load."""
-    problem = Problem.from_scene(scene)
     if len(found.states) != 2:
         raise SceneError(f"forces_picture: the realization does not reach its force ({found.message or 'collapsed'})")
-    packing = problem.packing
-    problem = problem.with_loads(found.states[0].position)
-    states = common_candidates(found.states, packing.radius)
-    dataset = states_dataset(states)
-    dataset["axis"].attrs.update(long_name="axis labels", units="1")
-    return dataset.assign(
-        force=variable("state", [state.load_factor for state in states], f"applied force {FORCE}"),
-        radius=variable("disk", packing.radius, f"disk radius {LENGTH}"),
-        width=variable((), packing.width, f"distance of the side walls {LENGTH}"),
-        loaded_disk=variable((), int(problem.load_disk[0]), "index of the loaded disk"),
+    problem = Problem.from_scene(scene).with_loads(found.states[0].position)
+    return states_picture(found.states, problem, variables=None).assign(
         polydispersity=variable((), polydispersity, "delta: spread of the radii"),
         friction=variable((), scene.contact.friction, "coefficient of friction, walls included"),
     )
