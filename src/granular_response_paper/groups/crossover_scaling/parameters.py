@@ -12,7 +12,7 @@ from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive, Ratio, Sides, allowed
 from granular_response.scene.errors import Problem
 from granular_response.state import FloatArray
-from granular_response_paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, growing, over, some
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, SurveyedGroup, growing, over, some
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
@@ -99,8 +99,7 @@ class Parameters(SurveyedGroup):
         Scene,
         over(
             _SLAB,
-            "packing.layers",
-            "packing.disks_per_row",
+            *SIZE,
             "packing.sides",
             "packing.lattice_constant",
             "packing.polydispersity",
