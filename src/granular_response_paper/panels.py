@@ -61,6 +61,11 @@ def material(polydispersity: float, friction: float) -> str:
     return f"{packing(polydispersity)}, {style.equals(style.FRICTION, friction)}"
 
 
+def materials(cases: xr.Dataset) -> list[str]:
+    """The name of each case."""
+    return list(map(material, cases["polydispersity"].values, cases["friction"].values))
+
+
 def zero(*panels: Axes) -> None:
     """A faint line where there is no response, below everything."""
     for axes in panels:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from granular_response.observe import events, network, peaks
 from granular_response.observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
 from granular_response.observe.teardrop import OpenRegion, teardrop
+from granular_response.observe.widths import last_passage
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
@@ -319,16 +320,7 @@ def half_maximum_width(x: FloatArray, response: FloatArray) -> float:
     Linear between samples; nan where a side does not fall to half. Peaks that reach half count as one.
     """
     half = 0.5 * float(response.max())
-    above = np.flatnonzero(response >= half)
-    left, right = int(above[0]), int(above[-1])
-    if left == 0 or right == len(x) - 1:
-        return float("nan")
-
-    def passes(inside: int, outside: int) -> float:
-        part = (response[inside] - half) / (response[inside] - response[outside])
-        return float(x[inside] + part * (x[outside] - x[inside]))
-
-    return passes(right, right + 1) - passes(left, left - 1)
+    return last_passage(x, response, half) + last_passage(-x[::-1], response[::-1], half)
 
 
 @record

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import platform
+from collections import Counter
 from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
@@ -45,8 +46,4 @@ def write(path: Path, number: int, seed: int, outcomes: Mapping[str, Mapping[str
 
 def totals(path: Path) -> dict[str, int]:
     """How many of all kinds together had which outcome. Raises OSError and ValueError for a file that is not one."""
-    found: dict[str, int] = {}
-    for counts in read_json(path)["outcomes"].values():
-        for outcome, count in counts.items():
-            found[outcome] = found.get(outcome, 0) + count
-    return found
+    return sum(map(Counter, read_json(path)["outcomes"].values()), Counter())

@@ -15,7 +15,7 @@ from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.panels import family, label_ends, titles
 
-from .parameters import Parameters
+from .parameters import Parameters, varied
 
 #: Height of a row of the lattice (radii).
 ROW = float(np.sqrt(3.0))
@@ -108,14 +108,14 @@ def _against_layers(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
             layers = one["layers"].values.astype(float)
             middle, half = _brackets(one, event)
             power = float(powers["exponent"].isel(series=series).sel(event=event)[0])
-            axes.errorbar(layers, middle, half, capsize=2, **_symbol(look))
+            symbol = _symbol(look)
+            axes.errorbar(layers, middle, half, capsize=2, **symbol)
             stored = one["surveyed"].values > 0
-            axes.plot(layers[stored], middle[stored], **_symbol(look) | SURVEYED)
+            axes.plot(layers[stored], middle[stored], **symbol | SURVEYED)
             ends = np.array([layers.min(), layers.max()])
             through = np.exp(np.nanmean(np.log(middle)) + power * np.log(ends / np.exp(np.log(layers).mean())))
-            colour = _symbol(look)["color"]
-            axes.plot(ends, through, color=colour, linewidth=0.9, linestyle=style.LINE_STYLES[look])
-            exponents.append((f"$N^{{{said(power)}}}$", float(ends[1]), float(through[1]), colour))
+            axes.plot(ends, through, color=symbol["color"], linewidth=0.9, linestyle=style.LINE_STYLES[look])
+            exponents.append((f"$N^{{{said(power)}}}$", float(ends[1]), float(through[1]), symbol["color"]))
         style.logarithmic(axes)
         axes.set(xlabel="layers $N$", ylabel=style.FORCE)
         _plain(axes, apart(slabs["layers"].values.tolist()))
@@ -187,22 +187,19 @@ def regions_of(powers: xr.Dataset) -> list[int]:
 
 def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
-    varied = powers["varied"].values
-    kinds = [kind for kind in APART if (varied == kind).any()]
+    differs = powers["varied"].values
+    kinds = [kind for kind in APART if (differs == kind).any()]
     figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
     for letter, axes, kind in zip("abc", panels[0], kinds, strict=False):
-        for look, series in enumerate(np.flatnonzero(varied == kind).tolist()):
+        for look, series in enumerate(np.flatnonzero(differs == kind).tolist()):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
-            x = {
-                "disks_per_layer": one["disks_per_row"] / one["layers"],
-                "stiffness_per_layer": one["normal_stiffness"] / one["layers"],
-                "confinement": one["confinement"],
-            }[kind].values
             middle, half = _brackets(one, "crossover")
             power, least, largest = powers["exponent"].isel(series=series).sel(event="crossover").values
             friction, layers = float(powers["friction"][series]), int(one["layers"][0])
             label = f"$\\mu = {friction:g}$, $N = {layers}$:\n{said(power)} ({said(least)} to {said(largest)})"
-            axes.errorbar(x, middle, half, capsize=2, label=label, **style.marked_line(look) | {"markersize": 4.5})
+            axes.errorbar(
+                varied(one, kind), middle, half, capsize=2, label=label, **style.marked_line(look) | {"markersize": 4.5}
+            )
         style.logarithmic(axes)
         axes.set(xlabel=APART[kind])
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

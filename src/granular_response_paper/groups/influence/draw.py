@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, lettered, of_group, of_scene
-from granular_response_paper.panels import material, titles, zero
+from granular_response_paper.panels import materials, titles, zero
 
 from .parameters import Parameters
 
@@ -42,24 +42,15 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )
 
 
-def _name(data: xr.Dataset, case: int) -> str:
-    return material(float(data["polydispersity"][case]), float(data["friction"][case]))
-
-
-def compared(polydispersity: np.ndarray) -> list[int]:
-    """Cases of the maps: those with the polydispersity of the last one, with and without friction."""
-    return np.flatnonzero(polydispersity == polydispersity[-1]).tolist()
-
-
 def _maps(data: xr.Dataset) -> Figure:
-    """A panel for each compared case; disks that bear nothing stay white."""
-    cases = compared(data["polydispersity"].values)
-    figure, (panels,) = style.figure(1, len(cases), width="double", height=2.4, sharey=True)
+    """A panel for each case with the polydispersity of the last one; disks that bear nothing stay white."""
+    data = data.isel(case=data["polydispersity"].values == data["polydispersity"].values[-1])
+    figure, (panels,) = style.figure(1, data.sizes["case"], width="double", height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
-    largest = float(np.nanquantile(data["total"].values[cases], 0.995))
-    medians = np.nanmedian(data["total"].values[cases], axis=1)
-    titles(panels, [f"{_name(data, case)}, median {middle:.1f}" for case, middle in zip(cases, medians, strict=True)])
-    for case, axes in zip(cases, panels, strict=True):
+    largest = float(np.nanquantile(data["total"].values, 0.995))
+    medians = np.nanmedian(data["total"].values, axis=1)
+    titles(panels, [f"{name}, median {middle:.1f}" for name, middle in zip(materials(data), medians, strict=True)])
+    for case, axes in enumerate(panels):
         one = data.isel(case=case)
         x, z = one["position"].values.T
         shown = np.flatnonzero(np.abs(x) <= REACH)
@@ -82,8 +73,8 @@ def _maps(data: xr.Dataset) -> Figure:
 def _decay(data: xr.Dataset) -> Figure:
     """(a) the difference against height over separation, (b) its power for each case."""
     figure, ((falls, powers),) = style.figure(1, 2, width="double", height=3.2)
-    cases = range(data.sizes["case"])
-    for case in cases:
+    names = materials(data)
+    for case, name in enumerate(names):
         one = data.isel(case=case, separation=0)
         ratio = (one["height"] / (one["spacing"] * float(one["separation"]))).mean("realization").values
         each = one["difference"].values
@@ -92,7 +83,7 @@ def _decay(data: xr.Dataset) -> Figure:
             continue
         mean = each.mean(axis=0)
         look = style.marked_line(case) | {"markersize": 3.5}
-        falls.plot(ratio, mean, label=_name(data, case), **look)
+        falls.plot(ratio, mean, label=name, **look)
         if len(each) > 1:
             spread = each.std(axis=0, ddof=1)
             falls.fill_between(ratio, mean - spread, mean + spread, color=look["color"], alpha=0.15, linewidth=0.0)
@@ -102,7 +93,7 @@ def _decay(data: xr.Dataset) -> Figure:
     style.logarithmic(falls)
     falls.set(xlabel="height / distance of the halves", ylabel="difference on the floor")
     falls.legend(loc="lower left")
-    for case in cases:
+    for case in range(len(names)):
         each = data["exponent"].isel(case=case, separation=0).values
         each = each[np.isfinite(each[:, 0])]
         if not len(each):
@@ -116,7 +107,7 @@ def _decay(data: xr.Dataset) -> Figure:
         powers.errorbar([case], [mean], error, capsize=3, **look)
     powers.axhline(2.0, color=style.BLACK, linewidth=0.9, linestyle=(0, (4, 2)))
     zero(powers)
-    powers.set_xticks(list(cases), [_name(data, case) for case in cases], rotation=30, ha="right")
+    powers.set_xticks(range(len(names)), names, rotation=30, ha="right")
     powers.set(ylabel="exponent of the decay")
     titles((falls, powers), ("a force and its two halves", "decay with height"))
     return figure

@@ -13,12 +13,17 @@ from matplotlib.lines import Line2D
 
 from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
-from granular_response_paper.panels import label_ends, material, outer, titles, zero
+from granular_response_paper.panels import label_ends, materials, outer, titles, zero
 
 from .parameters import Parameters
 
-#: Names of the solids in keys.
-FOLLOWING = {"affine": "affine", "suppressed": "relaxed, no rotations", "free": "relaxed"}
+#: Names in keys of how disks follow a strain.
+FOLLOWING = {"affine": "affine", "free": "relaxed"}
+
+#: Over symbols of which most packings are those of the survey.
+SURVEYED: dict[str, Any] = {
+    "linestyle": "none", "markerfacecolor": "none", "markeredgecolor": style.BLACK, "markeredgewidth": 0.8, "zorder": 3,
+}  # fmt: skip
 
 
 @style.context()
@@ -58,10 +63,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )
 
 
-def _name(data: xr.Dataset, case: int) -> str:
-    return material(float(data["polydispersity"][case]), float(data["friction"][case]))
-
-
 def _mean_and_spread(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
     """Over realizations; no spread of fewer than two."""
     count = values.notnull().sum("realization")
@@ -87,14 +88,11 @@ def _moduli(data: xr.Dataset) -> Figure:
     shape.set_ylabel(r"$a\,/\,b$, horizontal over vertical")
     shape.axhline(1.0, color=style.FAINT, linewidth=0.6, zorder=0)
     style.letters([bulk, shear, shape], place="above")
-    keys = [
-        Line2D([], [], **(style.marked_line(case) | {"linestyle": "none", "markersize": 4.5}))
-        for case in range(data.sizes["case"])
-    ]
-    plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 4.5}
+    dot: dict[str, Any] = {"linestyle": "none", "markersize": 4.5}
+    keys = [Line2D([], [], **style.marked_line(case) | dot) for case in range(data.sizes["case"])]
+    plain = dot | {"marker": "o", "color": style.BLACK}
     keys += [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
-    names = [*(_name(data, case) for case in range(data.sizes["case"])), FOLLOWING["affine"], FOLLOWING["free"]]
-    figure.legend(keys, names, loc="outside lower center", ncols=4)
+    figure.legend(keys, [*materials(data), *FOLLOWING.values()], loc="outside lower center", ncols=4)
     return figure
 
 
@@ -118,7 +116,7 @@ def _responses(data: xr.Dataset) -> Figure:
         zero(axes)
         axes.set_xlim(place[0], place[-1])
     layers = np.nanmax(data["layers"].values, axis=1)
-    titles(panels.flat, [f"{_name(data, case)}, {layers[case]:g} layers" for case in cases])
+    titles(panels.flat, [f"{name}, {most:g} layers" for name, most in zip(materials(data), layers, strict=True)])
     outer(panels, style.SCALED_POSITION, style.PRESSURE)
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
@@ -130,16 +128,15 @@ def _sizes(data: xr.Dataset) -> Figure:
     smoothing = 1, 0  # a load by itself is compared on the scale of the slab, not of the disks
     both = data["single"], data["difference"].sel(solid="free")
     for axes, apart, width in zip(panels, both, smoothing, strict=True):
-        for case in range(data.sizes["case"]):
-            mean, spread = _mean_and_spread(apart.isel(case=case, smoothing=width))
-            count = np.maximum(apart.isel(case=case, smoothing=width).notnull().sum("realization").values, 1)
+        for case, name in enumerate(materials(data)):
+            one = apart.isel(case=case, smoothing=width)
+            mean, spread = _mean_and_spread(one)
+            count = np.maximum(one.notnull().sum("realization").values, 1)
             look = style.marked_line(case) | {"markersize": 4, "capsize": 2.5}
             layers = data["layers"][case]
-            axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=_name(data, case), **look)
+            axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=name, **look)
             stored = data["surveyed"].values[case] >= 0.5 * count
-            edge = {"linestyle": "none", "markerfacecolor": "none", "zorder": 3}
-            edge |= {"markeredgecolor": style.BLACK, "markeredgewidth": 0.8}
-            axes.plot(layers[stored], mean[stored], **style.marked_line(case) | {"markersize": 4} | edge)
+            axes.plot(layers[stored], mean[stored], **style.marked_line(case) | {"markersize": 4} | SURVEYED)
         for tolerance in data["tolerance"].values:
             axes.axhline(tolerance, color=style.FAINT, linewidth=0.8, zorder=0)
         sizes = np.unique(data["layers"].values[np.isfinite(data["layers"].values)])
@@ -147,8 +144,8 @@ def _sizes(data: xr.Dataset) -> Figure:
         axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
         axes.minorticks_off()
     panels[0].set_ylabel("largest difference / largest pressure")
-    w = [str(name) for name in data["smoothing"].values]
-    titles(panels, (f"one load, $w$ = {w[smoothing[0]]}", f"mean over loads, $w$ = {w[smoothing[1]]}"))
+    one_load, mean_load = data["smoothing"].values[list(smoothing)]
+    titles(panels, (f"one load, $w$ = {one_load}", f"mean over loads, $w$ = {mean_load}"))
     handles, labels = panels[1].get_legend_handles_labels()
     figure.legend([handle[0] for handle in handles], labels, loc="outside lower center", ncols=3)
     return figure

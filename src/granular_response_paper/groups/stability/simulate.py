@@ -86,7 +86,7 @@ def _time_steps(asked: TimeSteps, seed: int) -> Study:
                 changes: dict[str, Any] = {"loads": [{"disk": "top-centre", "force": [0.0, -value]}] if value else []}
             else:
                 changes = {AXES[name][0]: value}
-            scene = time_steps.scene_of(asked.scene, changes)
+            scene = asked.scene.updated({**changes, "protocol.time_step": "auto"})  # safe to come to rest with
             tasks[name, k] = partial(time_steps.tried, scene, asked.integrators, asked.ratios, asked.steps, seed)
 
     def datasets(found: dict[Any, list[time_steps.Steps]]) -> dict[str, xr.Dataset]:

@@ -43,13 +43,18 @@ ROTATIONS: tuple[lattice.Rotations, ...] = get_args(lattice.Rotations)
 #: Further ratios at which the elastic bodies are computed, which costs next to nothing.
 ELASTIC_RATIOS = np.round(np.arange(0.025, 1.0, 0.025), 3)
 
-EVENTS = {
-    "two_peaks_end": "the first stiffness ratio, going up, at which the floor response has no two peaks each "
-    "higher than the response at x = 0 by a thousandth of the largest response",
-    "central_maximum_begins": "the stiffness ratio above which the floor response is largest at x = 0, at every ratio "
-    "of the axis",
+#: What happens at a ratio, and whether it has in what was measured there.
+EVENTS: dict[str, tuple[str, Callable[[xr.Dataset], bool]]] = {
+    "two_peaks_end": (
+        "the first stiffness ratio, going up, at which the floor response has no two peaks each "
+        "higher than the response at x = 0 by a thousandth of the largest response",
+        lambda measured: not measured["double_peaked"][0],
+    ),
+    "central_maximum_begins": (
+        "the stiffness ratio above which the floor response is largest at x = 0, at every ratio of the axis",
+        lambda measured: bool(measured["central_dip"][0] < 0.0),
+    ),
 }
-
 
 RATIO = "tangential stiffness over normal stiffness"
 
@@ -66,7 +71,7 @@ def measure(base: Scene, ratio: float, force: float) -> tuple[xr.Dataset, str]:
 
 def narrow(name: str, base: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
     """Bisect an event of ``EVENTS`` between two ratios; every evaluation settles and loads a packing."""
-    happened = _HAPPENED[name]
+    _, happened = EVENTS[name]
     found = bisect_event(
         lambda ratio: happened(measure(base, ratio, force)[0]), low, high, tolerance, at_low=False, at_high=True
     )
@@ -88,7 +93,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
     brackets |= computed(searches, "crossovers")
     events = slab.events_dataset(
-        [slab.Event(name, base.contact.friction, *brackets[name], text) for name, text in EVENTS.items()]
+        [slab.Event(name, base.contact.friction, *brackets[name], text) for name, (text, _) in EVENTS.items()]
     ).drop_vars("friction")
     events["low"].attrs["long_name"] = "stiffness ratio before the event"
 
@@ -120,18 +125,17 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a ratio of zero, where the lattice
     resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
     """
-    found = {}
-    for (r, rotations), (b, body), (k, ratio) in product(
-        enumerate(ROTATIONS), enumerate(BODIES), enumerate(ratios.tolist())
-    ):
-        if ratio > 0.0:
-            profile = _profile(lattice.moduli(Springs(0.0, 1.0, 0.0, ratio), rotations), body, x, layers, width)
+    found, error = {}, {}
+    for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist())):
+        if ratio == 0.0:
+            continue
+        springs = Springs(0.0, 1.0, 0.0, ratio)
+        moduli = lattice.moduli(springs, rotations)
+        exact = moduli.matrix()
+        error[r, k] = np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max()
+        for b, body in enumerate(BODIES):
+            profile = _profile(moduli, body, x, layers, width)
             found[r, b, k] = Elastic(profile, central_dip(x, profile))
-    error = {
-        (r, k): _moduli_error(Springs(0.0, 1.0, 0.0, ratio), rotations)
-        for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist()))
-        if ratio > 0.0
-    }
     dataset = table(found, "rotations", "body", "stiffness_ratio").assign(
         root=variable(
             "rotations",
@@ -160,32 +164,9 @@ def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: floa
     return response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
 
 
-def _moduli_error(springs: Springs, rotations: lattice.Rotations) -> float:
-    exact = lattice.moduli(springs, rotations).matrix()
-    return float(np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max())
-
-
-def _two_peaks_ended(measured: xr.Dataset) -> bool:
-    return not measured["double_peaked"][0]
-
-
-def _largest_at_centre(measured: xr.Dataset) -> bool:
-    return bool(measured["central_dip"][0] < 0.0)
-
-
-_HAPPENED: dict[str, Callable[[xr.Dataset], bool]] = {
-    "two_peaks_end": _two_peaks_ended,
-    "central_maximum_begins": _largest_at_centre,
-}
-
-
 def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> dict[str, tuple[float, float]]:
     """Where on the axis each event lies."""
-    ended = [_two_peaks_ended(one) for one in measured]
-    central = [_largest_at_centre(one) for one in measured]
+    ended, central = ([happened(one) for one in measured] for _, happened in EVENTS.values())
     # the last stretch of ratios with the maximum at the centre; there may be others below it
     begun = [all(central[k:]) for k in range(len(central))]
-    return {
-        "two_peaks_end": slab.first_change(ratios, ended),
-        "central_maximum_begins": slab.first_change(ratios, begun),
-    }
+    return dict(zip(EVENTS, (slab.first_change(ratios, ended), slab.first_change(ratios, begun)), strict=True))
