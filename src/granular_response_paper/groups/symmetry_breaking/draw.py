@@ -84,29 +84,12 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
         for column, step in enumerate(steps):
             chosen = (runs["ramp_time"].values == ramp) & (runs["time_step"].values == step)
             curve = runs.isel(run=np.flatnonzero(chosen)).sortby("force")
-            colour = style.COLOURS[row % len(style.COLOURS)]
-            panel.plot(
-                curve["force"],
-                curve["asymmetry"],
-                color=colour,
-                linestyle="-" if column == 0 else "none",
-                linewidth=0.9,
-                marker=style.MARKERS[row % len(style.MARKERS)],
-                markersize=3.2 if column == 0 else 6.0,
-                markerfacecolor=colour if column == 0 else "none",
-                markeredgewidth=0.8,
-                label=rf"ramp {ramp:g}, step {step:g}",
-            )
-    size = float(held["displacement"])
-    panel.plot(
-        held["force"],
-        held["asymmetry"],
-        color=style.BLACK,
-        linestyle="none",
-        marker="x",
-        markersize=4.5,
-        label=f"path, then displaced by {_power(size)}",
-    )
+            hollow = {"linestyle": "none", "markersize": 6.0, "markerfacecolor": "none"} if column else {}
+            look = style.marked_line(row) | {"markersize": 3.2, "markeredgewidth": 0.8} | hollow
+            panel.plot(curve["force"], curve["asymmetry"], label=rf"ramp {ramp:g}, step {step:g}", **look)
+    cross: dict[str, Any] = {"color": style.BLACK, "linestyle": "none", "marker": "x", "markersize": 4.5}
+    text = f"path, then displaced by {_power(float(held['displacement']))}"
+    panel.plot(held["force"], held["asymmetry"], label=text, **cross)
     panel.set_yscale("log")
     style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.8)
     panel.set(xlabel=style.FORCE, ylabel="asymmetry of the floor response")
