@@ -38,8 +38,8 @@ FIG21_WIDTH, MOST_FORCES = 6.0, 4
 KEYS, DEEP = (20.0, 1.0), 4.0
 
 #: Of the keys over the panels of Fig. 21.
-OVER: dict[str, float] = {
-    "fontsize": 7.5, "handlelength": 1.9, "handletextpad": 0.3, "columnspacing": 0.7, "borderpad": 0.0,
+OVER: dict[str, Any] = {
+    "loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 7.5, "handlelength": 1.9, "handletextpad": 0.3, "columnspacing": 0.7, "borderpad": 0.0,
     "borderaxespad": 0.2,
 }  # fmt: skip
 
@@ -334,8 +334,8 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         axes.fill_between(x, mean - error, mean + error, color=look["color"], alpha=0.25, linewidth=0.0)
         axes.plot(x, mean, **look, linewidth=1.1, label=label)
     zero(axes)
-    handles, names = (found[-len(steps) :] for found in axes.get_legend_handles_labels())
-    axes.legend(handles, names, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(steps), **OVER)
+    handles, names = axes.get_legend_handles_labels()
+    axes.legend(handles[-len(steps) :], names[-len(steps) :], ncols=len(steps), **OVER)
 
 
 def _realizations(one: xr.Dataset) -> np.ndarray:

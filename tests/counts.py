@@ -15,8 +15,6 @@ from granular_response.inputs import read_json
 from granular_response.store import atomic
 from granular_response.sweeps.keys import sources
 
-_PACKAGE = "granular_response_paper"
-
 
 def arguments(what: str, seed: int) -> argparse.Namespace:
     """``number``, ``seed`` and ``output`` of a command that tries as many as it is asked to."""
@@ -38,7 +36,7 @@ def write(path: Path, number: int, seed: int, outcomes: Mapping[str, Mapping[str
         "seed": seed,
         "outcomes": {kind: dict(sorted(counts.items())) for kind, counts in sorted(outcomes.items())},
         "package_version": __version__,
-        "sources": sources("", _PACKAGE),
+        "sources": sources("", "granular_response_paper"),
         "versions": {"python": platform.python_version(), **versions},
     }
     atomic.write_bytes(path, (json.dumps(made, indent=1) + "\n").encode())
