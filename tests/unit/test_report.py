@@ -26,11 +26,18 @@ from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.stored import ClaimsError
 from granular_response_paper.groups.sensitivity import simulate as sensitivity
-from granular_response_paper.report import against, benchmarks, beyond, contents, explorer, pictures, readings
+from granular_response_paper.report import against, benchmarks, explorer, pictures, readings
 from granular_response_paper.report.typeset import typeset
 
 ROOT = Path(__file__).parents[2]
 FORCES = (0.0, 1.0, 4.0, 90.0)
+#: The documents with generated lines, by their kind.
+DOCUMENTS = {
+    "notes": "docs/reproduction-notes.md",
+    "figures": "docs/figures.md",
+    "beyond": "docs/beyond.md",
+    "data": "data/README.md",
+}
 
 
 def states(friction):
@@ -283,37 +290,12 @@ def test_the_notes_get_the_table_and_are_the_same_every_time(tmp_path):
     assert notes.read_text() == text
 
 
-def test_the_notes_hold_the_stored_sensitivities():
-    stored = ROOT / "data" / "sensitivity.nc"
-    if not stored.exists():
-        pytest.skip("data/sensitivity.nc is not there yet: dvc repro simulate@sensitivity")
-    text = (ROOT / "docs" / "reproduction-notes.md").read_text()
-    fresh = generated.replace(text, readings.BLOCK, readings.markdown(store.read(stored)))
-    assert fresh == text, "make quote"
-
-
-def test_the_document_holds_the_parameters_of_the_stored_datasets():
-    missing = [group for group in {row.group for row in against.ROWS} if not (ROOT / "data" / f"{group}.nc").exists()]
-    if missing:
-        pytest.skip(f"not simulated yet: {', '.join(sorted(missing))}")
-    text = (ROOT / "docs" / "figures.md").read_text()
-    assert generated.replace(text, against.BLOCK, against.markdown(ROOT / "data")) == text, "make quote"
-
-
-def test_the_page_of_the_data_has_every_stored_dataset():
-    text = (ROOT / "data" / "README.md").read_text()
-    assert set(re.findall(r"^\| `(\w+)/", text, re.MULTILINE)) == set(groups.NAMES)
-    for row in contents.markdown(ROOT / "data").splitlines():  # of those that are there
-        assert row in text, "make quote"
-
-
-@pytest.mark.parametrize("group", beyond.BLOCKS)
-def test_the_document_beyond_the_paper_holds_the_stored_tables(group):
-    stored = ROOT / "data" / f"{group}.nc"
-    if not stored.exists():
-        pytest.skip(f"not simulated yet: {group}")
-    text = (ROOT / "docs" / "beyond.md").read_text()
-    assert generated.replace(text, group, beyond.BLOCKS[group](store.read(stored))) == text, "make quote"
+@pytest.mark.parametrize(("kind", "block"), [(kind, block) for kind, all_ in report.BLOCKS.items() for block in all_])
+def test_the_documents_hold_what_is_stored(kind, block):
+    if missing := [group for group in groups.NAMES if not (ROOT / "data" / f"{group}.nc").exists()]:
+        pytest.skip(f"not simulated yet: {', '.join(missing)}")
+    text = (ROOT / DOCUMENTS[kind]).read_text()
+    assert generated.replace(text, block, report.BLOCKS[kind][block](ROOT / "data")) == text, "make quote"
 
 
 def test_every_figure_with_parameters_stands_beside_its_caption():

@@ -39,8 +39,8 @@ KEYS, DEEP = (20.0, 1.0), 4.0
 
 #: Of the keys over the panels of Fig. 21.
 OVER: dict[str, Any] = {
-    "loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 7.5, "handlelength": 1.9, "handletextpad": 0.3, "columnspacing": 0.7, "borderpad": 0.0,
-    "borderaxespad": 0.2,
+    "loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 7.5, "handlelength": 1.9, "handletextpad": 0.3,
+    "columnspacing": 0.7, "borderpad": 0.0, "borderaxespad": 0.2,
 }  # fmt: skip
 
 START_NAMES = {
