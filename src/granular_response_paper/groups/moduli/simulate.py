@@ -33,6 +33,7 @@ from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, Slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.moduli.parameters import Parameters
+from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, labels, record, stacked, table
 from granular_response_paper.survey.packings import measured
 from granular_response_paper.tasks import computed
@@ -277,15 +278,12 @@ def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, 
 def task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
     """One of these packings."""
     scene = parameters.base.updated(
-        {
+        material(one.polydispersity, one.realization, one.friction)
+        | {
             "packing.sides": "periodic",
             "packing.layers": one.layers,
             "packing.disks_per_row": parameters.disks_per_layer * one.layers,
-            "packing.polydispersity": one.polydispersity,
             "packing.lattice_constant": TOUCHING_LARGEST,
-            "packing.realization": one.realization,
-            "contact.friction": one.friction,
-            "wall.friction": one.friction,
         }
     )
     return partial(compute, scene, parameters.margin, parameters.width, parameters.wide)

@@ -34,6 +34,7 @@ from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Slab as ElasticSlab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.peak_width.parameters import LEAST_REALIZATIONS, Case, Parameters
+from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, columns, labels, record, table
 from granular_response_paper.survey.crossover import folded, weights
 from granular_response_paper.survey.packings import measured
@@ -195,14 +196,11 @@ def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
     """One slab of a case."""
     scale = slab.layers / asked.reference_layers
     scene = asked.base.updated(
-        {
+        material(slab.polydispersity, slab.realization, slab.friction)
+        | {
             "packing.layers": slab.layers,
             "packing.disks_per_row": asked.disks_per_layer * slab.layers + 1,
-            "packing.polydispersity": slab.polydispersity,
-            "packing.realization": slab.realization,
             "contact.normal_stiffness": asked.base.contact.normal_stiffness * scale,
-            "contact.friction": slab.friction,
-            "wall.friction": slab.friction,
             "preparation.gravity": slab.gravity,
         }
     )
