@@ -25,7 +25,7 @@ from granular_response.observe.events import bisect_event
 from granular_response.observe.peaks import central_dip
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.result import FORCE, LENGTH
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
@@ -34,7 +34,7 @@ from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
-from granular_response_paper.records import axes, column, record, stacked, table
+from granular_response_paper.records import axes, column, record, stacked, table, variables
 from granular_response_paper.tasks import computed
 
 BODIES: tuple[Body, ...] = get_args(Body)
@@ -98,10 +98,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     events["low"].attrs["long_name"] = "stiffness ratio before the event"
 
     response = slab.measured_along("stiffness_ratio", measured).assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
-    response["force"] = variable((), force, f"applied force {FORCE}")
-    response["methods"] = variable(
-        "stiffness_ratio", [method for _, method in results.values()], "method that found the loaded state"
+    methods = [method for _, method in results.values()]
+    further = variables(
+        force=("", force, f"applied force {FORCE}"),
+        methods=("stiffness_ratio", methods, "method that found the loaded state"),
     )
+    response = response.assign(further)
     packing = base.packing.build()
     elastic = elastic_bodies(
         np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
@@ -136,24 +138,19 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
         for b, body in enumerate(BODIES):
             profile = _profile(moduli, body, x, layers, width)
             found[r, b, k] = Elastic(profile, central_dip(x, profile))
-    dataset = table(found, "rotations", "body", "stiffness_ratio").assign(
-        root=variable(
-            "rotations",
-            [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
-            "k_2t/k_2n at which r of Sec. V.C is 0",
-        ),
-        moduli_error=variable(
-            ("rotations", "stiffness_ratio"),
-            stacked(error),
-            "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest",
-        ),
+    roots = [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS]
+    off = "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest"
+    further = variables(
+        root=("rotations", roots, "k_2t/k_2n at which r of Sec. V.C is 0"),
+        moduli_error=("rotations stiffness_ratio", stacked(error), off),
     )
-    place = variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}")
-    return dataset.assign_coords(
-        axes(stiffness_ratio=(ratios, RATIO))
-        | {"x": place}
-        | axes(body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn"))
+    coordinates = variables(
+        stiffness_ratio=("stiffness_ratio", ratios, RATIO),
+        x=("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
+        body=("body", BODIES, "elastic body that carries the force"),
+        rotations=("rotations", ROTATIONS, "whether the disks turn"),
     )
+    return table(found, "rotations", "body", "stiffness_ratio").assign(further).assign_coords(coordinates)
 
 
 def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: float) -> FloatArray:

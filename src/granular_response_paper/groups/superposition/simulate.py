@@ -25,11 +25,11 @@ from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
+from granular_response.store.result import FORCE, LENGTH, common_candidates
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.superposition.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.slab_response import by_motion, linear_end
 from granular_response_paper.tasks import computed
 
@@ -194,18 +194,14 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         distance=(2.0 * np.array(offsets), apart),
         force=(asked.forces, f"each of the two applied forces {FORCE}"),
     )
-    responses = table({place: pair.responses for place, pair in pairs.items()}, "realization", "distance").assign(
-        x=variable(
-            ("realization", "floor_disk"),
-            [singles[r].x for r in with_pairs],
-            f"rest position of a floor disk from the middle disk on top {LENGTH}",
-        ),
-        load_x=variable(
-            ("realization", "distance", "side"),
-            [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs],
-            f"rest position of the loaded disks from the middle disk on top {LENGTH}",
-        ),
+    floor_x = [singles[r].x for r in with_pairs]
+    load_x = [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs]
+    from_middle = f"from the middle disk on top {LENGTH}"
+    places = variables(
+        x=("realization floor_disk", floor_x, f"rest position of a floor disk {from_middle}"),
+        load_x=("realization distance side", load_x, f"rest position of the loaded disks {from_middle}"),
     )
+    responses = table({place: pair.responses for place, pair in pairs.items()}, "realization", "distance")
     further = axes(
         floor_disk=(np.flatnonzero(packing.row == 0), "index of the floor disk"),
         part=(PARTS, "which of the forces act"),
@@ -216,7 +212,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     linear = table(list(singles.values()), "realization")
     linear.attrs.update(width=asked.width, tolerance=asked.tolerance)
     datasets = {
-        "responses": responses.assign_coords(coordinates | further),
+        "responses": responses.assign(places).assign_coords(coordinates | further),
         "errors": errors.assign_coords(coordinates | depth),
         "linear_range": linear.assign_coords(axes(force=(asked.single_forces, f"force on the middle disk {FORCE}"))),
     }

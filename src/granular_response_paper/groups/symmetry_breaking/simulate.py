@@ -31,7 +31,7 @@ from granular_response.sweeps.rest import rest_of
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.symmetry_breaking.parameters import Copies, Parameters, Protocol
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
@@ -110,20 +110,15 @@ def held(scene: Scene, rest: State, forces: tuple[float, ...], displacement: flo
     measures = Measures(path)
     moved = [np.abs(after.position - before.position).max() for before, after in zip(states, settled, strict=True)]
     branch = slab.measured(measures, states)
-    return (
-        slab.measured_along("force", [slab.measured(measures, settled)])
-        .assign(
-            branch_asymmetry=variable(
-                "force", branch["asymmetry"].values, "asymmetry of the floor response before the displacement"
-            ),
-            branch_response=variable(
-                ("force", "floor_disk"), branch["floor_response"].values, "floor response before the displacement"
-            ),
-            moved=variable("force", moved, f"largest distance from the place before {LENGTH}"),
-            displacement=variable((), displacement, f"largest random displacement {LENGTH}"),
-        )
-        .assign_coords(axes(force=(forces, APPLIED)))
+    asymmetry, response = branch["asymmetry"].values, branch["floor_response"].values
+    further = variables(
+        branch_asymmetry=("force", asymmetry, "asymmetry of the floor response before the displacement"),
+        branch_response=("force floor_disk", response, "floor response before the displacement"),
+        moved=("force", moved, f"largest distance from the place before {LENGTH}"),
+        displacement=("", displacement, f"largest random displacement {LENGTH}"),
     )
+    found = slab.measured_along("force", [slab.measured(measures, settled)]).assign(further)
+    return found.assign_coords(axes(force=(forces, APPLIED)))
 
 
 def _displaced(problem: Problem, state: State, displacement: float) -> State:
@@ -223,11 +218,12 @@ def _copies_dataset(copies: dict[str, xr.Dataset], force: float) -> xr.Dataset:
     response = dataset["floor_response"].values
     largest = response[0].max()
     text = "largest difference of the floor response to {} of the first copy, per largest response"
+    one, other = (np.abs(image - response[0]).max(axis=1) / largest for image in (response, response[:, ::-1]))
     return dataset.assign(
-        name=variable("copy", list(copies), "how the copy differs from the packing"),
-        force=variable((), force, APPLIED),
-        difference=variable("copy", np.abs(response - response[0]).max(axis=1) / largest, text.format("that")),
-        mirror_difference=variable(
-            "copy", np.abs(response[:, ::-1] - response[0]).max(axis=1) / largest, text.format("the mirror image")
-        ),
+        variables(
+            name=("copy", list(copies), "how the copy differs from the packing"),
+            force=("", force, APPLIED),
+            difference=("copy", one, text.format("that")),
+            mirror_difference=("copy", other, text.format("the mirror image")),
+        )
     )
