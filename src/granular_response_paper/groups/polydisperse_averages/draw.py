@@ -82,14 +82,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "fig02_polydisperse_forces": of_scene(
                 scene, force=picture.force, frictions=picture.friction, polydispersity=picture.polydispersity
             ),
-            "fig19_disordered_response": of_scene(
-                scene,
-                force=single.force,
-                frictions=single.frictions,
-                polydispersity=single.polydispersity,
-                realizations=single.realizations,
-                width=single.width,
-            ),
+            "fig19_disordered_response": of_scene(scene, **single.model_dump()),
             "fig20_disordered_linear_range": of_scene(
                 scene,
                 force=linear.forces,
