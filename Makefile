@@ -82,7 +82,7 @@ fuzz: setup ## Try every property on new random examples (EXAMPLES=5000 of each;
 	GRANULAR_RESPONSE_FUZZ=$(EXAMPLES) "$(BIN)/python" -m pytest -m hypothesis -n $(JOBS)
 
 broken: setup ## Cut and change files of all formats at random, BROKEN=10000 of them, and see what reads them (ten minutes)
-	"$(BIN)/python" tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
+	PYTHONPATH=tests "$(BIN)/python" tests/integration/broken_files.py $(BROKEN) --output tests/data/broken_files.json
 
 scenes: setup ## Solve and check SCENES=5000 random scenes, half of them of disks that differ by many decades (hours)
 	"$(BIN)/python" -W ignore tests/unlike_scenes.py $(SCENES) --output tests/data/random_scenes.json

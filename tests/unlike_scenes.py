@@ -9,10 +9,10 @@ from collections import Counter
 from functools import partial
 from pathlib import Path
 
+import counts
 import numpy as np
 
 from granular_response.sweeps.tasks import map_tasks
-from granular_response_paper.trials import counts
 from granular_response_paper.trials.random_scenes import Trial, log_uniform, run, thrown
 
 #: Ratios of masses and of radii.

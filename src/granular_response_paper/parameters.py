@@ -102,6 +102,17 @@ class SurveyedGroup(SceneGroup):
 UNIT_LOAD = Scene().updated({"loads.0.force": [0.0, -1.0]})
 
 
+#: Keys of a scene that groups decide together: how large a packing is, and its disorder and friction.
+SIZE = ("packing.layers", "packing.disks_per_row")
+MATERIAL = ("packing.polydispersity", "packing.realization", "contact.friction", "wall.friction")
+
+
+def material(polydispersity: float, realization: int, friction: float, walls: float | None = None) -> dict[str, float]:
+    """Changes to a scene: the values of :data:`MATERIAL`; ``walls`` None is as much friction as between disks."""
+    given = (polydispersity, realization, friction, friction if walls is None else walls)
+    return dict(zip(MATERIAL, given, strict=True))
+
+
 def over(base: Scene, *decided: str) -> BeforeValidator:
     """Validates a partial scene: changes to ``base``, by keys of any depth.
 

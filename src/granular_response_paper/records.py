@@ -106,6 +106,11 @@ def labels(dimension: str, of: Iterable[Any], /, **long_names: str) -> dict[str,
     }
 
 
+def variables(**given: tuple[str, ArrayLike, str]) -> dict[str, xr.Variable]:
+    """Variables by name: dimensions with spaces between them, values and long name."""
+    return {name: variable(dims.split(), values, text) for name, (dims, values, text) in given.items()}
+
+
 def axes(**given: tuple[Iterable[Any], str]) -> dict[str, xr.Variable]:
     """Coordinates along their own dimensions: by name, values and long name."""
     return {

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from granular_response.observe import events, network, peaks
 from granular_response.observe.floor import floor_disks, floor_response, interior_mask, smoothed_response
 from granular_response.observe.teardrop import OpenRegion, teardrop
+from granular_response.observe.widths import last_passage
 from granular_response.scene import Packing, Scene
 from granular_response.solvers.path import follow
 from granular_response.solvers.problem import Problem
@@ -36,7 +37,7 @@ from granular_response.store.result import (
     variable,
 )
 from granular_response.sweeps.rest import rest_state
-from granular_response_paper.records import column, record, table
+from granular_response_paper.records import column, record, table, variables
 
 #: A contact is mobilised when its tangential force is within one of these fractions of the Coulomb limit.
 #: Whether it slides is lost in the last vibrations before rest, which take it off the limit by a little.
@@ -321,16 +322,7 @@ def half_maximum_width(x: FloatArray, response: FloatArray) -> float:
     Linear between samples; nan where a side does not fall to half. Peaks that reach half count as one.
     """
     half = 0.5 * float(response.max())
-    above = np.flatnonzero(response >= half)
-    left, right = int(above[0]), int(above[-1])
-    if left == 0 or right == len(x) - 1:
-        return float("nan")
-
-    def passes(inside: int, outside: int) -> float:
-        part = (response[inside] - half) / (response[inside] - response[outside])
-        return float(x[inside] + part * (x[outside] - x[inside]))
-
-    return passes(right, right + 1) - passes(left, left - 1)
+    return last_passage(x, response, half) + last_passage(-x[::-1], response[::-1], half)
 
 
 @record
@@ -442,40 +434,43 @@ def events_dataset(found: Sequence[Event]) -> xr.Dataset:
     return table(found, "event", kind=Event)
 
 
-def states_picture(states: Sequence[State], problem: Problem, dimension: str = "state") -> xr.Dataset:
-    """What pictures of the contact network need of ``states``."""
+def states_picture(
+    states: Sequence[State], problem: Problem, dimension: str = "state", of: Sequence[str] | None = PICTURE
+) -> xr.Dataset:
+    """What pictures of the contact network need of ``states``: the variables ``of`` them or, for None, all."""
     packing = problem.packing
     states = common_candidates(states, packing.radius)
-    dataset = states_dataset(states, dimension)[list(PICTURE)]
+    dataset = states_dataset(states, dimension)
+    dataset = dataset[list(of)] if of else dataset
     dataset["axis"].attrs.update(long_name="axis labels", units="1")
     force = np.array([abs(state.load_factor) for state in states])
-    dataset["force"] = variable(dimension, force, f"applied force {FORCE}")
-    dataset["radius"] = variable("disk", packing.radius, f"disk radius {LENGTH}")
-    dataset["width"] = variable((), packing.width, f"distance of the side walls {LENGTH}")
-    dataset["loaded_disk"] = variable((), int(problem.load_disk[0]), "index of the loaded disk")
-    return dataset
+    return dataset.assign(
+        variables(
+            force=(dimension, force, f"applied force {FORCE}"),
+            radius=("disk", packing.radius, f"disk radius {LENGTH}"),
+            width=("", packing.width, f"distance of the side walls {LENGTH}"),
+            loaded_disk=("", int(problem.load_disk[0]), "index of the loaded disk"),
+        )
+    )
 
 
 def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
     """Everything measured on loaded states of one material, along ``state``."""
     data = table([measures.scalars(state) for state in states], "state")
-    data = data.assign(certificates_dataset(states).variables)
-    data["floor_response"] = variable(
-        ("state", "floor_disk"),
-        np.stack([measures.response(state) for state in states]),
-        "vertical floor force that the load adds, per applied force",
+    response = np.stack([measures.response(state) for state in states])
+    mobilised = np.array([measures.mobilised(state) for state in states], dtype=float)
+    near = "contacts of disks whose tangential force is within a fraction of the Coulomb limit"
+    further = variables(
+        floor_response=("state floor_disk", response, "vertical floor force that the load adds, per applied force"),
+        mobilised_contacts=("state margin", mobilised, near),
     )
-    data["mobilised_contacts"] = variable(
-        ("state", "margin"),
-        np.array([measures.mobilised(state) for state in states], dtype=float),
-        "contacts of disks whose tangential force is within a fraction of the Coulomb limit",
+    coordinates = variables(
+        floor_disk=("floor_disk", measures.disks, "index of the floor disk"),
+        x=("floor_disk", measures.x, f"rest position from the loaded disk {LENGTH}"),
+        interior=("floor_disk", measures.interior.astype(np.int8), "1 for disks away from the side walls"),
+        margin=("margin", MARGINS, "fraction below the Coulomb limit"),
     )
-    return data.assign_coords(
-        floor_disk=variable("floor_disk", measures.disks, "index of the floor disk"),
-        x=variable("floor_disk", measures.x, f"rest position from the loaded disk {LENGTH}"),
-        interior=variable("floor_disk", measures.interior.astype(np.int8), "1 for disks away from the side walls"),
-        margin=variable("margin", MARGINS, "fraction below the Coulomb limit"),
-    )
+    return data.assign(certificates_dataset(states).variables).assign(further).assign_coords(coordinates)
 
 
 def measured_dataset(dims: tuple[str, ...], parts: Sequence[tuple[Any, xr.Dataset]], shape: tuple) -> xr.Dataset:

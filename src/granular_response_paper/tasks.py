@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any, TypeVar
 
@@ -27,10 +28,6 @@ def computed(
     """
     order = sorted(tasks, key=work, reverse=True) if work else list(tasks)
     alone = 1 if len(order) == 1 else None  # in this process: one task is not worth another
-    results = map_tasks(_call, [tasks[place] for place in order], workers=alone, what=what)
+    results = map_tasks(operator.call, [tasks[place] for place in order], workers=alone, what=what)
     found = dict(zip(order, results, strict=True))
     return {place: found[place] for place in tasks}
-
-
-def _call(task: Callable[[], Outcome]) -> Outcome:
-    return task()

@@ -1,8 +1,7 @@
 """Files of every kind that others may hand over, cut and changed at random, and what the commands make of them.
 
-``python tests/integration/broken_files.py 10000`` tries so many and prints how many had which outcome (``make
-broken``). A broken file is refused in one line, or what it still says is taken: never a traceback, a quiet change, or
-more time or memory than a file of this size may cost.
+``make broken`` tries thousands and prints how many had which outcome. A broken file is refused in one line, or what it
+still says is taken: never a traceback, a quiet change, or more time or memory than a file of this size may cost.
 """
 
 from __future__ import annotations
@@ -25,6 +24,7 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+import counts
 import numpy as np
 import xarray as xr
 
@@ -36,7 +36,6 @@ from granular_response.solvers.solution import solve_scene
 from granular_response.store import files as store
 from granular_response.store.export import export
 from granular_response.store.result import to_dataset
-from granular_response_paper.trials import counts
 
 #: Seconds of processor time and bytes of memory, beyond what the libraries take, of one command on one file.
 MOST_SECONDS, MOST_MEMORY = 30, 2 * 2**30

@@ -8,7 +8,7 @@ import reduced
 
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
-from granular_response_paper.groups.crossover_scaling import draw, simulate
+from granular_response_paper.groups.crossover_scaling import simulate
 from granular_response_paper.groups.crossover_scaling.claims import CLAIMS
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters
 from granular_response_paper.groups.frictionless_crossover import simulate as frictionless
@@ -138,13 +138,6 @@ def test_powers_of_the_continuum_are_known_where_there_is_one_scale(parameters):
     known = {name: simulate.continuum(one) for name, one in series.items() if one.varied == "layers"}
     assert known == {"constant confinement": 1.0, "walls": 1.0, "friction": 2.0}
     assert simulate.continuum(series["friction"].model_copy(update={"confined": "constant"})) is None
-
-
-def test_figures_have_their_panels_and_captions(datasets, parameters, looks_as_stored):
-    figures = draw.draw(datasets)
-    looks_as_stored(figures)
-    assert set(figures) == set(draw.captions(datasets, parameters))
-    assert [len(figure.axes) for figure in figures.values()] == [4, 2, 3]
 
 
 def test_the_document_gets_a_line_for_each_series_of_layers(datasets):

@@ -6,7 +6,7 @@ import xarray as xr
 
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
-from granular_response_paper.groups.influence import draw, simulate
+from granular_response_paper.groups.influence import simulate
 from granular_response_paper.groups.influence.claims import CLAIMS
 
 
@@ -37,13 +37,6 @@ def test_the_power_of_a_power_law_is_found():
     height = np.linspace(1.0, 30.0, 30)
     assert simulate.decay(height, 3.0 * height**-1.7, 2.0, (2.0, 8.0)) == pytest.approx([1.7] * 3)
     assert np.isnan(simulate.decay(height, height**-1.7, 2.0, (2.0, 2.5))).all()
-
-
-def test_figures_have_their_panels(datasets, looks_as_stored):
-    figures = draw.draw(datasets)
-    looks_as_stored(figures)
-    assert set(figures) == {"influence_map", "influence_saint_venant"}
-    assert len(figures["influence_saint_venant"].axes) == 2
 
 
 @pytest.mark.parametrize(

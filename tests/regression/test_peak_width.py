@@ -5,7 +5,6 @@ import pytest
 
 from granular_response_paper.claims.claim import Data
 from granular_response_paper.claims.verdict import judge
-from granular_response_paper.groups.peak_width import draw
 from granular_response_paper.groups.peak_width.claims import CLAIMS
 
 SMALL, LARGE, DISORDERED = 0, 1, 2
@@ -52,14 +51,6 @@ def test_intervals_hold_the_power(datasets):
     value = floors["power"].isel(fit=0).values
     assert (low <= value).all() and (value <= high).all()
     assert (low < high).all()
-
-
-def test_figures_have_their_panels(datasets, looks_as_stored):
-    figures = draw.draw(datasets)
-    looks_as_stored(figures)
-    assert set(figures) == {"peak_width_depth", "peak_width_powers"}
-    assert len(figures["peak_width_depth"].axes) == 6
-    assert len(figures["peak_width_powers"].axes) == 2
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,10 @@ import pytest
 import reduced
 import xarray as xr
 
-from granular_response.plot import style
 from granular_response.store import files as store
 from granular_response.sweeps.resources import using
 from granular_response_paper import ensembles
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, realizations
-from granular_response_paper.groups.polydisperse_averages import draw as figures
 from granular_response_paper.groups.polydisperse_averages import simulate as study
 
 PARAMETERS = reduced.parameters("polydisperse_averages")
@@ -91,24 +89,6 @@ def test_collapse_and_failure_are_reported() -> None:
     failed = realizations.realize(scene.updated({"protocol.maximum_steps": 100}), (1.0, 2.0), 1e-3)
     assert failed.outcome.tolist() == [FAILED, NOT_REACHED]
     assert failed.message.startswith("gravity: ")
-
-
-def test_figures(datasets, looks_as_stored) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == [
-        "fig02_polydisperse_forces",
-        "fig19_disordered_response",
-        "fig20_disordered_linear_range",
-        "fig21_disordered_forces",
-        "packings",
-    ]
-    panel = drawn["fig19_disordered_response"].axes[1]  # with friction, largest disks touching
-    x = datasets["individual"]["x"].values
-    rows = ensembles.smoothed(datasets["ensembles"].isel(case=2), x, 3.0)[:, 2]
-    rows = rows[np.isfinite(rows[:, 0])]
-    (mean,) = [line for line in panel.lines if line.get_color() == style.BLACK]
-    np.testing.assert_allclose(mean.get_ydata(), rows.mean(axis=0))
-    looks_as_stored(drawn)
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from granular_response_paper.groups.slab_comparison import draw as figures
-
 
 def test_distances(datasets, num_regression) -> None:
     slabs = datasets["slabs"]
@@ -39,12 +37,3 @@ def test_profiles_are_padded_to_the_longest_row(datasets) -> None:
         x = slabs["x"].values[k, :count]
         np.testing.assert_allclose(x, -x[::-1], atol=1e-12)
         np.testing.assert_allclose(slabs["elastic"].values[k, :count].sum(), 1.0, atol=2e-3)
-
-
-def test_figure(datasets, looks_as_stored) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == ["fig01b_slab_comparison"]
-    profiles, distances = drawn["fig01b_slab_comparison"].axes
-    np.testing.assert_array_equal(distances.lines[0].get_ydata(), datasets["slabs"]["distance"].values[:3])
-    assert [text.get_text() for text in profiles.get_legend().get_texts()][2] == "elastic slab, smooth"
-    looks_as_stored(drawn)

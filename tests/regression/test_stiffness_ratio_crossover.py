@@ -5,7 +5,6 @@ import pytest
 import reduced
 
 from granular_response.theory import crossover
-from granular_response_paper.groups.stiffness_ratio_crossover import draw as figures
 
 PARAMETERS = reduced.parameters("stiffness_ratio_crossover")
 
@@ -42,14 +41,3 @@ def test_elastic_bodies_turn_where_theory_says(datasets) -> None:
     assert float(elastic["moduli_error"].max()) < 1e-13
     shares = elastic["profile"].sel(body="smooth floor").isel(stiffness_ratio=slice(1, None)).sum("floor_disk")
     np.testing.assert_allclose(shares, 1.0, atol=1e-4)  # disks at rest are not quite 2 apart
-
-
-def test_figures(datasets, looks_as_stored) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == ["fig10_stiffness_ratio", "fig11_spring_model"]
-    simulated, _, dips = drawn["fig10_stiffness_ratio"].axes[:3]
-    curves = {line.get_label(): line.get_ydata() for line in simulated.lines}
-    np.testing.assert_array_equal(curves["0.2"], datasets["response"]["floor_response"].sel(stiffness_ratio=0.2))
-    marked = next(line for line in dips.lines if line.get_label() == "simulation")
-    np.testing.assert_array_equal(marked.get_ydata(), datasets["response"]["central_dip"])
-    looks_as_stored(drawn)

@@ -6,7 +6,6 @@ import reduced
 
 from granular_response.scene import Scene
 from granular_response.sweeps.rest import rest_of
-from granular_response_paper.groups.superposition import draw as figures
 from granular_response_paper.groups.superposition import simulate as study
 
 PARAMETERS = reduced.parameters("superposition")
@@ -97,14 +96,3 @@ def test_the_size_of_an_error(both, rms, largest) -> None:
 
 def test_no_force_has_no_relative_error() -> None:
     assert np.isnan(study.superposition_error(np.ones(2), np.ones(2), np.zeros(2))).all()
-
-
-def test_figures(datasets, looks_as_stored) -> None:
-    drawn = figures.draw(datasets)
-    assert list(drawn) == ["fig23_superposition", "fig24_superposition", "fig24b_superposition_error"]
-    panels = drawn["fig24_superposition"].axes
-    lines = {line.get_label(): line.get_ydata() for line in panels[1].lines}
-    shown = datasets["responses"]["floor_response"].isel(realization=0, distance=1).sel(force=1.0)
-    np.testing.assert_array_equal(lines["(Left+Right)"], shown.sel(part="both"))
-    np.testing.assert_array_equal(lines["(Left)+(Right)"], shown.sel(part="left") + shown.sel(part="right"))
-    looks_as_stored(drawn)

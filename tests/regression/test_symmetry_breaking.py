@@ -38,8 +38,7 @@ def test_where_a_further_time_step_disagrees_all_forces_are_searched(datasets, g
     parameters = study.Parameters(**PARAMETERS)
     protocol = parameters.protocols[0]
     rest = study.rest_of(protocol.scene(parameters.scene, 5e-4))
-    given = parameters.tolerance, parameters.asymmetry
-    found = study.bracket(parameters.scene, rest, protocol, *given, 5e-4, guess)
+    found = study.bracket(parameters, rest, protocol, 5e-4, guess)
     assert set(guess) & set(found.forces)  # tried
     table = datasets["brackets"]
     assert (found.event.low, found.event.high) == (float(table["low"][0]), float(table["high"][0]))

@@ -74,7 +74,6 @@ def test_a_run_goes_on_where_it_was_and_stores_what_was_found(file):
     packing = found["packings"].isel(case=1, realization=2)
     for name in survey.PACKINGS:
         np.testing.assert_equal(packing[name].values, np.float32(getattr(again.packing, name)))
-    assert packing["processor_time"] > 0.0
     marks = store.read_attributes(path)
     assert marks["block"] == "small" and marks["seed"] == "0" and "collapse_depth" in marks["parameters"]
     assert survey.sources(*survey.SOURCES) in marks["sources"]
@@ -144,7 +143,7 @@ def test_packings_are_read_as_they_were_stored(tmp_path):
     """With different numbers of lines, in single precision; what filled them up is gone."""
     given = {Slab(0.2, 20): measured(4), Slab(0.2, 40): measured(6)}
     path = tmp_path / "group.nc"
-    store.write(path, labelled({packings.DATASET: packings.dataset(given, [1.0, 2.0])}))
+    store.write(path, labelled({packings.DATASET: packings.dataset(given)}))
     found = packings.read(path, Slab, Measured)
     assert list(found) == list(given)
     for key, one in given.items():
@@ -162,7 +161,7 @@ def test_packings_are_read_as_they_were_stored(tmp_path):
 
 def test_a_number_that_files_of_earlier_versions_lack_is_not_recorded(tmp_path):
     path = tmp_path / "group.nc"
-    given = packings.dataset({Slab(0.2, 20): measured(4)}, [1.0])
+    given = packings.dataset({Slab(0.2, 20): measured(4)})
     store.write(path, labelled({packings.DATASET: given}))
     (found,) = packings.read(path, Slab, Later).values()
     assert np.isnan(found.single) and found.depth.size == 4

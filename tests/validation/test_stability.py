@@ -14,7 +14,7 @@ from granular_response_paper.groups.stability import simulate as stability
 from granular_response_paper.pipeline import simulation
 from granular_response_paper.trials import closed_forms, random_scenes, time_steps
 from granular_response_paper.trials.rounding import disturb
-from granular_response_paper.trials.time_steps import SETTLES, scene_of, tried
+from granular_response_paper.trials.time_steps import SETTLES, tried
 
 PARAMETERS = simulation.parameters("stability", Path(__file__).parents[2] / "params.yaml")[0]
 SEED = PARAMETERS["seed"]
@@ -44,7 +44,7 @@ def test_the_predicted_time_step_is_neither_too_long_nor_much_too_short(integrat
     """What is settled stays so at 0.95 of the limit, and not at twice the limit."""
     if integrator == "leapfrog" and changes == {"contact.damping_ratio": 0.0}:
         changes = {"contact.damping_ratio": 0.02}  # it adds no damping of its own: without any, no kick dies out
-    scene = scene_of(Scene.from_dict(SMALL), changes)
+    scene = Scene.from_dict(SMALL).updated({**changes, "protocol.time_step": "auto"})
     (found,) = tried(scene, (integrator,), (0.95, 2.0), 4000, SEED)
     assert found.limit > 0
     assert found.outcome[0] == SETTLES

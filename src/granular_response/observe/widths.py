@@ -46,7 +46,7 @@ def lengths(t: FloatArray, profile: FloatArray, tolerance: float = 0.0) -> Float
         if not np.isfinite(one).all() or not one.max() > 0.0:
             continue
         top = int(np.argmax(one))
-        found[row, 0] = outer = _last(t, one, 0.5 * one[top])
+        found[row, 0] = outer = last_passage(t, one, 0.5 * one[top])
         beyond = np.flatnonzero(force >= 0.25)  # of one side
         if beyond.size:
             k = int(beyond[0])
@@ -60,7 +60,7 @@ def _strips(t: FloatArray, profile: FloatArray) -> FloatArray:
     return 0.5 * (profile[:, 1:] + profile[:, :-1]) * np.diff(t)
 
 
-def _last(t: FloatArray, profile: FloatArray, level: float) -> float:
+def last_passage(t: FloatArray, profile: FloatArray, level: float) -> float:
     """Where the profile passes the level for the last time, linear between samples; NaN if it ends above."""
     k = int(np.flatnonzero(profile >= level)[-1])
     if k == len(t) - 1:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import fnmatch
 import hashlib
 import json
-import os
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -98,29 +96,14 @@ def files(root: Path, path: str) -> list[str]:
         return [path]
     if not place.is_dir():
         raise ArchiveError(f"{place}: is missing; make reproduce makes it, or restore from an archive")
+    patterns = read_text(root / IGNORED).splitlines() if (root / IGNORED).exists() else []
+    patterns = [line.strip() for line in patterns if line.strip() and not line.startswith("#")]  # each one of names
+    inside = (found.relative_to(place) for found in place.rglob("*") if found.is_file())
     return sorted(
-        PurePosixPath(folder, name).relative_to(root.as_posix()).as_posix()
-        for folder, names in _walk(place, _ignored(root))
-        for name in names
+        PurePosixPath(path, one.as_posix()).as_posix()
+        for one in inside
+        if not any(fnmatch.fnmatchcase(name, pattern) for name in one.parts for pattern in patterns)
     )
-
-
-def _walk(place: Path, ignored: tuple[str, ...]) -> Iterator[tuple[str, list[str]]]:
-    def kept(names: list[str]) -> list[str]:
-        return [name for name in names if not any(fnmatch.fnmatchcase(name, pattern) for pattern in ignored)]
-
-    for folder, folders, names in os.walk(place):
-        folders[:] = kept(folders)
-        yield Path(folder).as_posix(), kept(names)
-
-
-def _ignored(root: Path) -> tuple[str, ...]:
-    """The patterns of ``.dvcignore``, each of which is one of names there."""
-    try:
-        lines = read_text(root / IGNORED).splitlines()
-    except OSError:
-        return ()
-    return tuple(line.strip() for line in lines if line.strip() and not line.startswith("#"))
 
 
 def md5(root: Path, path: str) -> str:

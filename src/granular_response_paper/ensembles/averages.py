@@ -8,8 +8,9 @@ import numpy as np
 import xarray as xr
 
 from granular_response.state import FloatArray
-from granular_response.store.result import LENGTH, variable
+from granular_response.store.result import LENGTH
 from granular_response_paper.ensembles import OUTCOMES, smoothed
+from granular_response_paper.records import axes, variables
 
 
 def at_rest(responses: FloatArray, step: int) -> FloatArray:
@@ -37,23 +38,17 @@ def averages_dataset(ensembles: xr.Dataset, x: FloatArray, *, widths: Sequence[f
                     mean[w, c, s], mean_few[w, c, s] = rows.mean(axis=0), rows[:few].mean(axis=0)
                 if len(rows) > 1:
                     error[w, c, s] = rows.std(axis=0, ddof=1) / np.sqrt(len(rows))
-    dims = ("width", "case", "step", "x")
-    per = "in 1/mean radius: vertical stress on the floor per applied force"
-    return xr.Dataset(
-        {
-            "mean": variable(dims, mean, f"ensemble mean of the smoothed response {per}"),
-            "standard_error": variable(dims, error, f"standard error of the mean {per}"),
-            "mean_of_few": variable(dims, mean_few, f"mean over the first {few} realizations at rest {per}"),
-            **{
-                f"count_{name}": variable(("case", "step"), count[k], f"realizations that are {name.replace('_', ' ')}")
-                for k, name in enumerate(OUTCOMES)
-            },
-            "force": ensembles["force"].variable,
-        },
-        coords={
-            "width": variable("width", widths, f"width w of the smoothing Gaussian {LENGTH}"),
-            "x": variable("x", x, f"distance from the loaded disk {LENGTH}"),
-            **{name: ensembles[name].variable for name in ("polydispersity", "friction", "lattice_constant")},
-        },
-        attrs={"few": few},
+    dims, per = "width case step x", "in 1/mean radius: vertical stress on the floor per applied force"
+    data = variables(
+        mean=(dims, mean, f"ensemble mean of the smoothed response {per}"),
+        standard_error=(dims, error, f"standard error of the mean {per}"),
+        mean_of_few=(dims, mean_few, f"mean over the first {few} realizations at rest {per}"),
     )
+    for name, number in zip(OUTCOMES, count, strict=True):
+        text = f"realizations that are {name.replace('_', ' ')}"
+        data |= variables(**{f"count_{name}": ("case step", number, text)})
+    coordinates = axes(
+        width=(widths, f"width w of the smoothing Gaussian {LENGTH}"), x=(x, f"distance from the loaded disk {LENGTH}")
+    )
+    kept = {name: ensembles[name].variable for name in ("polydispersity", "friction", "lattice_constant")}
+    return xr.Dataset(data | {"force": ensembles["force"].variable}, coordinates | kept, {"few": few})

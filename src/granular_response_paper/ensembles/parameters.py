@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Fraction, Part, Positive
-from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, over, some
+from granular_response_paper.parameters import MATERIAL, UNIT_LOAD, SceneGroup, over, some
 
 Spreads = Annotated[tuple[Fraction, ...], AfterValidator(some)]
 
@@ -32,18 +32,7 @@ class EnsembleGroup(SceneGroup):
     ``scene`` holds the lattice constant of the start and what ends the fall.
     """
 
-    scene: Annotated[
-        Scene,
-        over(
-            UNIT_LOAD,
-            "packing.polydispersity",
-            "packing.realization",
-            "contact.friction",
-            "wall.friction",
-            "loads",
-            "protocol.time_step",
-        ),
-    ] = UNIT_LOAD
+    scene: Annotated[Scene, over(UNIT_LOAD, *MATERIAL, "loads", "protocol.time_step")] = UNIT_LOAD
     time_step_part: Part = Field(description="Time step over the stability limit of the lightest disk.")
     longest_time_step: Positive = Field(description="Without friction the limit is far beyond what the fall needs.")
     collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a packing counts as collapsed.")

@@ -23,6 +23,7 @@ from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, flags
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, OUTCOMES
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup
+from granular_response_paper.parameters import material
 from granular_response_paper.records import column, columns, record
 from granular_response_paper.slab_response import LoadPath, by_motion, lost
 
@@ -195,15 +196,8 @@ def ensemble_scene(parameters: EnsembleGroup, case: Case, realization: int) -> S
     The time step is ``time_step_part`` of the stability limit of its lightest disk, at most
     ``longest_time_step``: without friction the limit is far beyond what the collisions of the fall need.
     """
-    scene = parameters.base.updated(
-        {
-            "packing.polydispersity": case.polydispersity,
-            "packing.lattice_constant": case.lattice_constant,
-            "packing.realization": realization,
-            "contact.friction": case.friction,
-            "wall.friction": case.friction if case.wall_friction is None else case.wall_friction,
-        }
-    )
+    changes = material(case.polydispersity, realization, case.friction, case.wall_friction)
+    scene = parameters.base.updated(changes | {"packing.lattice_constant": case.lattice_constant})
     limit = stability_limit(Problem.from_scene(scene), smallest=True)
     step = min(parameters.time_step_part * limit, parameters.longest_time_step)
     return scene.updated({"protocol.time_step": step})

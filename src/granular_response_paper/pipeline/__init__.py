@@ -6,7 +6,7 @@ the pipeline come here; a stage depends on its module and on what the group impo
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +28,15 @@ def figures_folder(group: str) -> Path:
     return Path("figures") / group
 
 
-def group_member(group: str, module: str, name: str) -> Any:
+def group_member(group: str, module: str, name: str, *, optional: bool = False) -> Any:
     """What the ``module`` of a group calls ``name``: its function ``simulate`` or ``draw``, its class ``Parameters``.
 
-    Raises GroupError if there is no such group.
+    None for what is ``optional`` where the group has no such module, or the module no such name. Raises GroupError if
+    there is no such group.
     """
     if group not in NAMES:
         raise GroupError(f"{group}: no such figure group, must be one of {', '.join(NAMES)}")
-    return getattr(importlib.import_module(f"granular_response_paper.groups.{group}.{module}"), name)
+    path = f"granular_response_paper.groups.{group}.{module}"
+    if optional:
+        return getattr(importlib.import_module(path), name, None) if importlib.util.find_spec(path) else None
+    return getattr(importlib.import_module(path), name)

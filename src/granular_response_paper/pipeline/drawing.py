@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import json
 import re
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +15,6 @@ from granular_response_paper import TOO_LITTLE, captions
 from granular_response_paper.pipeline import GroupError, figures_folder, group_member, stored
 
 if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
 #: Largest SVG in bytes: with more elements than that a browser is slow, and fields of colour show seams.
@@ -56,7 +53,8 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
         for stem, figure in figures.items():
             saved = style.save(figure, stem, target, inputs=[path])
             paths += [*saved, *_vector(figure, saved[0], [path])]
-        for stem, moving in _animations(group, datasets).items():
+        animations = group_member(group, "draw", "animations", optional=True)  # by the stem of the picture beside each
+        for stem, moving in (animations(datasets) if animations else {}).items():
             paths.append(target / f"{stem}.gif")
             atomic.check_writable(paths[-1], [path])
             atomic.write_bytes(paths[-1], rendered(moving))
@@ -67,15 +65,6 @@ def draw(group: str, data: Path | None = None, folder: Path | None = None) -> li
     atomic.check_writable(beside, [path])
     atomic.write_bytes(beside, (json.dumps(said, ensure_ascii=False, indent=1) + "\n").encode())
     return [*paths, beside]
-
-
-def _animations(group: str, datasets: Mapping[str, xr.Dataset]) -> Mapping[str, FuncAnimation]:
-    """Those of the groups that have some, by the stem of the picture that stands for each where nothing moves."""
-    try:
-        animations = group_member(group, "draw", "animations")
-    except AttributeError:
-        return {}
-    return animations(datasets)
 
 
 def _vector(figure: Figure, png: Path, inputs: list[Path]) -> list[Path]:

@@ -10,7 +10,6 @@ import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -65,17 +64,8 @@ def measure(group: str, data: Path | None = None, output: Path | None = None) ->
 
 def contents(group: str) -> tuple[Sequence[Claim] | None, Numbers | None]:
     """The claims of a group and the function that measures its further numbers, as far as it has them."""
-    return _member(group, "claims", "CLAIMS"), _member(group, "numbers", "numbers")
-
-
-def _member(group: str, module: str, name: str) -> Any:
-    """What a module calls ``name``; None if the group has no such module."""
-    try:
-        return group_member(group, module, name)
-    except ModuleNotFoundError as error:
-        if error.name != f"granular_response_paper.groups.{group}.{module}":
-            raise
-        return None
+    claims = group_member(group, "claims", "CLAIMS", optional=True)
+    return claims, group_member(group, "numbers", "numbers", optional=True)
 
 
 def _claims(claims: Sequence[Claim], group: str, datasets: Mapping[str, xr.Dataset]) -> dict[str, str | float | None]:

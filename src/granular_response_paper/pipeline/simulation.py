@@ -141,17 +141,13 @@ def _alone(folder: Path, output: Path) -> Iterator[None]:
     """
     held = None
     with suppress(OSError):
-        while held is None:
-            folder.mkdir(parents=True, exist_ok=True)
-            held = os.open(folder, os.O_RDONLY)
-            try:
-                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                os.close(held)
-                raise GroupError(f"{output}: another run is making it; wait for it, or give another --output") from None
-            if not _same(held, folder):  # the run before removed it between these lines
-                os.close(held)
-                held = None
+        folder.mkdir(parents=True, exist_ok=True)
+        held = os.open(folder, os.O_RDONLY)
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(held)
+            raise GroupError(f"{output}: another run is making it; wait for it, or give another --output") from None
     try:
         yield
     finally:
@@ -159,10 +155,3 @@ def _alone(folder: Path, output: Path) -> Iterator[None]:
             with suppress(OSError):
                 folder.rmdir()  # if nothing was kept
             os.close(held)
-
-
-def _same(descriptor: int, path: Path) -> bool:
-    try:
-        return os.path.samestat(os.fstat(descriptor), path.stat())
-    except FileNotFoundError:
-        return False

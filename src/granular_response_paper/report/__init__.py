@@ -116,7 +116,8 @@ def page(root: Path, folder: Path | None = None) -> str:
     except ValueError as error:
         raise ReportError(str(error)) from None
     data = root / "data"
-    explored = [_stored(data / f"{group}.nc") for group in EXPLORED]
+    paths = [data / f"{group}.nc" for group in EXPLORED]
+    explored = [store.read(path) if path.exists() else {} for path in paths]
     states = explorer.payload(*explored) if explored[0] else None
     sensitivity = data / f"{SENSITIVITY}.nc"
     tried = readings.table(store.read(sensitivity)) if sensitivity.exists() else None
@@ -165,11 +166,6 @@ def _claims_of(
     if picture.number is None:
         return [row for row in table if row["group"] == picture.group and not row["figures"]]
     return [row for row in table if picture.number in row["figures"]] if first[picture.number] == picture.stem else []
-
-
-def _stored(path: Path) -> dict[str, xr.Dataset]:
-    """The datasets of a group, none if it has not run yet."""
-    return store.read(path) if path.exists() else {}
 
 
 def _linked(picture: pictures.Picture, root: Path, start: Path) -> list[tuple[str, str]]:

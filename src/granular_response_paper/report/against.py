@@ -52,19 +52,14 @@ class Row:
         rest = self.source.partition("/")[2]
         name, mark, key = next(rest.partition(mark) for mark in ":@#" if mark in rest)
         data = datasets[name]
-        if mark == ":":
-            return np.atleast_1d(self.of(data[key].values)).astype(float)
-        if mark == "#":
-            return np.atleast_1d(self.of(np.asarray(data.attrs[key]))).astype(float)
-        scene = Scene.from_text(data.attrs["scene"])
-        value: Any = scene.to_dict() | {"wall": scene.resolved_wall.model_dump()}
-        for part in key.split("."):
-            value = value[part]
+        if mark == "@":
+            scene = Scene.from_text(data.attrs["scene"])
+            value: Any = scene.to_dict() | {"wall": scene.resolved_wall.model_dump()}
+            for part in key.split("."):
+                value = value[part]
+        else:
+            value = data[key].values if mark == ":" else data.attrs[key]
         return np.atleast_1d(self.of(np.asarray(value))).astype(float)
-
-    def agrees(self, stored: NDArray[np.float64]) -> bool:
-        """Whether all that the paper states is among what was simulated."""
-        return all(np.isclose(stored, value, rtol=_SAME, atol=0.0).any() for value in self.paper)
 
 
 def _loads(force: NDArray[Any]) -> float:
@@ -202,7 +197,7 @@ def markdown(folder: Path) -> str:
 def _judged(row: Row, stored: NDArray[np.float64]) -> str:
     if not row.paper:
         return row.remark
-    if row.agrees(stored):
+    if all(np.isclose(stored, value, rtol=_SAME, atol=0.0).any() for value in row.paper):
         return f"yes; {row.remark}" if row.remark else "yes"
     if not row.remark:
         raise ValueError(f"figure {row.figure}, {row.parameter}: {_values(stored.tolist())} where the paper has "

@@ -29,10 +29,6 @@ def markdown(folder: Path) -> str:
 
 def _row(name: str, data: xr.Dataset) -> tuple[str, str, str]:
     sizes = ", ".join(f"{dimension} {size}" for dimension, size in data.sizes.items())
-    variables = ", ".join(_with_unit(str(variable), data[variable]) for variable in data.data_vars)
-    return f"`{name}`", sizes, variables
-
-
-def _with_unit(name: str, variable: xr.DataArray) -> str:
-    unit = variable.attrs.get("units", "1")
-    return f"`{name}`" if unit == "1" else f"`{name}` ({unit})"
+    units = {variable: one.attrs.get("units", "1") for variable, one in data.data_vars.items()}
+    variables = (f"`{variable}`" if unit == "1" else f"`{variable}` ({unit})" for variable, unit in units.items())
+    return f"`{name}`", sizes, ", ".join(variables)

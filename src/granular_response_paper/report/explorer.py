@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from granular_response.observe.peaks import asymmetry
 from granular_response.scene import Scene
-from granular_response.state import OPEN, FloatArray
+from granular_response.state import OPEN, FloatArray, contact_force
 
 from .typeset import typeset
 
@@ -259,15 +259,16 @@ class _Contacts:
         ever = np.any([np.any(states["contact_status"].values != OPEN, axis=0) for states in slab.states], axis=0)
         inside = ever & (np.abs(place[first, 0]) <= REACH) & (np.abs(place[second, 0]) <= REACH)
         first, second = first[inside], second[inside]
-        at_rest = [_Forces.of(states.isel(state=0), first, second, inside) for states in slab.states]
+        at_rest = [_forces(states.isel(state=0), first, second, inside) for states in slab.states]
         strength, opened, sliding = [], [], []
-        for force, (source, k) in zip(slab.force, slab.chosen, strict=True):
-            now, before = _Forces.of(slab.states[source].isel(state=k), first, second, inside), at_rest[source]
-            added = now.force - before.force
-            sign = np.where(now.along >= before.along, 1.0, -1.0)
-            strength.append(sign * np.linalg.norm(added, axis=1) / force)
-            opened.append(before.touching & ~now.touching)
-            sliding.append(now.sliding(slab.friction))
+        for applied, (source, k) in zip(slab.force, slab.chosen, strict=True):
+            force, along, across, touching = _forces(slab.states[source].isel(state=k), first, second, inside)
+            before, along_before, _, touched = at_rest[source]
+            sign = np.where(along >= along_before, 1.0, -1.0)
+            strength.append(sign * np.linalg.norm(force - before, axis=1) / applied)
+            opened.append(touched & ~touching)
+            limit = (1.0 - MARGIN) * slab.friction * along
+            sliding.append(touching & (np.abs(across) >= limit) & (slab.friction > 0.0))
         return cls(
             np.rint(10.0 * np.concatenate([place[first], place[second]], axis=1)).astype(np.int16),
             np.stack(strength),
@@ -284,32 +285,15 @@ class _Contacts:
         return self.lines.astype("<i2").tobytes() + frames.tobytes()
 
 
-@dataclass(frozen=True)
-class _Forces:
-    """Contact forces of one state on the first disk of each contact."""
-
-    force: FloatArray  #: (contact, 2)
-    along: FloatArray  #: (contact,) normal
-    across: FloatArray  #: (contact,) tangential
-    touching: NDArray[np.bool_]
-
-    @classmethod
-    def of(
-        cls, state: xr.Dataset, first: NDArray[np.intp], second: NDArray[np.intp], inside: NDArray[np.bool_]
-    ) -> _Forces:
-        position = state["position"].values.astype(float)
-        normal = position[first] - position[second]
-        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-        along = state["contact_normal_force"].values[inside].astype(float)
-        across = state["contact_tangential_force"].values[inside].astype(float)
-        touching = state["contact_status"].values[inside] != OPEN
-        return cls(along[:, None] * normal + across[:, None] * tangent, along, across, touching)
-
-    def sliding(self, friction: float) -> NDArray[np.bool_]:
-        if not friction > 0.0:
-            return np.zeros(len(self.along), dtype=bool)
-        return self.touching & (np.abs(self.across) >= (1.0 - MARGIN) * friction * self.along)
+def _forces(
+    state: xr.Dataset, first: NDArray[np.intp], second: NDArray[np.intp], inside: NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Of contacts ``inside``: (contact, 2) forces on their first disks, normal and tangential parts, what touches."""
+    position = state["position"].values.astype(float)
+    normal = position[first] - position[second]
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    along, across = (state[f"contact_{part}_force"].values[inside].astype(float) for part in ("normal", "tangential"))
+    return contact_force(normal, along, across), along, across, state["contact_status"].values[inside] != OPEN
 
 
 def _range(datasets: Datasets) -> list[dict[str, Any]]:

@@ -46,19 +46,12 @@ _NEEDED = {"text", "largest_difference"}
 
 
 @dataclass(frozen=True)
-class Row:
-    """A reading with the largest difference of the floor response in each slab, empty where it was not tried."""
-
-    reading: Reading
-    differences: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class Table:
-    """All readings that were tried; ``slabs`` heads the columns of differences."""
+    """All readings that were tried."""
 
     slabs: tuple[str, ...]
-    rows: tuple[Row, ...]
+    #: each with the largest difference of the floor response in each slab, empty where it was not tried
+    rows: tuple[tuple[Reading, tuple[str, ...]], ...]
 
 
 def table(datasets: Mapping[str, xr.Dataset]) -> Table:
@@ -73,7 +66,7 @@ def table(datasets: Mapping[str, xr.Dataset]) -> Table:
     return Table(
         slabs=tuple(name.replace("mu_", "µ = ") for name in found),
         rows=tuple(
-            Row(
+            (
                 READINGS.get(variant, Reading(words[variant], "", "")),
                 tuple(_short(column[variant]) if variant in column else "" for column in values.values()),
             )
@@ -99,10 +92,9 @@ def markdown(datasets: Mapping[str, xr.Dataset]) -> str:
     shown = table(datasets)
     heads = ["interpretation", "choice", "other option", *(f"change, {slab}" for slab in shown.slabs)]
     rows, before = [], ""
-    for row in shown.rows:
-        reading = row.reading
+    for reading, differences in shown.rows:
         said = ("", "") if reading.question == before else (reading.question, reading.choice)
-        rows.append([*said, reading.option, *row.differences])
+        rows.append([*said, reading.option, *differences])
         before = reading.question
     lines = [tables.table(heads, rows)]
     quoted = [

@@ -354,6 +354,4 @@ def singles(
 def largest_step(shapes: FloatArray, leans: FloatArray) -> FloatArray:
     """Largest change between neighbouring forces (..., k) of either; nan without two known neighbours."""
     steps = np.fmax(np.abs(np.diff(shapes, axis=-1)), np.abs(np.diff(leans, axis=-1)))
-    if not steps.shape[-1]:
-        return np.full(steps.shape[:-1], np.nan)
-    return np.asarray(np.fmax.reduce(steps, axis=-1))
+    return np.asarray(np.fmax.reduce(steps, axis=-1, initial=np.nan))

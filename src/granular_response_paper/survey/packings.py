@@ -7,7 +7,7 @@ stored ones alike.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,7 +17,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.store import files as store
-from granular_response.store.result import variable
 from granular_response_paper.parameters import SurveyedGroup
 from granular_response_paper.records import columns, table
 from granular_response_paper.tasks import computed
@@ -34,10 +33,9 @@ DATASET, ALONG = "packings", "packing"
 RAGGED = "line"
 
 
-def dataset(outcomes: Mapping[Any, Any], seconds: Sequence[float]) -> xr.Dataset:
-    """Outcomes by their keys, with the processor time (s) of each."""
+def dataset(outcomes: Mapping[Any, Any]) -> xr.Dataset:
+    """Outcomes by their keys."""
     found = table(list(outcomes.values()), ALONG).astype(np.float32)
-    found["processor_time"] = variable(ALONG, np.array(seconds, np.float32), "processor time of the packing (s)")
     return found.assign_coords(table(list(outcomes), ALONG).variables)
 
 

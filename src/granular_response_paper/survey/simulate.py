@@ -13,14 +13,14 @@ as those of every sweep.
 from __future__ import annotations
 
 import json
+import operator
 import platform
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -38,11 +38,8 @@ from granular_response_paper.ensembles.datasets import Place, ensembles_dataset,
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Realization, ensemble_task
 from granular_response_paper.pipeline import group_member, simulation
-from granular_response_paper.records import stacked
 from granular_response_paper.survey import packings
 from granular_response_paper.survey.parameters import Parameters
-
-Found = TypeVar("Found")
 
 #: Groups with packings that are left to the survey.
 GROUPS = ("peak_width", "moduli", "crossover_scaling", "hysteresis")
@@ -84,27 +81,12 @@ class SurveyError(GranularError):
 
 
 @dataclass(frozen=True)
-class Timed(Generic[Found]):
-    """What a task found and the processor time that it took, in seconds."""
-
-    found: Found
-    seconds: float
-
-
-def clocked(task: Callable[[], Found]) -> Timed[Found]:
-    """What a task finds."""
-    start = time.process_time()
-    found = task()
-    return Timed(found, time.process_time() - start)
-
-
-@dataclass(frozen=True)
 class Block:
     """What one run makes."""
 
     name: str
     tasks: Mapping[Any, partial[Any]]  #: by what tells them apart, in the order in which they are begun
-    datasets: Callable[[dict[Any, Timed[Any]]], dict[str, xr.Dataset]]  #: of what they find
+    datasets: Callable[[dict[Any, Any]], dict[str, xr.Dataset]]  #: of what they find
     scene: Scene  #: that those of the tasks are changes to
     given: Mapping[str, Any]  #: the parameters
     parts: tuple[str, ...]  #: the sources that an outcome depends on
@@ -156,10 +138,8 @@ def packings_of(group: str, parameter_file: Path) -> Block:
     given, parameters = simulation.parameters(group, parameter_file)
     tasks = tasks_of(group, parameters)
 
-    def datasets(found: dict[Any, Timed[Any]]) -> dict[str, xr.Dataset]:
-        each = {key: found[key] for key in tasks}
-        outcomes, seconds = {key: one.found for key, one in each.items()}, [one.seconds for one in each.values()]
-        return {packings.DATASET: packings.dataset(outcomes, seconds)}
+    def datasets(found: dict[Any, Any]) -> dict[str, xr.Dataset]:
+        return {packings.DATASET: packings.dataset({key: found[key] for key in tasks})}
 
     # the first argument of each is its scene
     order = sorted(tasks, key=lambda key: tasks[key].args[0].packing.disk_count)
@@ -178,14 +158,7 @@ def sources_of(group: str) -> tuple[str, ...]:
     return (*MECHANICS, "theory", f"{PACKAGE}/groups/{group}/simulate.py")
 
 
-def run(
-    block: Block,
-    folder: Path,
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    progress: Progress | None = None,
-) -> Path:
+def run(block: Block, folder: Path, *, workers: int | None = None, progress: Progress | None = None) -> Path:
     """Simulate a block and store it below ``folder``, as ``data/NAME.nc``; returns the path.
 
     Raises SweepError and StoreError.
@@ -194,10 +167,9 @@ def run(
     store.check_writable(output, [block.parameter_file])
     with using(packages=(PACKAGE,)):
         found = map_tasks(
-            clocked,
+            operator.call,
             block.tasks.values(),
             workers=workers,
-            scheduler=scheduler,
             progress=progress,
             checkpoint=folder / ".realizations.checkpoint",
             parts=block.parts,
@@ -208,19 +180,16 @@ def run(
     return output
 
 
-def block_datasets(cases: list[Case], found: Mapping[Place, Timed[Realization]]) -> dict[str, xr.Dataset]:
+def block_datasets(cases: list[Case], found: Mapping[Place, Realization]) -> dict[str, xr.Dataset]:
     """Datasets ``ensembles`` and ``packings`` of a block, in the layout of ``polydisperse_averages`` and small."""
-    realized = {place: one.found for place, one in found.items()}
     walls = [case.friction if case.wall_friction is None else case.wall_friction for case in cases]
     wall_friction = variable(("case",), walls, "coefficient of friction of the walls")
-    ensembles = ensembles_dataset(cases, realized)[list(RESPONSES)].assign_coords(wall_friction=wall_friction)
+    ensembles = ensembles_dataset(cases, found)[list(RESPONSES)].assign_coords(wall_friction=wall_friction)
     for name, digits in (("floor_response", RESPONSE_DIGITS), ("x", POSITION_DIGITS)):
         values = ensembles[name].values
         ensembles[name] = ensembles[name].copy(data=(np.round(values * 2.0**digits) / 2.0**digits).astype(np.float32))
-    packings = packings_dataset(cases, realized)[list(PACKINGS)].drop_vars("angle", errors="ignore")
+    packings = packings_dataset(cases, found)[list(PACKINGS)].drop_vars("angle", errors="ignore")
     packings = packings.assign_coords(wall_friction=wall_friction)
-    seconds = stacked({place: one.seconds for place, one in found.items()})
-    packings["processor_time"] = variable(("case", "realization"), seconds, "processor time of the realization (s)")
     return {"ensembles": ensembles, "packings": packings.astype(np.float32)}
 
 

@@ -18,7 +18,6 @@ from granular_response.solvers.energy import minimise
 from granular_response.solvers.equilibrium import finish
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states, rest_state
-from granular_response.state import State
 from granular_response_paper.records import column, record
 from granular_response_paper.slab_response import lost
 
@@ -55,7 +54,8 @@ def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
     for seed in seeds:
         generator = np.random.default_rng(seed)
         moved = replace(rest, position=rest.position + size * generator.uniform(-1.0, 1.0, rest.position.shape))
-        again = _settled(problem, problem.with_static_forces(moved))
+        settle = finish if problem.rotations else minimise
+        again = settle(problem, problem.with_static_forces(moved))
         (other,) = loaded_states(problem, again, [1.0])[1]
         changed = floor_force(other, disks) - floor_force(again, disks)
         found.append(
@@ -69,7 +69,3 @@ def disturb(scene: Scene, size: float, seeds: Sequence[int]) -> list[Disturbed]:
             )
         )
     return found
-
-
-def _settled(problem: Problem, state: State) -> State:
-    return finish(problem, state) if problem.rotations else minimise(problem, state)

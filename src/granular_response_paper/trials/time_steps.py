@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,8 +112,3 @@ def outcome(problem: Problem, kicked: State, load: float, integrator: str, step:
         held = held and int((dynamics.contact_count() >= 2).sum()) >= bearing
         energy.append(now)
     return SETTLES if max(energy[PARTS // 2 :]) < FALLEN * start else CYCLES
-
-
-def scene_of(base: Scene, changes: dict[str, Any]) -> Scene:
-    """The base scene with changes, solved with a time step that is safe for it."""
-    return base.updated({**changes, "protocol.time_step": "auto"})

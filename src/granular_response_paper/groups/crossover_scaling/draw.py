@@ -15,7 +15,7 @@ from granular_response.plot import style
 from granular_response_paper.captions import Caption, of_group, of_scene
 from granular_response_paper.panels import SURVEYED, family, label_ends, titles
 
-from .parameters import Parameters
+from .parameters import Parameters, varied
 
 #: Height of a row of the lattice (radii).
 ROW = float(np.sqrt(3.0))
@@ -201,23 +201,18 @@ def regions_of(powers: xr.Dataset) -> list[int]:
 
 def _apart(slabs: xr.Dataset, powers: xr.Dataset) -> Figure:
     """Crossover over its value at the smallest entry, against width, stiffness and confinement."""
-    varied = powers["varied"].values
-    kinds = [kind for kind in APART if (varied == kind).any()]
+    differs = powers["varied"].values
+    kinds = [kind for kind in APART if (differs == kind).any()]
     figure, panels = style.figure(1, max(1, len(kinds)), width="double", height=2.7)
     titles(panels[0, : len(kinds)])
     for axes, kind in zip(panels[0], kinds, strict=False):
-        for series, look in family(np.flatnonzero(varied == kind).tolist(), of="friction"):
+        for series, look in family(np.flatnonzero(differs == kind).tolist(), of="friction"):
             one = slabs.isel(slab=_slabs_of(slabs, powers, series))
-            x = {
-                "disks_per_layer": one["disks_per_row"] / one["layers"],
-                "stiffness_per_layer": one["normal_stiffness"] / one["layers"],
-                "confinement": one["confinement"],
-            }[kind].values
             middle, half = _brackets(one, "crossover")
             power, least, largest = powers["exponent"].isel(series=series).sel(event="crossover").values
             friction, layers = float(powers["friction"][series]), int(one["layers"][0])
             label = f"$\\mu = {friction:g}$, $N = {layers}$:\n{said(power)} ({said(least)} to {said(largest)})"
-            axes.errorbar(x, middle, half, capsize=2, label=label, **look | {"markersize": 4.5})
+            axes.errorbar(varied(one, kind), middle, half, capsize=2, label=label, **look | {"markersize": 4.5})
         style.logarithmic(axes)
         axes.set(xlabel=APART[kind])
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

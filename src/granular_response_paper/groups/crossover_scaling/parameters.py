@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+import numpy as np
+import xarray as xr
 from pydantic import AfterValidator, Field, model_validator
 
 from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive, Ratio, Sides, allowed
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Growing, SurveyedGroup, growing, over, some
+from granular_response.state import FloatArray
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, Growing, SurveyedGroup, growing, over, some
 
 #: Rest without friction is found by statics at every size, and is the same preparation for all.
 _SLAB = UNIT_LOAD.updated({"preparation.gravity": "frictionless", "contact.stiffness_ratio": 0.8})
@@ -75,6 +78,13 @@ class Series(Description):
         return len(self.heights if name == "layers" else getattr(self, name)) > 1
 
 
+def varied(slabs: xr.Dataset, name: str) -> FloatArray:
+    """(slab,) what differs along a series that varies ``name``, as it came to be."""
+    per = {"disks_per_layer": "disks_per_row", "stiffness_per_layer": "normal_stiffness"}
+    found = slabs[per.get(name, name)].values
+    return np.asarray(found / slabs["layers"].values if name in per else found, float)
+
+
 def _different_names(series: tuple[Series, ...]) -> tuple[Series, ...]:
     names = [one.name for one in series]
     if len(set(names)) < len(names):
@@ -89,8 +99,7 @@ class Parameters(SurveyedGroup):
         Scene,
         over(
             _SLAB,
-            "packing.layers",
-            "packing.disks_per_row",
+            *SIZE,
             "packing.sides",
             "packing.lattice_constant",
             "packing.polydispersity",

@@ -30,7 +30,7 @@ from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
 from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.crossover_scaling.parameters import VARIED, Parameters, Series
+from granular_response_paper.groups.crossover_scaling.parameters import Parameters, Series, varied
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import (
     FIRST_OPENING,
@@ -145,9 +145,7 @@ def compute(
         float(sum(by_motion(state) for state in states)),
         np.array(forces),
         np.array([measures.dip(state) for state in states]),
-        np.array([region.depth for region in regions]),
-        np.array([region.width for region in regions]),
-        np.array([region.count for region in regions], float),
+        *np.array([(one.depth, one.width, one.count) for one in regions], float).T,
     )
 
 
@@ -189,19 +187,14 @@ class Power:
 
     def exponent(self) -> FloatArray:
         """(value, least, largest); nan with less than two points."""
-        return self._range(lambda x: (x - x.mean()) / ((x - x.mean()) ** 2).sum())
+        return self._range(_slope)
 
     def at_size(self, size: float, continuum: float | None = None) -> FloatArray:
         """(value, least, largest) of the law at ``size``.
 
         With the power of the ``continuum``, that power from the last point on is one more reading of the interval.
         """
-
-        def weights(x: FloatArray) -> FloatArray:
-            slope = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
-            return np.asarray(1.0 / len(x) + (np.log(size) - x.mean()) * slope)
-
-        found = np.exp(self._range(weights))
+        found = np.exp(self._range(lambda x: 1.0 / len(x) + (np.log(size) - x.mean()) * _slope(x)))
         if continuum is not None and len(self.usable):
             last = self.usable[-1]
             grown = float((size / self.at[last]) ** continuum)
@@ -221,6 +214,11 @@ class Power:
             values.append(float(each @ (0.5 * (least + most))))
             ends += [values[-1] - blur, values[-1] + blur]
         return np.array([values[0], min(ends), max(ends)]) if values else np.full(3, np.nan)
+
+
+def _slope(x: FloatArray) -> FloatArray:
+    """(k,) weights of the ordinates in the slope of a line through points at ``x`` (k,), by least squares."""
+    return np.asarray((x - x.mean()) / ((x - x.mean()) ** 2).sum())
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -339,9 +337,8 @@ def power_table(slabs: xr.Dataset, parameters: Parameters) -> xr.Dataset:
     found = {}
     for s, series in enumerate(parameters.series):
         one = slabs.isel(slab=np.flatnonzero(slabs["series"].values == series.name))
-        at = _varied(one, series)
         for e, event in enumerate(events):
-            law = Power(at, *one[f"{event}_bracket"].values.T)
+            law = Power(varied(one, series.varied), *one[f"{event}_bracket"].values.T)
             far = np.full(len(ends), np.nan)
             if series.varied == "layers":
                 far = law.at_size(parameters.extrapolated, continuum(series) if event != "first_opening" else None)
@@ -368,15 +365,3 @@ def continuum(series: Series) -> float | None:
     if series.confined == "as weight" and series.sides == "periodic":
         return 2.0
     return 1.0 if series.friction == 0.0 else None
-
-
-def _varied(one: xr.Dataset, series: Series) -> FloatArray:
-    """(slab,) what differs along a series, as it came to be."""
-    assert series.varied in VARIED
-    values = {
-        "layers": one["layers"],
-        "disks_per_layer": one["disks_per_row"] / one["layers"],
-        "stiffness_per_layer": one["normal_stiffness"] / one["layers"],
-        "confinement": one["confinement"],
-    }
-    return np.asarray(values[series.varied].values, float)

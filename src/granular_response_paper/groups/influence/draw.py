@@ -42,21 +42,16 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )
 
 
-def compared(polydispersity: np.ndarray) -> list[int]:
-    """Cases of the maps: those with the polydispersity of the last one, with and without friction."""
-    return np.flatnonzero(polydispersity == polydispersity[-1]).tolist()
-
-
 def _maps(data: xr.Dataset) -> Figure:
-    """A panel for each compared case; disks that bear nothing stay white."""
-    cases = compared(data["polydispersity"].values)
-    figure, (panels,) = style.figure(1, len(cases), width="double", height=2.4, sharey=True)
+    """A panel for each case with the polydispersity of the last one; disks that bear nothing stay white."""
+    data = data.isel(case=data["polydispersity"].values == data["polydispersity"].values[-1])
+    figure, (panels,) = style.figure(1, data.sizes["case"], width="double", height=2.4, sharey=True)
     # the weight of a unit force is 1 where no floor disk is relieved; what exceeds that is pushed up and down
-    largest = float(np.nanquantile(data["total"].values[cases], 0.995))
-    medians = np.nanmedian(data["total"].values[cases], axis=1)
-    names = [materials(data["polydispersity"], data["friction"])[case][0] for case in cases]
-    titles(panels, [f"{name}, median {middle:.1f}" for name, middle in zip(names, medians, strict=True)])
-    for case, axes in zip(cases, panels, strict=True):
+    largest = float(np.nanquantile(data["total"].values, 0.995))
+    medians = np.nanmedian(data["total"].values, axis=1)
+    cases = materials(data["polydispersity"], data["friction"])
+    titles(panels, [f"{name}, median {middle:.1f}" for (name, _), middle in zip(cases, medians, strict=True)])
+    for case, axes in enumerate(panels):
         one = data.isel(case=case)
         x, z = one["position"].values.T
         shown = np.flatnonzero(np.abs(x) <= REACH)

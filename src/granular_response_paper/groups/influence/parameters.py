@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Positive, Ratio
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Counts, Positives, SceneGroup, over, some
+from granular_response_paper.parameters import MATERIAL, UNIT_LOAD, Counts, Positives, SceneGroup, over, some
 
 
 class Case(Description):
@@ -23,10 +23,7 @@ class Case(Description):
 class Parameters(SceneGroup):
     """Section ``influence``."""
 
-    scene: Annotated[
-        Scene,
-        over(UNIT_LOAD, "packing.polydispersity", "packing.realization", "contact.friction", "wall.friction", "loads"),
-    ] = Field(description="Base scene.")
+    scene: Annotated[Scene, over(UNIT_LOAD, *MATERIAL, "loads")] = Field(description="Base scene.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials.")
     separations: Counts = Field(description="Of the two halves of a load from its disk, in places of the row.")
     margin: Positive = Field(description="From the side walls, within which no load is looked at, in radii.")

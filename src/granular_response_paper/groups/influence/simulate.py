@@ -23,6 +23,7 @@ from granular_response.store.result import LENGTH
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.influence.parameters import Parameters
+from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.tasks import computed
 
@@ -107,14 +108,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks = {}
     for c, case in enumerate(parameters.cases):
         for r in range(case.realizations):
-            scene = parameters.base.updated(
-                {
-                    "contact.friction": case.friction,
-                    "wall.friction": case.friction,
-                    "packing.realization": r,
-                    "packing.polydispersity": case.polydispersity,
-                }
-            )
+            scene = parameters.base.updated(material(case.polydispersity, r, case.friction))
             tasks[c, r] = partial(compute, scene, parameters.separations, parameters.margin, parameters.fitted)
     found = table(computed(tasks, "packings"), "case", "realization").assign_coords(
         labels(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import xarray as xr
 
 from ...claims import asked
 from ...claims.bootstrap import over_realizations
@@ -16,18 +15,13 @@ GROUP = "moduli"
 CLAIMS = Claims(GROUP)
 
 
-def _largest(study: xr.Dataset, case: int) -> xr.Dataset:
-    """The largest packings of a case."""
-    layers = study["layers"].values[case]
-    return study.isel(case=case, size=int(np.nanargmax(layers)), smoothing=0)
-
-
 def _described(data: Data, words: Bounds, solid: str, of: str) -> Finding:
     study = data.get(GROUP, "packings")
     readings: list[Reading] = []
     values: dict[bool, list[float]] = {True: [], False: []}
     for case in range(study.sizes["case"]):
-        one = _largest(study, case)
+        largest = int(np.nanargmax(study["layers"].values[case]))
+        one = study.isel(case=case, size=largest, smoothing=0)
         found = over_realizations(one["difference"].sel(solid=solid).values, np.mean)
         values[bool(one["friction"] > 0.0)].append(found.value)
         what = f"largest difference to the {of} slab per its largest pressure, mean of packings"

@@ -17,8 +17,8 @@ from granular_response_paper.panels import SURVEYED, label_ends, materials, oute
 
 from .parameters import Parameters
 
-#: Names of the solids in keys.
-FOLLOWING = {"affine": "affine", "suppressed": "relaxed, no rotations", "free": "relaxed"}
+#: Names in keys of how disks follow a strain.
+FOLLOWING = {"affine": "affine", "free": "relaxed"}
 
 
 @style.context()
@@ -87,7 +87,7 @@ def _moduli(data: xr.Dataset) -> Figure:
     keys = [Line2D([], [], **look | {"linestyle": "none", "markersize": 4.5}) for _, look in cases]
     plain: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": style.BLACK, "markersize": 4.5}
     keys += [Line2D([], [], markerfacecolor="white", **plain), Line2D([], [], **plain)]
-    names = [*(name for name, _ in cases), FOLLOWING["affine"], FOLLOWING["free"]]
+    names = [*(name for name, _ in cases), *FOLLOWING.values()]
     figure.legend(keys, names, loc="outside lower center", ncols=4)
     return figure
 
@@ -112,7 +112,7 @@ def _responses(data: xr.Dataset) -> Figure:
         zero(axes)
         axes.set_xlim(place[0], place[-1])
     layers = np.nanmax(data["layers"].values, axis=1)
-    titles(panels.flat, [f"{name}, {deep:g} layers" for (name, _), deep in zip(cases, layers, strict=True)])
+    titles(panels.flat, [f"{name}, {most:g} layers" for (name, _), most in zip(cases, layers, strict=True)])
     outer(panels, style.SCALED_POSITION, style.PRESSURE)
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
@@ -125,8 +125,9 @@ def _sizes(data: xr.Dataset) -> Figure:
     both = data["single"], data["difference"].sel(solid="free")
     for axes, apart, width in zip(panels, both, smoothing, strict=True):
         for case, (name, look) in enumerate(materials(data["polydispersity"], data["friction"])):
-            mean, spread = _mean_and_spread(apart.isel(case=case, smoothing=width))
-            count = np.maximum(apart.isel(case=case, smoothing=width).notnull().sum("realization").values, 1)
+            one = apart.isel(case=case, smoothing=width)
+            mean, spread = _mean_and_spread(one)
+            count = np.maximum(one.notnull().sum("realization").values, 1)
             look = look | {"markersize": 4}
             layers = data["layers"][case]
             axes.errorbar(layers, mean, 1.96 * spread / np.sqrt(count), label=name, capsize=2.5, **look)
@@ -139,8 +140,8 @@ def _sizes(data: xr.Dataset) -> Figure:
         axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
         axes.minorticks_off()
     panels[0].set_ylabel("largest difference / largest pressure")
-    w = [str(name) for name in data["smoothing"].values]
-    titles(panels, (f"one load, $w$ = {w[smoothing[0]]}", f"mean over loads, $w$ = {w[smoothing[1]]}"))
+    one_load, mean_load = data["smoothing"].values[list(smoothing)]
+    titles(panels, (f"one load, $w$ = {one_load}", f"mean over loads, $w$ = {mean_load}"))
     handles, labels = panels[1].get_legend_handles_labels()
     figure.legend([handle[0] for handle in handles], labels, loc="outside lower center", ncols=3)
     return figure

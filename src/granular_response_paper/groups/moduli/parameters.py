@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio, allowed
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Growing, Positives, SurveyedGroup, over, some
+from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Growing, Positives, SurveyedGroup, over, some
 
 Rows = Annotated[int, Field(strict=True, ge=5), allowed("must be a whole number from 5 on")]
 Margin = Annotated[float, Field(strict=True, ge=0, lt=0.4), allowed("must be from 0 to below 0.4")]
@@ -63,21 +63,9 @@ class Lattice(Description):
 class Parameters(SurveyedGroup):
     """Section ``moduli``."""
 
-    scene: Annotated[
-        Scene,
-        over(
-            UNIT_LOAD,
-            "packing.layers",
-            "packing.disks_per_row",
-            "packing.sides",
-            "packing.polydispersity",
-            "packing.realization",
-            "packing.lattice_constant",
-            "contact.friction",
-            "wall.friction",
-            "loads",
-        ),
-    ] = Field(description="Base scene.")
+    scene: Annotated[Scene, over(UNIT_LOAD, *SIZE, *MATERIAL, "packing.sides", "packing.lattice_constant", "loads")] = (
+        Field(description="Base scene.")
+    )
     disks_per_layer: Count = Field(description="Disks of a row over number of rows.")
     margin: Margin = Field(description="Part of the rows at either end over which no modulus is averaged.")
     width: Positive = Field(description="w of the Gaussian over the response, in radii.")

@@ -24,7 +24,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.small_loads import at_limit, influence
 from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import FloatArray, State
-from granular_response.store.result import LENGTH, variable
+from granular_response.store.result import LENGTH
 from granular_response.sweeps.rest import rest_state
 from granular_response.theory import crossover, lattice
 from granular_response.theory.crossover import Body
@@ -33,7 +33,8 @@ from granular_response.theory.moduli import Moduli
 from granular_response.theory.slab import Floor, Slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.moduli.parameters import Parameters
-from granular_response_paper.records import axes, column, labels, record, stacked, table
+from granular_response_paper.parameters import material
+from granular_response_paper.records import axes, column, labels, record, stacked, table, variables
 from granular_response_paper.survey.packings import measured
 from granular_response_paper.tasks import computed
 
@@ -277,15 +278,12 @@ def packings(parameters: Parameters, *, surveyed: bool) -> dict[tuple[int, int, 
 def task(parameters: Parameters, one: Disordered) -> partial[Outcome]:
     """One of these packings."""
     scene = parameters.base.updated(
-        {
+        material(one.polydispersity, one.realization, one.friction)
+        | {
             "packing.sides": "periodic",
             "packing.layers": one.layers,
             "packing.disks_per_row": parameters.disks_per_layer * one.layers,
-            "packing.polydispersity": one.polydispersity,
             "packing.lattice_constant": TOUCHING_LARGEST,
-            "packing.realization": one.realization,
-            "contact.friction": one.friction,
-            "wall.friction": one.friction,
         }
     )
     return partial(compute, scene, parameters.margin, parameters.width, parameters.wide)
@@ -321,8 +319,7 @@ def _lattice_tasks(parameters: Parameters) -> dict[tuple[str, int, int], partial
 
 def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outcome]) -> xr.Dataset:
     cases = parameters.cases
-    along = ("case", "size", "realization")
-    found = table(outcomes, *along).rename(matrices="stiffness")
+    found = table(outcomes, "case", "size", "realization").rename(matrices="stiffness")
     layers = stacked({(c,): case.layers for c, case in enumerate(cases)}, float)
     surveyed = np.nan_to_num(stacked({(c,): case.further for c, case in enumerate(cases)}, float))
     of = {"one": found["single"].values, "mean": found["difference"].values[:, :, :, SOLIDS.index("free")]}
@@ -335,25 +332,19 @@ def _packings(parameters: Parameters, outcomes: dict[tuple[int, int, int], Outco
         for c in range(len(cases))
     ]
     matrices, alone = found["stiffness"].values, found["springs_alone"].values
-    derived = {
-        "layers": variable(along[:2], layers, "number of rows"),
-        "surveyed": variable(along[:2], surveyed, "realizations that are the survey's"),
-        "moduli": variable(
-            (*along, "following", "modulus"),
-            symmetric(matrices),
-            "moduli over k_N, what a solid that mirrors itself has of them",
-        ),
-        "prestress": variable(
-            (*along, "modulus"),
-            symmetric(matrices[..., -1, :, :] - alone),
-            "what the forces that contacts bear at rest add to the moduli over k_N, rotations free",
-        ),
-        "needed": variable(
-            ("case", "loads", "smoothing", "tolerance", "end"),
-            sizes_needed,
-            "number of rows from which on the difference is below the tolerance, by a power of it",
-        ),
-    }
+    prestress = symmetric(matrices[..., -1, :, :] - alone)
+    mirrored, added, below = (
+        "moduli over k_N, what a solid that mirrors itself has of them",
+        "what the forces that contacts bear at rest add to the moduli over k_N, rotations free",
+        "number of rows from which on the difference is below the tolerance, by a power of it",
+    )
+    derived = variables(
+        layers=("case size", layers, "number of rows"),
+        surveyed=("case size", surveyed, "realizations that are the survey's"),
+        moduli=("case size realization following modulus", symmetric(matrices), mirrored),
+        prestress=("case size realization modulus", prestress, added),
+        needed=("case loads smoothing tolerance end", sizes_needed, below),
+    )
     components = ["xx", "zz", "xz"]
     return (
         found.drop_vars("springs_alone")
@@ -399,27 +390,19 @@ def _lattice(parameters: Parameters, answers: dict[tuple[str, int, int], FloatAr
             turns[b, t] = root(ratios, np.array(sign))
     found = np.array([root(near, bend) for bend in bends])
     limits = at_infinity(np.array(group.responding), found)
+    bend = "second difference of the response below the load, per largest response"
+    limit = "the same for infinitely many layers, from these by polynomials in 1 / layers"
     return xr.Dataset(
-        {
-            "moduli": variable(
-                ("contacts", "stiffness_ratio", "following", "modulus"), measured, "moduli over k_N, as measured"
-            ),
-            "closed_form": variable(
-                ("contacts", "stiffness_ratio", "rotations", "modulus"), expected, "moduli over k_N, eqs. (7)-(10)"
-            ),
-            "turn": variable(("body", "rotations"), turns, "k_T / k_N at which two peaks end, by measured moduli"),
-            "turn_closed_form": variable(("body", "rotations"), theory, "the same by the closed form"),
-            "middle": variable(
-                ("size", "responding_ratio"),
-                bends,
-                "second difference of the response below the load, per largest response",
-            ),
-            "turn_response": variable(("size",), found, "k_T / k_N at which it changes its sign"),
-            "turn_limit": variable(
-                ("estimate",), limits, "the same for infinitely many layers, from these by polynomials in 1 / layers"
-            ),
-            "layers": variable(("size",), np.array(group.responding), "number of rows of the lattices that respond"),
-        },
+        variables(
+            moduli=("contacts stiffness_ratio following modulus", measured, "moduli over k_N, as measured"),
+            closed_form=("contacts stiffness_ratio rotations modulus", expected, "moduli over k_N, eqs. (7)-(10)"),
+            turn=("body rotations", turns, "k_T / k_N at which two peaks end, by measured moduli"),
+            turn_closed_form=("body rotations", theory, "the same by the closed form"),
+            middle=("size responding_ratio", bends, bend),
+            turn_response=("size", found, "k_T / k_N at which it changes its sign"),
+            turn_limit=("estimate", limits, limit),
+            layers=("size", group.responding, "number of rows of the lattices that respond"),
+        ),
         coords=axes(
             contacts=(["closed", "open"], "horizontal contacts"),
             stiffness_ratio=(ratios, "k_T / k_N"),

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from granular_response.scene import Scene
 from granular_response.scene.base import Count, Description, Fraction, Index, Part, Positive, Ratio
 from granular_response.scene.errors import Problem
-from granular_response_paper.parameters import UNIT_LOAD, Counts, SurveyedGroup, growing, over, some
+from granular_response_paper.parameters import MATERIAL, SIZE, UNIT_LOAD, Counts, SurveyedGroup, growing, over, some
 
 #: Least number of realizations that are drawn from for an interval.
 LEAST_REALIZATIONS = 3
@@ -61,20 +61,9 @@ class Case(Description):
 class Parameters(SurveyedGroup):
     """Section ``peak_width``."""
 
-    scene: Annotated[
-        Scene,
-        over(
-            UNIT_LOAD,
-            "packing.layers",
-            "packing.disks_per_row",
-            "packing.polydispersity",
-            "packing.realization",
-            "contact.friction",
-            "wall.friction",
-            "preparation.gravity",
-            "loads",
-        ),
-    ] = Field(description="Base scene; contact.normal_stiffness is that at the reference height.")
+    scene: Annotated[Scene, over(UNIT_LOAD, *SIZE, *MATERIAL, "preparation.gravity", "loads")] = Field(
+        description="Base scene; contact.normal_stiffness is that at the reference height."
+    )
     reference_layers: Count = Field(
         description="Rows at which stiffness and forces are as given. Stiffness grows as the number of rows, so that "
         "gravity compresses all slabs by the same part."

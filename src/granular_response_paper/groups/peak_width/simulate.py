@@ -34,6 +34,7 @@ from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Slab as ElasticSlab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.peak_width.parameters import LEAST_REALIZATIONS, Case, Parameters
+from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, columns, labels, record, table
 from granular_response_paper.survey.crossover import folded, weights
 from granular_response_paper.survey.packings import measured
@@ -123,7 +124,7 @@ def compute(scene: Scene, force: float, loads: int, margin: float, lines: int, w
     depth = surface - line
     depth[-1] = surface
     if not force:
-        disks = loaded_disks(packing, rest, margin * surface, loads if packing_varies(scene) else 1)
+        disks = loaded_disks(packing, rest, margin * surface, loads if np.ptp(packing.radius) else 1)
         answers = contact_answers(problem, rest, disks, sliding="stick")
         borne = [k for k in range(len(disks)) if np.isfinite(answers[0][k]).all()]
         fields = [(given_forces(rest, answers[0][k], answers[1][k]), rest.position[disks[k], 0], 1.0) for k in borne]
@@ -139,11 +140,6 @@ def compute(scene: Scene, force: float, loads: int, margin: float, lines: int, w
             profile[k] += scaled(forces, x, line[k], depth[k], t, width) / size
             transmitted[k] += line_forces(forces, line[k])[1].sum() / size
     return Outcome(surface, depth, profile / len(fields), transmitted / len(fields), len(fields))
-
-
-def packing_varies(scene: Scene) -> bool:
-    """Whether disks of one row differ."""
-    return bool(scene.to_dict()["packing"].get("polydispersity", 0.0) > 0.0)
 
 
 def loaded_disks(packing: Packing, rest: State, margin: float, count: int) -> NDArray[np.intp]:
@@ -200,14 +196,11 @@ def task(asked: Parameters, slab: Slab) -> partial[Outcome]:
     """One slab of a case."""
     scale = slab.layers / asked.reference_layers
     scene = asked.base.updated(
-        {
+        material(slab.polydispersity, slab.realization, slab.friction)
+        | {
             "packing.layers": slab.layers,
             "packing.disks_per_row": asked.disks_per_layer * slab.layers + 1,
-            "packing.polydispersity": slab.polydispersity,
-            "packing.realization": slab.realization,
             "contact.normal_stiffness": asked.base.contact.normal_stiffness * scale,
-            "contact.friction": slab.friction,
-            "wall.friction": slab.friction,
             "preparation.gravity": slab.gravity,
         }
     )

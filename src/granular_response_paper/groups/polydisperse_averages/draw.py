@@ -14,6 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
 from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.ensembles import OUTCOMES
 from granular_response_paper.panels import (
     chain_key,
     chains,
@@ -35,6 +36,12 @@ FIG21_WIDTH, MOST_FORCES = 6.0, 4
 #: Forces of the keys of Fig. 2 in mean disk weights, at rest and added; added force times depth per load that has the
 #: full width.
 KEYS, DEEP = (20.0, 1.0), 4.0
+
+#: Of the keys over the panels of Fig. 21.
+OVER: dict[str, Any] = {
+    "loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 7.5, "handlelength": 1.9, "handletextpad": 0.3,
+    "columnspacing": 0.7, "borderpad": 0.0, "borderaxespad": 0.2,
+}  # fmt: skip
 
 START_NAMES = {
     "2.0075": "lattice constant $2.0075\\bar R$",
@@ -75,14 +82,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
             "fig02_polydisperse_forces": of_scene(
                 scene, force=picture.force, frictions=picture.friction, polydispersity=picture.polydispersity
             ),
-            "fig19_disordered_response": of_scene(
-                scene,
-                force=single.force,
-                frictions=single.frictions,
-                polydispersity=single.polydispersity,
-                realizations=single.realizations,
-                width=single.width,
-            ),
+            "fig19_disordered_response": of_scene(scene, **single.model_dump()),
             "fig20_disordered_linear_range": of_scene(
                 scene,
                 force=linear.forces,
@@ -109,9 +109,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 def _counts(parameters: Parameters, polydispersities: Sequence[float]) -> list[int]:
     """Numbers of realizations of the disordered cases from the usual initial lattice."""
     usual = [case for case in parameters.columns if case.lattice_constant == parameters.lattice_constant]
-    return sorted(
-        {case.realizations for case in usual if case.polydispersity and case.polydispersity in polydispersities}
-    )
+    return sorted({one.realizations for one in usual if one.polydispersity and one.polydispersity in polydispersities})
 
 
 def _forces(data: xr.Dataset) -> Figure:
@@ -120,9 +118,8 @@ def _forces(data: xr.Dataset) -> Figure:
     grid = panels[0, 0].get_gridspec()
     for axes in panels[0]:
         axes.remove()
-    pair, wall = _contact_forces(data)
-    at_rest = np.linalg.norm(np.concatenate([pair[0], wall[0]]), axis=1)
-    added = np.linalg.norm(np.concatenate([pair[1] - pair[0], wall[1] - wall[0]]), axis=1)
+    resting, loaded = _contact_forces(data)
+    at_rest, added = np.linalg.norm(resting, axis=1), np.linalg.norm(loaded - resting, axis=1)
     width, disk, load = float(data["width"]), int(data["loaded_disk"]), float(data["force"][1])
     radius, position = data["radius"].values, data["position"].values
     top = float((position[..., 1] + radius).max())
@@ -152,19 +149,20 @@ def _forces(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _contact_forces(data: xr.Dataset) -> tuple[FloatArray, FloatArray]:
-    """(state, m, 2) forces on the first disks of all contacts, and (state, w, 2) forces of the walls."""
+def _contact_forces(data: xr.Dataset) -> FloatArray:
+    """(state, m, 2) forces on the first disks of all contacts, then those of the walls."""
     position = data["position"].values
     between = position[:, data["contact_disk"].values] - position[:, data["contact_partner"].values]
-    normal = between / np.linalg.norm(between, axis=-1, keepdims=True)
-    wall_normal = np.broadcast_to(
-        WALL_NORMAL[data["wall_index"].values.astype(int)], (*data["wall_normal_force"].shape, 2)
-    )
-    return _vectors(normal, data, "contact"), _vectors(wall_normal, data, "wall")
-
-
-def _vectors(normal: FloatArray, data: xr.Dataset, kind: str) -> FloatArray:
-    return contact_force(normal, data[f"{kind}_normal_force"].values, data[f"{kind}_tangential_force"].values)
+    walls = WALL_NORMAL[data["wall_index"].values.astype(int)]
+    normals = {
+        "contact": between / np.linalg.norm(between, axis=-1, keepdims=True),
+        "wall": np.broadcast_to(walls, (len(position), *walls.shape)),
+    }
+    forces = [
+        contact_force(normal, data[f"{kind}_normal_force"].values, data[f"{kind}_tangential_force"].values)
+        for kind, normal in normals.items()
+    ]
+    return np.concatenate(forces, axis=1)
 
 
 def _response(data: xr.Dataset, averages: xr.Dataset) -> Figure:
@@ -277,13 +275,9 @@ def _range_ends(axes: Axes, data: xr.Dataset, look: dict[str, Any], name: str) -
     middle = np.where(ended, np.sqrt(low * np.where(ended, high, 1.0)), low)
     around = np.abs(np.stack([low, np.where(ended, high, low)]) - middle)
     axes.errorbar(friction, middle, around, capsize=2.0, elinewidth=0.8, label=name, **look)
+    arrow = {"arrowstyle": "->", "color": look["color"], "linewidth": 0.8}
     for mu, force in zip(friction[~ended], low[~ended], strict=True):
-        axes.annotate(
-            "",
-            (mu, 1.6 * force),
-            (mu, force),
-            arrowprops={"arrowstyle": "->", "color": look["color"], "linewidth": 0.8},
-        )
+        axes.annotate("", (mu, 1.6 * force), (mu, force), arrowprops=arrow)
 
 
 def _averages(data: xr.Dataset) -> Figure:
@@ -334,25 +328,12 @@ def _family(axes: Axes, one: xr.Dataset, x: FloatArray) -> None:
         axes.plot(x, mean, **look, linewidth=1.1, label=label)
     zero(axes)
     handles, names = axes.get_legend_handles_labels()
-    axes.legend(
-        handles[-len(steps) :],
-        names[-len(steps) :],
-        loc="lower center",
-        bbox_to_anchor=(0.5, 1.0),
-        ncols=len(steps),
-        fontsize=7.5,
-        handlelength=1.9,
-        handletextpad=0.3,
-        columnspacing=0.7,
-        borderpad=0.0,
-        borderaxespad=0.2,
-    )
+    axes.legend(handles[-len(steps) :], names[-len(steps) :], ncols=len(steps), **OVER)
 
 
 def _realizations(one: xr.Dataset) -> np.ndarray:
     """(step,) how many a case has, whatever became of them."""
-    outcomes = ("at_rest", "collapsed", "failed", "not_reached")
-    return np.sum([one[f"count_{name}"].values for name in outcomes], axis=0)
+    return np.sum([one[f"count_{name}"].values for name in OUTCOMES], axis=0)
 
 
 def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:

@@ -16,12 +16,8 @@ def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
     for case in range(averages.sizes["case"]):
         one = averages.isel(case=case)
         last = int(np.flatnonzero(one["count_at_rest"].values)[-1])
-        labels = (
-            ("polydispersity", "polydispersity"),
-            ("friction", "friction"),
-            ("initial lattice", "lattice_constant"),
-        )
-        name = ", ".join(f"{label} {one[key].values}" for label, key in labels)
+        labels = {"polydispersity": "polydispersity", "friction": "friction", "initial lattice": "lattice_constant"}
+        name = ", ".join(f"{label} {one[key].values}" for label, key in labels.items())
         found["packings at rest"] += float(one["count_at_rest"][last])
         found[f"response at x = 0, {name}"] = float(one["mean"][last, middle])
     return found

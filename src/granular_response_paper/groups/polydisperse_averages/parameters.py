@@ -85,17 +85,24 @@ class Parameters(EnsembleGroup):
             for delta in entry.polydispersities
         ]
 
-    @model_validator(mode="after")
-    def _check(self) -> Parameters:
-        picture, shown = self.forces_picture, self.individual
-        if not any(
-            (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
+    @property
+    def pictured(self) -> list[int]:
+        """The cases that have the realization and the force of Fig. 2."""
+        picture = self.forces_picture
+        return [
+            c
+            for c, case in enumerate(self.columns)
+            if (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
             and picture.realization < case.realizations
             and picture.force in case.forces
-            for case in self.columns
-        ):
+        ]
+
+    @model_validator(mode="after")
+    def _check(self) -> Parameters:
+        shown = self.individual
+        if not self.pictured:
             rule = "must be a realization and a force of one of the cases"
-            raise Problem(rule, key=("forces_picture",), value=picture.model_dump())
+            raise Problem(rule, key=("forces_picture",), value=self.forces_picture.model_dump())
         if not any(
             case.polydispersity == shown.polydispersity
             and case.friction in shown.frictions

@@ -22,15 +22,15 @@ from granular_response.observe.floor import smoothed_response
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH, common_candidates, states_dataset, variable
+from granular_response.store.result import FORCE, LENGTH
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import AT_REST, datasets, smoothed
 from granular_response_paper.ensembles.averages import at_rest, averages_dataset
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import Loaded, Realization, ensemble_task
 from granular_response_paper.groups.polydisperse_averages.parameters import Individual, LinearRange, Parameters
-from granular_response_paper.records import column, columns, record, table
-from granular_response_paper.slab_response import linear_end
+from granular_response_paper.records import axes, column, columns, record, table, variables
+from granular_response_paper.slab_response import linear_end, states_picture
 from granular_response_paper.tasks import computed
 
 
@@ -60,13 +60,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks: dict[tuple[str, int, int], partial[Realization]] = {
         ("ensembles", *place): ensemble_task(asked, cases[place[0]], place[1]) for place in datasets.places(cases)
     }
-    shown = next(
-        ("ensembles", c, picture.realization)
-        for c, case in enumerate(cases)
-        if (case.polydispersity, case.friction) == (picture.polydispersity, picture.friction)
-        and picture.realization < case.realizations
-        and picture.force in case.forces
-    )
+    shown = "ensembles", asked.pictured[0], picture.realization
     tasks[shown] = partial(tasks[shown], keep=(picture.force,))
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for k, (delta, mu) in enumerate(grid):
@@ -103,21 +97,16 @@ def _individual(ensembles: xr.Dataset, shown: Individual, x: FloatArray) -> xr.D
         step = int(np.flatnonzero(ensembles["force"].values[case] == force)[0])
         rows = at_rest(smoothed(ensembles.isel(case=int(case)), x, width), step)[:most]
         response[k, : len(rows)] = rows
+    kept = {
+        name: ensembles[name].isel(case=cases).variable for name in ("polydispersity", "friction", "lattice_constant")
+    }
     return xr.Dataset(
-        {
-            "response": variable(
-                ("case", "realization", "x"), response, "smoothed response in 1/mean radius: stress per applied force"
-            ),
-            "force": variable((), force, f"applied force {FORCE}"),
-            "width": variable((), width, f"width w of the smoothing Gaussian {LENGTH}"),
-        },
-        coords={
-            "x": variable("x", x, f"distance from the loaded disk {LENGTH}"),
-            **{
-                name: ensembles[name].isel(case=cases).variable
-                for name in ("polydispersity", "friction", "lattice_constant")
-            },
-        },
+        variables(
+            response=("case realization x", response, "smoothed response in 1/mean radius: stress per applied force"),
+            force=("", force, f"applied force {FORCE}"),
+            width=("", width, f"width w of the smoothing Gaussian {LENGTH}"),
+        ),
+        coords=axes(x=(x, f"distance from the loaded disk {LENGTH}")) | kept,
     )
 
 
@@ -126,42 +115,29 @@ def _linear_range(asked: LinearRange, grid: Sequence[tuple[float, float]], found
     forces = np.array(asked.forces)
     each = [Small.of(forces, one, asked.width, asked.tolerance) for one in found]
     below = f"differs by less than {asked.tolerance:.0%} from that to the smallest force"
-    ends = {
-        "linear_until": variable(
-            "path", [one.ends[0] for one in each], f"last force {FORCE} at which the response {below}"
-        ),
-        "nonlinear_from": variable(
-            "path", [one.ends[1] for one in each], f"first force {FORCE} at which it does not; nan for none"
-        ),
-    }
-    attributes = {"width": asked.width, "tolerance": asked.tolerance}
-    return (
-        table(each, "path")
-        .assign(ends)
-        .assign_attrs(attributes)
-        .assign_coords(
-            polydispersity=variable("path", [delta for delta, _ in grid], "delta: spread of the radii"),
-            friction=variable("path", [mu for _, mu in grid], "coefficient of friction, walls frictionless"),
-            force=variable("force", asked.forces, f"applied force {FORCE}"),
-        )
+    until, beyond = zip(*(one.ends for one in each), strict=True)
+    ends = variables(
+        linear_until=("path", until, f"last force {FORCE} at which the response {below}"),
+        nonlinear_from=("path", beyond, f"first force {FORCE} at which it does not; nan for none"),
     )
+    deltas, frictions = zip(*grid, strict=True)
+    coordinates = variables(
+        polydispersity=("path", deltas, "delta: spread of the radii"),
+        friction=("path", frictions, "coefficient of friction, walls frictionless"),
+        force=("force", asked.forces, f"applied force {FORCE}"),
+    )
+    found_at = table(each, "path").assign(ends).assign_coords(coordinates)
+    return found_at.assign_attrs(width=asked.width, tolerance=asked.tolerance)
 
 
 def _forces_dataset(scene: Scene, found: Realization, polydispersity: float) -> xr.Dataset:
     """The states of Fig. 2: at rest, and under load."""
-    problem = Problem.from_scene(scene)
     if len(found.states) != 2:
         raise SceneError(f"forces_picture: the realization does not reach its force ({found.message or 'collapsed'})")
-    packing = problem.packing
-    problem = problem.with_loads(found.states[0].position)
-    states = common_candidates(found.states, packing.radius)
-    dataset = states_dataset(states)
-    dataset["axis"].attrs.update(long_name="axis labels", units="1")
-    return dataset.assign(
-        force=variable("state", [state.load_factor for state in states], f"applied force {FORCE}"),
-        radius=variable("disk", packing.radius, f"disk radius {LENGTH}"),
-        width=variable((), packing.width, f"distance of the side walls {LENGTH}"),
-        loaded_disk=variable((), int(problem.load_disk[0]), "index of the loaded disk"),
-        polydispersity=variable((), polydispersity, "delta: spread of the radii"),
-        friction=variable((), scene.contact.friction, "coefficient of friction, walls included"),
+    problem = Problem.from_scene(scene).with_loads(found.states[0].position)
+    return states_picture(found.states, problem, of=None).assign(
+        variables(
+            polydispersity=("", polydispersity, "delta: spread of the radii"),
+            friction=("", scene.contact.friction, "coefficient of friction, walls included"),
+        )
     )

@@ -103,20 +103,12 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
     layers = np.array([data["layers"].values.min(), data["layers"].values.max()], dtype=float)
     other = data["distance_other_floor"].values.min()
     axes.axhline(other, color=style.MUTED, linewidth=0.8, linestyle=(0, (2, 2)))
-    axes.annotate(
-        "to the other floor's slab",
-        (layers[0], other),
-        (0, -4),
-        textcoords="offset points",
-        va="top",
-        fontsize=8,
-        color=style.MUTED,
-    )
-    guide = (
-        1.25 * data["distance"].values.max(initial=0.0, where=data["layers"].values == layers[0]) * layers[0] / layers
-    )
+    look: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8}
+    axes.annotate("to the other floor's slab", (layers[0], other), (0, -4), va="top", color=style.MUTED, **look)
+    thinnest = data["distance"].values[data["layers"].values == layers[0]]
+    guide = 1.25 * thinnest.max() * layers[0] / layers
     axes.plot(layers, guide, color=style.FAINT, linewidth=0.8, zorder=0)
-    axes.annotate("$\\propto 1/n$", (layers[1], guide[1]), (0, -12), textcoords="offset points", ha="right", fontsize=8)
+    axes.annotate("$\\propto 1/n$", (layers[1], guide[1]), (0, -12), ha="right", **look)
     axes.set(xscale="log", yscale="log", xlabel="layers $n$", ylabel="distance / largest response")
     ticks = sorted(set(data["layers"].values.tolist()))
     axes.set_xticks(ticks, [f"{n:g}" for n in ticks])

@@ -10,7 +10,7 @@ from granular_response.scene import Scene
 from granular_response.scene.base import Description, Positive, Ratio, allowed
 from granular_response.scene.errors import Problem
 from granular_response.theory.slab import Floor
-from granular_response_paper.parameters import UNIT_LOAD, SceneGroup, over, some
+from granular_response_paper.parameters import SIZE, UNIT_LOAD, SceneGroup, over, some
 
 Rows = Annotated[int, Field(strict=True, ge=2), allowed("must be a whole number from 2 on")]
 
@@ -35,16 +35,7 @@ class Parameters(SceneGroup):
     """Section ``slab_comparison``."""
 
     scene: Annotated[
-        Scene,
-        over(
-            UNIT_LOAD,
-            "packing.layers",
-            "packing.disks_per_row",
-            "contact.friction",
-            "wall.friction",
-            "preparation.gravity",
-            "loads",
-        ),
+        Scene, over(UNIT_LOAD, *SIZE, "contact.friction", "wall.friction", "preparation.gravity", "loads")
     ] = Field(description="Base scene; contact.stiffness_ratio is that of packings with friction.")
     force: Positive = Field(description="Small, in mean disk weights.")
     cases: Annotated[tuple[Case, ...], AfterValidator(some)] = Field(description="Materials and shapes.")

@@ -135,8 +135,7 @@ def _drift(panel: Axes, study: xr.Dataset) -> None:
     for k, integrator in enumerate(study["integrator"].values):
         one = study.sel(integrator=integrator, system="slab")
         panel.plot(one["time"], 1e3 * one["energy_change"], label=str(integrator).capitalize(), **style.line(k))
-    panel.set_xlabel(f"time [${style.TIME_UNIT}$]")
-    panel.set_ylabel(r"energy change [$10^{-3}$]")
+    panel.set(xlabel=f"time [${style.TIME_UNIT}$]", ylabel=r"energy change [$10^{-3}$]")
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.3 * (high - low))
     panel.legend(title="undamped slab, no friction", loc="upper right", ncols=3)
@@ -150,9 +149,7 @@ def _sliding(panel: Axes, study: xr.Dataset) -> None:
         panel.plot(one["time"], one["energy_change"], color=look["color"], linestyle="-", linewidth=0.9)
         panel.plot(one["time"][place], one["energy_change"][place], label=str(integrator).capitalize(), **look | DOTS)
     panel.axhline(0.0, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=0)
-    panel.set_ylim(-1.15, 0.25)
-    panel.set_xlabel(f"time [${style.TIME_UNIT}$]")
-    panel.set_ylabel("energy change")
+    panel.set(xlabel=f"time [${style.TIME_UNIT}$]", ylabel="energy change", ylim=(-1.15, 0.25))
     panel.legend(title="the same with friction", loc="center right")
 
 
@@ -162,8 +159,7 @@ def _collisions(panel: Axes, study: xr.Dataset) -> None:
         one = worst.sel(friction_law=law, body=body, damping_ratio=0.0)
         panel.plot(one["angle"], one, label=f"{FRICTION_LAWS[law]} rule, {body}", **style.marked_line(k))
     panel.axhline(1.0, color=style.MUTED, linewidth=0.8, linestyle="-", zorder=0)
-    panel.set_xlabel("angle from grazing [degrees]")
-    panel.set_ylabel("largest energy, after / before")
+    panel.set(xlabel="angle from grazing [degrees]", ylabel="largest energy, after / before")
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.25 * (high - low))
     panel.legend(loc="upper right", ncols=2)
@@ -185,8 +181,7 @@ def _rolling(panel: Axes, study: xr.Dataset) -> None:
         panel.plot(time[some], one["exact_rim_speed"][some], **look | DOTS | hollow)
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.15 * (high - low))
-    panel.set_xlabel("time / time of sliding")
-    panel.set_ylabel(r"velocity (–), rim speed (– –) [$\sqrt{g\bar R}$]")
+    panel.set(xlabel="time / time of sliding", ylabel=r"velocity (–), rim speed (– –) [$\sqrt{g\bar R}$]")
     panel.legend(title="at first", loc="lower right")
 
 
@@ -204,17 +199,15 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
         outcomes.annotate(str(number), (number, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=8)
     outcomes.set_yticks(place, RANDOM)
     step = 250 if max(count) > 500 else 10
-    outcomes.set(xlim=(0, step * np.ceil(1.2 * max(count) / step)))
+    outcomes.set(xlim=(0, step * np.ceil(1.2 * max(count) / step)), xlabel="random scenes")
     outcomes.tick_params(axis="y", length=0.0)
-    outcomes.set_xlabel("random scenes")
     certified = study["force_residual"].values[code == 0]
     bins = np.logspace(-16, -3, 53)
     residuals.hist(np.maximum(certified, 1e-16), bins=bins, color=style.SKY)
     residuals.axvline(1e-9, color=style.MUTED, linewidth=0.8, linestyle="--")
     residuals.set(xscale="log", xlim=(1e-16, 1e-4 if certified.max(initial=0.0) < 1e-4 else 1e-2))
     residuals.set_xticks([1e-16, 1e-13, 1e-10, 1e-7, 1e-4])
-    residuals.set_xlabel(f"unbalanced force [${style.WEIGHT}$]")
-    residuals.set_ylabel("certified scenes")
+    residuals.set(xlabel=f"unbalanced force [${style.WEIGHT}$]", ylabel="certified scenes")
     disturbed = datasets["rounding"]
     rows = np.arange(disturbed.sizes["case"])[::-1]
     for k in range(disturbed.sizes["kick"]):
@@ -223,7 +216,6 @@ def _scenes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     rounding.set(xscale="log", xlim=(1e-13, 1.0), xticks=[1e-12, 1e-9, 1e-6, 1e-3, 1.0])
     names = [str(case).replace(", ", ",\n", 1) for case in disturbed["case"].values]
     rounding.set_yticks(rows, names, fontsize=7, linespacing=0.9)
-    rounding.set_ylim(-0.7, len(rows) - 0.3)
-    rounding.set_xlabel("change of the response")
+    rounding.set(ylim=(-0.7, len(rows) - 0.3), xlabel="change of the response")
     titles(axes.flat)
     return figure

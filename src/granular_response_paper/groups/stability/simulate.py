@@ -52,7 +52,8 @@ AXES: dict[str, tuple[str, str]] = {
 #: What the disk of a collision hits, and by which friction law.
 BODIES, LAWS = ("floor", "disk"), ("cut", "literal")
 
-Place = tuple[Any, ...]
+#: Of one study: its tasks by their places, and what makes the datasets of what these find.
+Study = tuple[Mapping[Any, Callable[[], Any]], Callable[[dict[Any, Any]], dict[str, xr.Dataset]]]
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -60,32 +61,23 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     and ``random_scenes``.
     """
     asked, seed = parameters, parameters.seed
-    parts: dict[str, Mapping[Any, Callable[[], Any]]] = {
-        "time_steps": _time_steps(asked.time_steps, seed),
-        "drift": _drift(asked.drift, seed),
-        "collisions": _collisions(asked.collisions),
-        "rolling": _rolling(asked.rolling),
-        "rounding": _rounding(asked.rounding, seed),
-        "random_scenes": _random_scenes(asked.random_scenes, seed),
-    }
-    tasks = {(part, place): task for part, several in parts.items() for place, task in several.items()}
-    done = computed(tasks, "stability trials")
-    of = {part: {place: done[part, place] for place in several} for part, several in parts.items()}
-    return labelled(
-        {
-            **_time_step_datasets(asked.time_steps, of["time_steps"]),
-            "drift": _drift_dataset(asked.drift, of["drift"]),
-            "collisions": _collisions_dataset(asked.collisions, of["collisions"]),
-            "rolling": _rolling_dataset(asked.rolling, of["rolling"]),
-            "rounding": _rounding_dataset(asked.rounding, of["rounding"]),
-            "random_scenes": _random_scenes_dataset(
-                [one for several in of["random_scenes"].values() for one in several]
-            ),
-        }
+    studies = (
+        _time_steps(asked.time_steps, seed),
+        _drift(asked.drift, seed),
+        _collisions(asked.collisions),
+        _rolling(asked.rolling),
+        _rounding(asked.rounding, seed),
+        _random_scenes(asked.random_scenes, seed),
     )
+    tasks = {(k, place): task for k, (several, _) in enumerate(studies) for place, task in several.items()}
+    done = computed(tasks, "stability trials")
+    made: dict[str, xr.Dataset] = {}
+    for k, (several, datasets) in enumerate(studies):
+        made |= datasets({place: done[k, place] for place in several})
+    return labelled(made)
 
 
-def _time_steps(asked: TimeSteps, seed: int) -> dict[Place, partial[list[time_steps.Steps]]]:
+def _time_steps(asked: TimeSteps, seed: int) -> Study:
     """By the name of an axis and the place on it."""
     tasks = {}
     for name, values in asked.axes.items():
@@ -94,22 +86,22 @@ def _time_steps(asked: TimeSteps, seed: int) -> dict[Place, partial[list[time_st
                 changes: dict[str, Any] = {"loads": [{"disk": "top-centre", "force": [0.0, -value]}] if value else []}
             else:
                 changes = {AXES[name][0]: value}
-            scene = time_steps.scene_of(asked.scene, changes)
+            scene = asked.scene.updated({**changes, "protocol.time_step": "auto"})  # safe to come to rest with
             tasks[name, k] = partial(time_steps.tried, scene, asked.integrators, asked.ratios, asked.steps, seed)
-    return tasks
 
+    def datasets(found: dict[Any, list[time_steps.Steps]]) -> dict[str, xr.Dataset]:
+        made = {}
+        for name, values in asked.axes.items():
+            several = {(i, k): one for k in range(len(values)) for i, one in enumerate(found[name, k])}
+            coordinates = {
+                "integrator": (asked.integrators, "integrator"),
+                name: (values, AXES[name][1]),
+                "ratio": (asked.ratios, "time step over the predicted limit"),
+            }
+            made[f"time_step_{name}"] = table(several, "integrator", name).assign_coords(axes(**coordinates))
+        return made
 
-def _time_step_datasets(asked: TimeSteps, found: dict[Place, list[time_steps.Steps]]) -> dict[str, xr.Dataset]:
-    datasets = {}
-    for name, values in asked.axes.items():
-        several = {(i, k): one for k in range(len(values)) for i, one in enumerate(found[name, k])}
-        coordinates = {
-            "integrator": (asked.integrators, "integrator"),
-            name: (values, AXES[name][1]),
-            "ratio": (asked.ratios, "time step over the predicted limit"),
-        }
-        datasets[f"time_step_{name}"] = table(several, "integrator", name).assign_coords(axes(**coordinates))
-    return datasets
+    return tasks, datasets
 
 
 @record
@@ -138,27 +130,19 @@ def drift(scene: Scene, system: str, integrator: str, part: float, time: float, 
     return Drifted(times, change / (0.5 if system == "bouncing disk" else closed_forms.kinetic_energy(state, problem)))
 
 
-def _systems(asked: Drift) -> dict[str, tuple[float, float]]:
-    """Friction and duration by the name of what moves."""
-    return {
+def _drift(asked: Drift, seed: int) -> Study:
+    systems = {  # friction and duration by what moves
         "bouncing disk": (0.0, asked.time),
         "slab": (0.0, asked.time),
         "slab with friction": (asked.friction, asked.friction_time),
     }
-
-
-def _drift(asked: Drift, seed: int) -> dict[Place, partial[Drifted]]:
     tasks = {}
-    for s, (system, (mu, time)) in enumerate(_systems(asked).items()):
+    for s, (system, (mu, time)) in enumerate(systems.items()):
         scene = asked.scene.updated({"contact.friction": mu})
         for i, name in enumerate(asked.integrators):
             tasks[s, i] = partial(drift, scene, system, name, asked.part_of_limit, time, asked.kick, seed)
-    return tasks
-
-
-def _drift_dataset(asked: Drift, found: dict[Place, Drifted]) -> xr.Dataset:
-    coordinates = axes(system=(_systems(asked), "what moves"), integrator=(asked.integrators, "integrator"))
-    return table(found, "system", "integrator").assign_coords(coordinates)
+    coordinates = axes(system=(systems, "what moves"), integrator=(asked.integrators, "integrator"))
+    return tasks, lambda found: {"drift": table(found, "system", "integrator").assign_coords(coordinates)}
 
 
 @record
@@ -173,7 +157,7 @@ def collide(scene: Scene, angles: tuple[float, ...], spins: tuple[float, ...], s
     return Collided(np.array(ratios))
 
 
-def _collisions(asked: Collisions) -> dict[Place, partial[Collided]]:
+def _collisions(asked: Collisions) -> Study:
     tasks = {}
     places = product(*map(range, (len(BODIES), len(LAWS), len(asked.damping_ratios), len(asked.frictions))))
     for b, k, d, f in places:
@@ -181,10 +165,6 @@ def _collisions(asked: Collisions) -> dict[Place, partial[Collided]]:
         changes = {"contact.friction": mu, "wall.friction": mu, "contact.damping_ratio": ratio}
         scene = Scene().updated({**changes, "protocol.friction_law": LAWS[k], "loads": []})
         tasks[b, k, d, f] = partial(collide, scene, asked.angles, asked.spins, asked.time_step, BODIES[b])
-    return tasks
-
-
-def _collisions_dataset(asked: Collisions, found: dict[Place, Collided]) -> xr.Dataset:
     coordinates = axes(
         body=(BODIES, "what the disk hits"),
         friction_law=(LAWS, "protocol.friction_law"),
@@ -193,7 +173,8 @@ def _collisions_dataset(asked: Collisions, found: dict[Place, Collided]) -> xr.D
         angle=(asked.angles, "angle of incidence from grazing in degrees"),
         spin=(asked.spins, "spin of the hitting disk, rim speed over speed"),
     )
-    return table(found, "body", "friction_law", "damping_ratio", "friction").assign_coords(coordinates)
+    dims = ("body", "friction_law", "damping_ratio", "friction")
+    return tasks, lambda found: {"collisions": table(found, *dims).assign_coords(coordinates)}
 
 
 @record
@@ -213,34 +194,36 @@ def roll(friction: float, speed: float, spin: float, step: float) -> Rolled:
     return Rolled(times, velocity, rim_speed, *closed_forms.rolling_speed(times, friction, speed, spin))
 
 
-def _rolling(asked: Rolling) -> dict[Place, partial[Rolled]]:
-    return {(k,): partial(roll, asked.friction, *start, asked.time_step) for k, start in enumerate(asked.starts)}
+def _rolling(asked: Rolling) -> Study:
+    tasks = {(k,): partial(roll, asked.friction, *start, asked.time_step) for k, start in enumerate(asked.starts)}
+    friction = variable((), asked.friction, "coefficient of friction of the floor")
+    starts = {
+        "speed": variable("start", [v for v, _ in asked.starts], "velocity at first"),
+        "spin": variable("start", [w for _, w in asked.starts], "spin at first, counter-clockwise"),
+    }
+    return tasks, lambda found: {"rolling": table(found, "start").assign_coords(starts).assign(friction=friction)}
 
 
-def _rolling_dataset(asked: Rolling, found: dict[Place, Rolled]) -> xr.Dataset:
-    dataset = table(found, "start").assign_coords(
-        speed=variable("start", [v for v, _ in asked.starts], "velocity at first"),
-        spin=variable("start", [w for _, w in asked.starts], "spin at first, counter-clockwise"),
-    )
-    return dataset.assign(friction=variable((), asked.friction, "coefficient of friction of the floor"))
-
-
-def _rounding(asked: Rounding, seed: int) -> dict[Place, partial[list[Disturbed]]]:
+def _rounding(asked: Rounding, seed: int) -> Study:
     seeds = range(seed, seed + asked.kicks)
-    return {(k,): partial(disturb, scene, asked.displacement, seeds) for k, scene in enumerate(asked.scenes)}
-
-
-def _rounding_dataset(asked: Rounding, found: dict[Place, list[Disturbed]]) -> xr.Dataset:
-    each = {(*case, k): one for case, several in found.items() for k, one in enumerate(several)}
+    tasks = {(k,): partial(disturb, scene, asked.displacement, seeds) for k, scene in enumerate(asked.scenes)}
     size = variable((), asked.displacement, "largest displacement of the rest state, in mean radii")
-    dataset = table(each, "case", "kick").assign_coords(axes(case=(asked.cases, "packing and load")))
-    return dataset.assign(displacement=size)
+
+    def datasets(found: dict[Any, list[Disturbed]]) -> dict[str, xr.Dataset]:
+        each = {(*case, k): one for case, several in found.items() for k, one in enumerate(several)}
+        dataset = table(each, "case", "kick").assign_coords(axes(case=(asked.cases, "packing and load")))
+        return {"rounding": dataset.assign(displacement=size)}
+
+    return tasks, datasets
 
 
-def _random_scenes(asked: RandomScenes, seed: int) -> dict[Place, partial[list[random_scenes.Trial]]]:
-    return {
+def _random_scenes(asked: RandomScenes, seed: int) -> Study:
+    tasks = {
         (begin,): partial(_random_chunk, asked.maximum_steps, seed, begin, min(begin + asked.chunk, asked.number))
         for begin in range(0, asked.number, asked.chunk)
+    }
+    return tasks, lambda found: {
+        "random_scenes": _random_scenes_dataset([one for each in found.values() for one in each])
     }
 
 

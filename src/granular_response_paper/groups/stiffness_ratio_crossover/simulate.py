@@ -25,7 +25,7 @@ from granular_response.observe.events import bisect_event
 from granular_response.observe.peaks import central_dip
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.result import FORCE, LENGTH
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
@@ -34,7 +34,7 @@ from granular_response.theory.slab import Floor, response_of_layers
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stiffness_ratio_crossover.parameters import Parameters
-from granular_response_paper.records import axes, column, record, stacked, table
+from granular_response_paper.records import axes, column, record, stacked, table, variables
 from granular_response_paper.tasks import computed
 
 BODIES: tuple[Body, ...] = get_args(Body)
@@ -43,13 +43,18 @@ ROTATIONS: tuple[lattice.Rotations, ...] = get_args(lattice.Rotations)
 #: Further ratios at which the elastic bodies are computed, which costs next to nothing.
 ELASTIC_RATIOS = np.round(np.arange(0.025, 1.0, 0.025), 3)
 
-EVENTS = {
-    "two_peaks_end": "the first stiffness ratio, going up, at which the floor response has no two peaks each "
-    "higher than the response at x = 0 by a thousandth of the largest response",
-    "central_maximum_begins": "the stiffness ratio above which the floor response is largest at x = 0, at every ratio "
-    "of the axis",
+#: What happens at a ratio, and whether it has in what was measured there.
+EVENTS: dict[str, tuple[str, Callable[[xr.Dataset], bool]]] = {
+    "two_peaks_end": (
+        "the first stiffness ratio, going up, at which the floor response has no two peaks each "
+        "higher than the response at x = 0 by a thousandth of the largest response",
+        lambda measured: not measured["double_peaked"][0],
+    ),
+    "central_maximum_begins": (
+        "the stiffness ratio above which the floor response is largest at x = 0, at every ratio of the axis",
+        lambda measured: bool(measured["central_dip"][0] < 0.0),
+    ),
 }
-
 
 RATIO = "tangential stiffness over normal stiffness"
 
@@ -66,7 +71,7 @@ def measure(base: Scene, ratio: float, force: float) -> tuple[xr.Dataset, str]:
 
 def narrow(name: str, base: Scene, force: float, low: float, high: float, tolerance: float) -> tuple[float, float]:
     """Bisect an event of ``EVENTS`` between two ratios; every evaluation settles and loads a packing."""
-    happened = _HAPPENED[name]
+    _, happened = EVENTS[name]
     found = bisect_event(
         lambda ratio: happened(measure(base, ratio, force)[0]), low, high, tolerance, at_low=False, at_high=True
     )
@@ -88,15 +93,17 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
     brackets |= computed(searches, "crossovers")
     events = slab.events_dataset(
-        [slab.Event(name, base.contact.friction, *brackets[name], text) for name, text in EVENTS.items()]
+        [slab.Event(name, base.contact.friction, *brackets[name], text) for name, (text, _) in EVENTS.items()]
     ).drop_vars("friction")
     events["low"].attrs["long_name"] = "stiffness ratio before the event"
 
     response = slab.measured_along("stiffness_ratio", measured).assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
-    response["force"] = variable((), force, f"applied force {FORCE}")
-    response["methods"] = variable(
-        "stiffness_ratio", [method for _, method in results.values()], "method that found the loaded state"
+    methods = [method for _, method in results.values()]
+    further = variables(
+        force=("", force, f"applied force {FORCE}"),
+        methods=("stiffness_ratio", methods, "method that found the loaded state"),
     )
+    response = response.assign(further)
     packing = base.packing.build()
     elastic = elastic_bodies(
         np.union1d(ratios, ELASTIC_RATIOS), measured[0]["x"].values, packing.row_count.size, packing.width
@@ -120,36 +127,30 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     ``layers`` disk layers between smooth walls ``width`` apart. It is nan at a ratio of zero, where the lattice
     resists some strain not at all. ``root`` and ``moduli_error`` are claims K2 and K3.
     """
-    found = {}
-    for (r, rotations), (b, body), (k, ratio) in product(
-        enumerate(ROTATIONS), enumerate(BODIES), enumerate(ratios.tolist())
-    ):
-        if ratio > 0.0:
-            profile = _profile(lattice.moduli(Springs(0.0, 1.0, 0.0, ratio), rotations), body, x, layers, width)
+    found, error = {}, {}
+    for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist())):
+        if ratio == 0.0:
+            continue
+        springs = Springs(0.0, 1.0, 0.0, ratio)
+        moduli = lattice.moduli(springs, rotations)
+        exact = moduli.matrix()
+        error[r, k] = np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max()
+        for b, body in enumerate(BODIES):
+            profile = _profile(moduli, body, x, layers, width)
             found[r, b, k] = Elastic(profile, central_dip(x, profile))
-    error = {
-        (r, k): _moduli_error(Springs(0.0, 1.0, 0.0, ratio), rotations)
-        for (r, rotations), (k, ratio) in product(enumerate(ROTATIONS), enumerate(ratios.tolist()))
-        if ratio > 0.0
-    }
-    dataset = table(found, "rotations", "body", "stiffness_ratio").assign(
-        root=variable(
-            "rotations",
-            [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS],
-            "k_2t/k_2n at which r of Sec. V.C is 0",
-        ),
-        moduli_error=variable(
-            ("rotations", "stiffness_ratio"),
-            stacked(error),
-            "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest",
-        ),
+    roots = [lattice.peak_criterion_root(rotations) for rotations in ROTATIONS]
+    off = "largest difference of the moduli of a strained periodic lattice from eqs. (7)-(10), per largest"
+    further = variables(
+        root=("rotations", roots, "k_2t/k_2n at which r of Sec. V.C is 0"),
+        moduli_error=("rotations stiffness_ratio", stacked(error), off),
     )
-    place = variable("floor_disk", x, f"position of the floor disk from the load {LENGTH}")
-    return dataset.assign_coords(
-        axes(stiffness_ratio=(ratios, RATIO))
-        | {"x": place}
-        | axes(body=(BODIES, "elastic body that carries the force"), rotations=(ROTATIONS, "whether the disks turn"))
+    coordinates = variables(
+        stiffness_ratio=("stiffness_ratio", ratios, RATIO),
+        x=("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
+        body=("body", BODIES, "elastic body that carries the force"),
+        rotations=("rotations", ROTATIONS, "whether the disks turn"),
     )
+    return table(found, "rotations", "body", "stiffness_ratio").assign(further).assign_coords(coordinates)
 
 
 def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: float) -> FloatArray:
@@ -160,32 +161,9 @@ def _profile(moduli: Moduli, body: Body, x: FloatArray, layers: int, width: floa
     return response_of_layers(x, layers=layers, moduli=moduli, floor=floor, width=width)
 
 
-def _moduli_error(springs: Springs, rotations: lattice.Rotations) -> float:
-    exact = lattice.moduli(springs, rotations).matrix()
-    return float(np.abs(lattice.measured_moduli(springs, rotations) - exact).max() / exact.max())
-
-
-def _two_peaks_ended(measured: xr.Dataset) -> bool:
-    return not measured["double_peaked"][0]
-
-
-def _largest_at_centre(measured: xr.Dataset) -> bool:
-    return bool(measured["central_dip"][0] < 0.0)
-
-
-_HAPPENED: dict[str, Callable[[xr.Dataset], bool]] = {
-    "two_peaks_end": _two_peaks_ended,
-    "central_maximum_begins": _largest_at_centre,
-}
-
-
 def _brackets(ratios: FloatArray, measured: Sequence[xr.Dataset]) -> dict[str, tuple[float, float]]:
     """Where on the axis each event lies."""
-    ended = [_two_peaks_ended(one) for one in measured]
-    central = [_largest_at_centre(one) for one in measured]
+    ended, central = ([happened(one) for one in measured] for _, happened in EVENTS.values())
     # the last stretch of ratios with the maximum at the centre; there may be others below it
     begun = [all(central[k:]) for k in range(len(central))]
-    return {
-        "two_peaks_end": slab.first_change(ratios, ended),
-        "central_maximum_begins": slab.first_change(ratios, begun),
-    }
+    return dict(zip(EVENTS, (slab.first_change(ratios, ended), slab.first_change(ratios, begun)), strict=True))

@@ -55,16 +55,8 @@ def _bond(axes: Axes, start: FloatArray, end: FloatArray, family: str, outside: 
     for arm in ([at(surface, near), at(1.0, near)], [at(2.0, _RADIUS), at(2.0, far), at(1.0, far)]):
         axes.plot(*np.transpose(arm), color=style.MUTED, linewidth=0.9, linestyle="-")
     axes.plot(*_coil(at(1.0, near), at(1.0, far), 4, 0.085).T, color=_COLOUR["t"], linestyle="-")
-    for kind, place in (("n", at(1.0, -0.35)), ("t", at(0.74, 0.43))):
-        axes.text(
-            float(place[0]),
-            float(place[1]),
-            f"$k_{family}^{kind}$",
-            color=_COLOUR[kind],
-            ha="center",
-            va="center",
-            fontsize=11,
-        )
+    for kind, (x, z) in (("n", at(1.0, -0.35)), ("t", at(0.74, 0.43))):
+        axes.text(x, z, f"$k_{family}^{kind}$", color=_COLOUR[kind], ha="center", va="center", fontsize=11)
 
 
 def _coil(start: FloatArray, end: FloatArray, turns: int, amplitude: float) -> FloatArray:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from granular_response.plot import network, style
 from granular_response.state import FloatArray
-from granular_response_paper.captions import Caption, Value, lettered, of_group, of_scene
+from granular_response_paper.captions import Caption, lettered, of_group, of_scene
 from granular_response_paper.panels import family, titles, zero
 
 from .parameters import Parameters
@@ -38,28 +38,20 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    given = of_scene(parameters.scene)
     diameters = [2 * offset for offset in parameters.offsets]
-    distances = [2.0 * d for d in diameters]
+    scene, distance = parameters.scene, [2.0 * d for d in diameters]
     panels = lettered(f"d = {d:g} diameters" for d in diameters)
-    realizations = parameters.pair_realizations
+    said = of_scene(scene, force=parameters.forces, distance=distance, realizations=parameters.pair_realizations)
     found = of_group(
         "superposition",
-        {
-            "fig24b_superposition_error": {
-                **given,
-                "force": parameters.forces,
-                "distance": distances,
-                "realizations": realizations,
-            }
-        },
+        {"fig24b_superposition_error": said},
         p=parameters,
         linear=datasets["linear_range"].sizes["realization"],
         tolerance=100.0 * parameters.tolerance,
         until=LINEAR_UNTIL,
     )
     for stem, force in FORCES.items():
-        said: dict[str, Value] = {**given, "force": force, "distance": distances}
+        said = of_scene(scene, force=force, distance=distance)
         found |= of_group("superposition", {stem: said}, panels=panels, force=force)
     return found
 

@@ -25,11 +25,11 @@ from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
+from granular_response.store.result import FORCE, LENGTH, common_candidates
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.superposition.parameters import Parameters
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.slab_response import by_motion, linear_end
 from granular_response_paper.tasks import computed
 
@@ -135,19 +135,19 @@ def load_pair(scene: Scene, rest: State, offset: int, forces: Sequence[float]) -
     )
 
 
-def load_single(scene: Scene, rest: State, forces: Sequence[float], width: float, tolerance: float) -> Single:
-    """One load on the middle disk; ``width`` of the Gaussian at x = 0. Raises what the solvers raise."""
-    states, (load_x,) = _path(scene, rest, (0,), forces)
+def load_single(scene: Scene, rest: State, asked: Parameters) -> Single:
+    """One load on the middle disk. Raises what the solvers raise."""
+    states, (load_x,) = _path(scene, rest, (0,), asked.single_forces)
     packing = scene.packing.build()
     rest, *states = common_candidates([rest, *states], packing.radius)
     disks = np.flatnonzero(packing.row == 0)
-    at_rest, per = floor_force(rest, disks), np.array(forces)
+    at_rest, per = floor_force(rest, disks), np.array(asked.single_forces)
     response = np.array([floor_force(state, disks) - at_rest for state in states]) / per[:, None]
     added = np.array([pair_force_difference(rest, state) for state in states]) / per[:, None, None]
     change = np.linalg.norm(added - added[0], axis=(1, 2)) / np.linalg.norm(added[0])
     x = rest.position[disks, 0] - load_x
-    centre = smoothed_response([0.0], x, response, width)[:, 0]
-    return Single(centre, change, *linear_end(per, centre, tolerance), load_x, x)
+    centre = smoothed_response([0.0], x, response, asked.width)[:, 0]
+    return Single(centre, change, *linear_end(per, centre, asked.tolerance), load_x, x)
 
 
 def _path(scene: Scene, rest: State, places: Sequence[int], forces: Sequence[float]) -> tuple[list[State], FloatArray]:
@@ -178,43 +178,30 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     asked, offsets, with_pairs = parameters, parameters.offsets, range(parameters.pair_realizations)
     scenes = {r: asked.base.updated({"packing.realization": r}) for r in range(asked.realizations)}
     rests = computed({r: partial(rest_of, scene) for r, scene in scenes.items()}, "rest")
-    singles = computed(
-        {
-            r: partial(load_single, scene, rests[r], asked.single_forces, asked.width, asked.tolerance)
-            for r, scene in scenes.items()
-        },
-        "single loads",
-    )
-    pairs = computed(
-        {
-            (r, k): partial(load_pair, scenes[r], rests[r], offset, asked.forces)
-            for r in with_pairs
-            for k, offset in enumerate(offsets)
-        },
-        "pairs of loads",
-    )
+    alone = {r: partial(load_single, scene, rests[r], asked) for r, scene in scenes.items()}
+    singles = computed(alone, "single loads")
+    both = {
+        (r, k): partial(load_pair, scenes[r], rests[r], offset, asked.forces)
+        for r in with_pairs
+        for k, offset in enumerate(offsets)
+    }
+    pairs = computed(both, "pairs of loads")
 
     packing = asked.base.packing.build()
     gaps = np.sqrt(3.0) * (np.arange(int(packing.row.max())) + 0.5)
+    apart = "places between the two loaded disks, their distance in mean disk diameters"
     coordinates = axes(
-        distance=(
-            2.0 * np.array(offsets),
-            "places between the two loaded disks, their distance in mean disk diameters",
-        ),
+        distance=(2.0 * np.array(offsets), apart),
         force=(asked.forces, f"each of the two applied forces {FORCE}"),
     )
-    responses = table({place: pair.responses for place, pair in pairs.items()}, "realization", "distance").assign(
-        x=variable(
-            ("realization", "floor_disk"),
-            [singles[r].x for r in with_pairs],
-            f"rest position of a floor disk from the middle disk on top {LENGTH}",
-        ),
-        load_x=variable(
-            ("realization", "distance", "side"),
-            [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs],
-            f"rest position of the loaded disks from the middle disk on top {LENGTH}",
-        ),
+    floor_x = [singles[r].x for r in with_pairs]
+    load_x = [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs]
+    from_middle = f"from the middle disk on top {LENGTH}"
+    places = variables(
+        x=("realization floor_disk", floor_x, f"rest position of a floor disk {from_middle}"),
+        load_x=("realization distance side", load_x, f"rest position of the loaded disks {from_middle}"),
     )
+    responses = table({place: pair.responses for place, pair in pairs.items()}, "realization", "distance")
     further = axes(
         floor_disk=(np.flatnonzero(packing.row == 0), "index of the floor disk"),
         part=(PARTS, "which of the forces act"),
@@ -225,7 +212,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     linear = table(list(singles.values()), "realization")
     linear.attrs.update(width=asked.width, tolerance=asked.tolerance)
     datasets = {
-        "responses": responses.assign_coords(coordinates | further),
+        "responses": responses.assign(places).assign_coords(coordinates | further),
         "errors": errors.assign_coords(coordinates | depth),
         "linear_range": linear.assign_coords(axes(force=(asked.single_forces, f"force on the middle disk {FORCE}"))),
     }

@@ -87,16 +87,9 @@ def _protocols(panel: Axes, runs: xr.Dataset, held: xr.Dataset) -> None:
             hollow = {"linestyle": "none", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 0.8}
             label = rf"ramp {ramp:g}, step {step:g}"
             panel.plot(curve["force"], curve["asymmetry"], label=label, **look | (hollow if column else {}))
-    size = float(held["displacement"])
-    panel.plot(
-        held["force"],
-        held["asymmetry"],
-        color=style.BLACK,
-        linestyle="none",
-        marker="x",
-        markersize=4.5,
-        label=f"path, then displaced by {_power(size)}",
-    )
+    cross: dict[str, Any] = {"color": style.BLACK, "linestyle": "none", "marker": "x", "markersize": 4.5}
+    text = f"path, then displaced by {_power(float(held['displacement']))}"
+    panel.plot(held["force"], held["asymmetry"], label=text, **cross)
     panel.set_yscale("log")
     style.paper_value(panel, PAPER, f"paper: {PAPER:g}", at=0.8)
     panel.set(xlabel=style.FORCE, ylabel="asymmetry of the floor response")

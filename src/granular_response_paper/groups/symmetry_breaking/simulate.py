@@ -31,7 +31,7 @@ from granular_response.sweeps.rest import rest_of
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.symmetry_breaking.parameters import Copies, Parameters, Protocol
-from granular_response_paper.records import axes, column, record, table
+from granular_response_paper.records import axes, column, record, table, variables
 from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
@@ -53,32 +53,26 @@ class BracketResult:
     states: tuple[State, ...]  #: the last symmetric and the first asymmetric one, if there are both
 
 
-def ramps(base: Scene, rest: State, protocol: Protocol, tolerance: float, above: float) -> list[BracketResult]:
+def ramps(asked: Parameters, rest: State, protocol: Protocol) -> list[BracketResult]:
     """Bracket the loss of symmetry for one duration of the ramp, by one time step after another.
 
     A further time step is tried where the one before it lost its symmetry, and over all forces only if it does not
-    lose it there. ``above`` is the asymmetry that counts as lost symmetry.
+    lose it there.
     """
     results: list[BracketResult] = []
     for time_step in protocol.time_steps:
         found = results[-1].event if results else None
         first = (found.low, found.high) if found is not None and 0.0 < found.low < found.high else None
-        results.append(bracket(base, rest, protocol, tolerance, above, time_step, first))
+        results.append(bracket(asked, rest, protocol, time_step, first))
     return results
 
 
 def bracket(
-    base: Scene,
-    rest: State,
-    protocol: Protocol,
-    tolerance: float,
-    above: float,
-    time_step: float,
-    first: tuple[float, float] | None,
+    asked: Parameters, rest: State, protocol: Protocol, time_step: float, first: tuple[float, float] | None
 ) -> BracketResult:
     """For one time step; the loss is looked for between ``first`` before anywhere else."""
-    path = LoadPath.of(protocol.scene(base, time_step), rest)
-    measures = Measures(path)
+    path = LoadPath.of(protocol.scene(asked.scene, time_step), rest)
+    measures, above = Measures(path), asked.asymmetry
 
     def asymmetric(force: float) -> bool:
         return force > 0.0 and measures.asymmetry(path.at(force)) > above
@@ -87,7 +81,7 @@ def bracket(
     if first is not None and not asymmetric(first[0]) and asymmetric(first[1]):
         low, high = first
     try:
-        found = bisect_event(asymmetric, low, high, tolerance)
+        found = bisect_event(asymmetric, low, high, asked.tolerance)
         low, high = found.low, found.high
     except EventNotBracketed:
         low, high = (0.0, low) if asymmetric(low) else (high, float("nan"))
@@ -114,24 +108,17 @@ def held(scene: Scene, rest: State, forces: tuple[float, ...], displacement: flo
     states = path.through(forces)
     settled = [_displaced(path.problem, state, displacement) for state in states]
     measures = Measures(path)
-    moved = [
-        float(np.abs(after.position - before.position).max()) for before, after in zip(states, settled, strict=True)
-    ]
+    moved = [np.abs(after.position - before.position).max() for before, after in zip(states, settled, strict=True)]
     branch = slab.measured(measures, states)
-    return (
-        slab.measured_along("force", [slab.measured(measures, settled)])
-        .assign(
-            branch_asymmetry=variable(
-                "force", branch["asymmetry"].values, "asymmetry of the floor response before the displacement"
-            ),
-            branch_response=variable(
-                ("force", "floor_disk"), branch["floor_response"].values, "floor response before the displacement"
-            ),
-            moved=variable("force", moved, f"largest distance from the place before {LENGTH}"),
-            displacement=variable((), displacement, f"largest random displacement {LENGTH}"),
-        )
-        .assign_coords(axes(force=(forces, APPLIED)))
+    asymmetry, response = branch["asymmetry"].values, branch["floor_response"].values
+    further = variables(
+        branch_asymmetry=("force", asymmetry, "asymmetry of the floor response before the displacement"),
+        branch_response=("force floor_disk", response, "floor response before the displacement"),
+        moved=("force", moved, f"largest distance from the place before {LENGTH}"),
+        displacement=("", displacement, f"largest random displacement {LENGTH}"),
     )
+    found = slab.measured_along("force", [slab.measured(measures, settled)]).assign(further)
+    return found.assign_coords(axes(force=(forces, APPLIED)))
 
 
 def _displaced(problem: Problem, state: State, displacement: float) -> State:
@@ -159,9 +146,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     force, of_held = parameters.copies.force, parameters.held
     # long ones first, so that no core waits for them in the end
     longest = sorted(enumerate(protocols), key=lambda one: -(100.0 + one[1].ramp_time) / min(one[1].time_steps))
-    tasks: dict[Any, Callable[[], Any]] = {
-        k: partial(ramps, base, rest, protocol, parameters.tolerance, parameters.asymmetry) for k, protocol in longest
-    }
+    tasks: dict[Any, Callable[[], Any]] = {k: partial(ramps, parameters, rest, protocol) for k, protocol in longest}
     tasks["held"] = partial(held, parameters.base, rest, of_held.forces, of_held.displacement)
     tasks |= {name: partial(copied, first, copy, force) for name, copy in copies.items()}
     done = computed(tasks, "loss of symmetry")
@@ -203,13 +188,8 @@ def shuffled(packing: Packing, seed: int) -> Packing:
     Without the order of a lattice, whose neighbours are known by the numbers of the disks.
     """
     order = np.random.default_rng(seed).permutation(packing.n)
-    return replace(
-        packing,
-        position=packing.position[order],
-        radius=packing.radius[order],
-        row=packing.row[order],
-        left=None,
-    )
+    arrays = {name: getattr(packing, name)[order] for name in ("position", "radius", "row")}
+    return replace(packing, **arrays, left=None)
 
 
 def displaced(packing: Packing, shift: FloatArray, *, mirror_image: bool = False) -> Packing:
@@ -238,11 +218,12 @@ def _copies_dataset(copies: dict[str, xr.Dataset], force: float) -> xr.Dataset:
     response = dataset["floor_response"].values
     largest = response[0].max()
     text = "largest difference of the floor response to {} of the first copy, per largest response"
+    one, other = (np.abs(image - response[0]).max(axis=1) / largest for image in (response, response[:, ::-1]))
     return dataset.assign(
-        name=variable("copy", list(copies), "how the copy differs from the packing"),
-        force=variable((), force, APPLIED),
-        difference=variable("copy", np.abs(response - response[0]).max(axis=1) / largest, text.format("that")),
-        mirror_difference=variable(
-            "copy", np.abs(response[:, ::-1] - response[0]).max(axis=1) / largest, text.format("the mirror image")
-        ),
+        variables(
+            name=("copy", list(copies), "how the copy differs from the packing"),
+            force=("", force, APPLIED),
+            difference=("copy", one, text.format("that")),
+            mirror_difference=("copy", other, text.format("the mirror image")),
+        )
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import platform
+from collections import Counter
 from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
@@ -13,8 +14,6 @@ from granular_response import __version__
 from granular_response.inputs import read_json
 from granular_response.store import atomic
 from granular_response.sweeps.keys import sources
-
-_PACKAGE = "granular_response_paper"
 
 
 def arguments(what: str, seed: int) -> argparse.Namespace:
@@ -37,7 +36,7 @@ def write(path: Path, number: int, seed: int, outcomes: Mapping[str, Mapping[str
         "seed": seed,
         "outcomes": {kind: dict(sorted(counts.items())) for kind, counts in sorted(outcomes.items())},
         "package_version": __version__,
-        "sources": sources("", _PACKAGE),
+        "sources": sources("", "granular_response_paper"),
         "versions": {"python": platform.python_version(), **versions},
     }
     atomic.write_bytes(path, (json.dumps(made, indent=1) + "\n").encode())
@@ -45,8 +44,4 @@ def write(path: Path, number: int, seed: int, outcomes: Mapping[str, Mapping[str
 
 def totals(path: Path) -> dict[str, int]:
     """How many of all kinds together had which outcome. Raises OSError and ValueError for a file that is not one."""
-    found: dict[str, int] = {}
-    for counts in read_json(path)["outcomes"].values():
-        for outcome, count in counts.items():
-            found[outcome] = found.get(outcome, 0) + count
-    return found
+    return sum(map(Counter, read_json(path)["outcomes"].values()), Counter())
