@@ -9,15 +9,12 @@ import numpy as np
 import xarray as xr
 
 from granular_response.store import generated
-from granular_response_paper.groups.phase_diagram.claims import linear_end
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTES = ROOT / "docs" / "reproduction-notes.md"
 #: Name of the generated lines.
 BLOCK = "survey"
 FOUND, BELOW, ABOVE = 0, 1, 2
-#: Linear ranges that are shown: frictions, and how far off a response at x = 0 is no longer linear.
-FRICTIONS, OFF = (0.0, 0.05, 0.2), 0.01
 #: Places of the 2.5 and 97.5 per cent quantiles among the stored levels.
 ENDS = (0, -1)
 
@@ -62,7 +59,7 @@ def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """A line for each polydispersity and start: contacts without friction, and the dips with and without it."""
     data = datasets["starts"]
     heads = ["δ", "lattice constant", "coordination number", "horizontal part of the missing ones", "force"]
-    heads += ["dip, µ = 0", "dip, µ = 0.2", *(f"linear up to, µ = {mu:g}" for mu in FRICTIONS)]
+    heads += ["dip, µ = 0", "dip, µ = 0.2"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
     place = {
         (delta, round(distance, 6), mu): case
@@ -79,19 +76,9 @@ def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
             f"| {with_interval(data, 'missing_horizontal', (without,), 100.0, 0)} % "
             f"| {float(data['applied_force'].values[without]):g} "
             f"| {with_interval(data, 'dip', (0, without), 100.0, 0)} % "
-            f"| {with_interval(data, 'dip', (0, full), 100.0, 1)} % "
-            f"| {' | '.join(linear(datasets['linear_range'], delta, mu, name) for mu in FRICTIONS)} |"
+            f"| {with_interval(data, 'dip', (0, full), 100.0, 1)} % |"
         )
-    ends = (linear(datasets["linear_range"], 0.0, mu, "touching-largest") for mu in FRICTIONS)
-    lines.append(f"| 0 | lattice | | | | | | {' | '.join(ends)} |")
     return lines
-
-
-def linear(data: xr.Dataset, delta: float, friction: float, start: str) -> str:
-    """The median end of the linear range of a start beside smooth walls; nothing where it was not simulated."""
-    here = np.isclose(data["polydispersity"].values, delta) & np.isclose(data["friction"].values, friction)
-    here &= data["lattice_constant"].values.astype(str) == start
-    return linear_end(data.isel(case=int(np.flatnonzero(here)[0])), OFF).text() if here.any() else ""
 
 
 def with_interval(data: xr.Dataset, name: str, place: tuple[int, ...], factor: float, digits: int) -> str:
@@ -108,8 +95,7 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
             "",
             *crossovers(datasets),
             "",
-            "Initial lattices, with half the width of the 95 % interval; contacts with walls, dips smoothed with w = 3;"
-            " the linear range (beside smooth walls, 1 % off) with its 95 % interval:",
+            "Initial lattices, with half the width of the 95 % interval; contacts with walls, dips smoothed with w = 3:",
             "",
             *starts(datasets),
         ]
