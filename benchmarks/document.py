@@ -28,19 +28,20 @@ LARGE, MANY = 50_000, 5_000
 TEXTS = {
     "precision": (
         "Run time against error",
-        "Error: largest difference of the normalized floor response from the quasi-static limit. Times include the fall "
-        "under gravity. Open symbols: without the static finish. With friction LAMMPS is also compared with its own limit.",
+        "Error: largest difference of the normalized floor response from the quasi-static limit. Times include the "
+        "fall under gravity. Open symbols: without the static finish. With friction LAMMPS is also compared with "
+        "its own limit.",
     ),
     "nine_points": (
         "Path against dynamics",
-        "From the initial equilibrium: load path, and leapfrog with ramps of 1 to 100 sqrt(R/g) and a static finish, of "
-        "which the best-case ramp counts. The error is relative to the path.",
+        "From the initial equilibrium: load path, and leapfrog with ramps of 1 to 100 sqrt(R/g) and a static "
+        "finish, of which the best-case ramp counts. The error is relative to the path.",
     ),
     "exactness": (
         "Accuracy of the path",
-        "Against the same path in small increments with the return map. Error: largest difference of a force of the floor "
-        "or a wall, per load; up to 1e-8 and the error of the increments it counts as exact. Paths that lose an "
-        "equilibrium are not compared.",
+        "Against the same path in small increments with the return map. Error: largest difference of a force of the "
+        "floor or a wall, per load; up to 1e-8 and the error of the increments it counts as exact. Paths that lose "
+        "an equilibrium are not compared.",
     ),
     "convergence": (
         "Convergence of dynamics to the path",
@@ -56,8 +57,8 @@ TEXTS = {
     ),
     "arena": (
         "Comparison with other codes: a step",
-        "Friction 0.2; same start, contact law and time step, interleaved; processor time. LIGGGHTS runs `gran model "
-        "hooke/stiffness tangential history`, YADE `Law2_ScGeom_ViscElPhys_Basic`.",
+        "Friction 0.2; same start, contact law and time step, interleaved; processor time. LIGGGHTS runs `gran "
+        "model hooke/stiffness tangential history`, YADE `Law2_ScGeom_ViscElPhys_Basic`.",
     ),
     "responses": (
         "Comparison with other codes: a response",
@@ -65,9 +66,10 @@ TEXTS = {
     ),
     "bounces": (
         "Single collisions with a frictional wall",
-        "Friction 0.5. A disk that slides throughout has a closed form (dotted), from which `fix wall/gran hooke/history` "
-        "of LAMMPS of 2025 deviates ([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's "
-        "dashpots YADE lets no contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk.",
+        "Friction 0.5. A disk that slides throughout has a closed form (dotted), from which `fix wall/gran "
+        "hooke/history` of LAMMPS of 2025 deviates "
+        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE lets no "
+        "contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk.",
     ),
     "limits": (
         "Roofline",
@@ -92,9 +94,18 @@ TEXTS = {
         "The teardrop in deep slabs",
         "Open region without friction (Fig. 5); stiffness grows with the size. Open symbols: it has reached the floor.",
     ),
-    "shares": ("Profile", "Largest shares of the time on one thread; the first four cases are slabs of 908 disks."),
-    "startup": ("Start-up", "Whole processes, with cached kernels."),
-    "pipeline": ("The pipeline", "Every group from nothing, with compiled kernels, one after another on all cores."),
+    "shares": (
+        "Profile",
+        "Largest shares of the time on one thread; the first four cases are slabs of 908 disks.",
+    ),
+    "startup": (
+        "Start-up",
+        "Whole processes, with cached kernels.",
+    ),
+    "pipeline": (
+        "The pipeline",
+        "Every group from nothing, with compiled kernels, one after another on all cores.",
+    ),
 }
 
 

@@ -15,6 +15,8 @@ NOTES = ROOT / "docs" / "reproduction-notes.md"
 #: Name of the generated lines.
 BLOCK = "survey"
 FOUND, BELOW, ABOVE = 0, 1, 2
+#: Of the smoothing, as in Fig. 22; the polydispersity of which the paper states what contacts are missing.
+WIDTH, STATED = 6.0, 0.01
 #: Places of the 2.5 and 97.5 per cent quantiles among the stored levels.
 ENDS = (0, -1)
 
@@ -22,10 +24,8 @@ ENDS = (0, -1)
 def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """A line for each disordered case that starts with the largest disks touching, and for each lattice."""
     found, single = datasets["crossovers"], datasets["realizations"]
-    widths = found["width"].values.tolist()
-    heads = ["δ", "µ", "realizations (collapsed)"]
-    for width in widths:
-        heads += [f"w = {width:g}", "median of realizations"]
+    w = found["width"].values.tolist().index(WIDTH)
+    heads = ["δ", "µ", "realizations (collapsed)", "mean response", "median of realizations"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
     usual = found["lattice_constant"].values == found["lattice_constant"].values[0]
     order = np.lexsort((found["friction"].values, found["polydispersity"].values))
@@ -34,9 +34,7 @@ def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
         count = int(found["realizations"].values[case])
         cells = [f"{found['polydispersity'].values[case]:g}", f"{found['friction'].values[case]:g}"]
         cells.append(f"{count} ({collapsed})" if collapsed else f"{count}")
-        for w in range(len(widths)):
-            cells.append(force(found, (w, case)))
-            cells.append(number(float(single["median"].values[w, case])))
+        cells += [force(found, (w, case)), number(float(single["median"].values[w, case]))]
         lines.append("|" + "".join(f" {cell} |" for cell in cells))
     return lines
 
@@ -56,25 +54,21 @@ def number(value: float) -> str:
 
 
 def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
-    """A line for each polydispersity and start: contacts without friction, and the dips with and without it."""
+    """A line for each initial lattice: contacts without friction, and the dips with and without it."""
     data = datasets["starts"]
-    heads = ["δ", "lattice constant", "coordination number", "horizontal part of the missing ones", "force"]
+    heads = ["lattice constant", "coordination number", "horizontal part of the missing ones"]
     heads += ["dip, µ = 0", "dip, µ = 0.2"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
-    place = {
-        (delta, round(distance, 6), mu): case
-        for case, (delta, distance, mu) in enumerate(
-            zip(*(data[name].values.tolist() for name in ("polydispersity", "distance", "friction")), strict=True)
-        )
-    }
-    for delta, distance in sorted({key[:2] for key in place if (*key[:2], 0.0) in place and (*key[:2], 0.2) in place}):
-        without, full = place[delta, distance, 0.0], place[delta, distance, 0.2]
+    pairs = zip(data["distance"].values.tolist(), data["friction"].values.tolist(), strict=True)
+    place = {(round(distance, 6), mu): case for case, (distance, mu) in enumerate(pairs)
+             if data["polydispersity"].values[case] == STATED}  # fmt: skip
+    for distance in sorted(distance for distance, mu in place if mu == 0.0 and (distance, 0.2) in place):
+        without, full = place[distance, 0.0], place[distance, 0.2]
         name = str(data["lattice_constant"].values[without])
         lines.append(
-            f"| {delta:g} | {distance:.5g}{', largest disks touch' if name.startswith('touching') else ''} "
+            f"| {distance:.5g}{', largest disks touch' if name.startswith('touching') else ''} "
             f"| {with_interval(data, 'contacts', (without,), 1.0, 3)} "
             f"| {with_interval(data, 'missing_horizontal', (without,), 100.0, 0)} % "
-            f"| {float(data['applied_force'].values[without]):g} "
             f"| {with_interval(data, 'dip', (0, without), 100.0, 0)} % "
             f"| {with_interval(data, 'dip', (0, full), 100.0, 1)} % |"
         )
@@ -91,11 +85,12 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
     """Both tables in Markdown. Equal data give equal text."""
     return "\n".join(
         [
-            "Crossover forces in mg, with 95 % of the bootstrap draws:",
+            "Crossover forces in mg (w = 6), with 95 % of the bootstrap draws:",
             "",
             *crossovers(datasets),
             "",
-            "Initial lattices, with half the width of the 95 % interval; contacts with walls, dips smoothed with w = 3:",
+            "Initial lattices at δ = 0.01, with half the width of the 95 % interval; contacts with walls, dips under"
+            " 15 mg smoothed with w = 3:",
             "",
             *starts(datasets),
         ]

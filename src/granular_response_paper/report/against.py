@@ -180,7 +180,9 @@ ROWS: tuple[Row, ...] = (
 
 
 def markdown(folder: Path) -> str:
-    """The table, from the datasets in ``folder``. Equal data give equal text.
+    """Two tables from the datasets in ``folder``: parameters that are the paper's, and the others with the reason.
+
+    Equal data give equal text.
 
     Raises
     ------
@@ -190,24 +192,25 @@ def markdown(folder: Path) -> str:
         If a parameter is another one than the paper's, and no remark says why.
     """
     datasets = {group: store.read(folder / f"{group}.nc") for group in dict.fromkeys(row.group for row in ROWS)}
-    cells = []
+    same: dict[tuple[str, str], list[str]] = {}
+    others = []
     for row in ROWS:
         stored = row.stored(datasets[row.group])
-        paper, here = _values(row.paper) or "–", _values(np.unique(stored).tolist())
-        judged = _judged(row, stored)
-        cells.append((str(row.figure), row.panels, row.parameter, paper, here, judged, f"`{row.source}`"))
-    return table(("figure", "panels", "parameter", "paper", "here", "the same", "dataset"), cells)
-
-
-def _judged(row: Row, stored: NDArray[np.float64]) -> str:
-    if not row.paper:
-        return row.remark
-    if row.agrees(stored):
-        return f"yes; {row.remark}" if row.remark else "yes"
-    if not row.remark:
-        raise ValueError(f"figure {row.figure}, {row.parameter}: {_values(stored.tolist())} where the paper has "
-                         f"{_values(row.paper)}, and nothing says why")  # fmt: skip
-    return f"no: {row.remark}"
+        paper, here = _values(row.paper), _values(np.unique(stored).tolist())
+        if row.remark:
+            others.append((str(row.figure), row.panels, row.parameter, paper or "–", here, row.remark))
+        elif row.paper and row.agrees(stored):
+            same.setdefault((str(row.figure), row.panels), []).append(f"{row.parameter}: {paper}")
+        else:
+            raise ValueError(
+                f"figure {row.figure}, {row.parameter}: {here} where the paper has {paper}, and nothing says why"
+            )
+    agreed = [(figure, panels, "; ".join(parameters)) for (figure, panels), parameters in same.items()]
+    return (
+        table(("figure", "panels", "as in the paper"), agreed)
+        + "\n\n"
+        + table(("figure", "panels", "parameter", "paper", "here", "remark"), others)
+    )
 
 
 def _values(values: Sequence[float]) -> str:
