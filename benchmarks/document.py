@@ -22,8 +22,8 @@ from granular_response.store import atomic, generated
 
 HERE = Path(__file__).resolve().parent
 
-#: Disks, and unknowns of a matrix, from which on they are rows of a table.
-LARGE, MANY = 50_000, 5_000
+#: Unknowns of a matrix from which on it is a row of a table.
+MANY = 5_000
 
 TEXTS = {
     "precision": (
@@ -222,12 +222,6 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
             "forces and tangents": "contacts", "dynamics": "dynamics",
         }  # fmt: skip
         return [table(metrics["runs"], columns)]
-    if benchmark == "scale":
-        columns = {
-            "method": "method", "disks": "disks", "seconds": "time [s]", "cpu_seconds": "processor [s]",
-            "peak_gibibytes": "memory [GiB]",
-        }  # fmt: skip
-        return [table([row for row in metrics["runs"] if row["disks"] >= LARGE], columns)]
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
