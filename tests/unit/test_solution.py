@@ -189,8 +189,3 @@ def test_a_path_asks_for_a_stable_time_step_only_where_it_takes_one():
         contact__normal_stiffness=1e5, preparation__gravity="frictionless", protocol__time_step=5e-4, loads=LOAD
     )
     assert not any(event.lost for event in solve_scene(stiff).loaded[0].reached.events)
-
-
-def test_a_torque_needs_friction():
-    with pytest.raises(SceneError, match=r"loads\[0\].torque = 2.0: must be 0 without friction"):
-        scene(contact__friction=0.0, loads=[{"disk": 0, "force": [0.0, 0.0], "torque": 2.0}])
