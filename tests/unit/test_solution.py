@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.scene import Scene, SceneError
+from granular_response.scene import SceneError
 from granular_response.solvers import path
 from granular_response.solvers.dynamics import DynamicsError
 from granular_response.solvers.equilibrium import EquilibriumError
@@ -146,19 +146,14 @@ def test_friction_that_comes_after_gravity_leaves_no_tangential_force():
 
 def test_rows_that_just_touch_stay_up_when_friction_comes():
     """Contacts without force may open in the last digit; the state that is returned is stable all the same."""
-    packing = {"kind": "slab", "layers": 5, "disks_per_row": 11, "sides": "periodic"}
-    solution = solve_scene(
-        Scene.from_dict(
-            {
-                "packing": packing,
-                "contact": {"normal_stiffness": 102.98014201713849, "damping_ratio": 1.744, "friction": 0.0},
-                "wall": {"friction": 0.7},
-                "preparation": {"gravity": "frictionless"},
-                "protocol": {"integrator": "verlet", "time_step": "auto"},
-                "loads": [],
-            }
-        )
-    )
+    changes = {
+        "contact": {"normal_stiffness": 102.98014201713849, "damping_ratio": 1.744, "friction": 0.0},
+        "protocol": {"integrator": "verlet", "time_step": "auto"},
+        "packing.sides": "periodic",
+        "wall.friction": 0.7,
+        "preparation.gravity": "frictionless",
+    }
+    solution = solve_scene(scene(5, 11, loads=[]).updated(changes))
     assert solution.rest.certificate.stable
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from small_scenes import scene
 from solved import FLOOR_DISKS, response, slab
 
 from granular_response.observe.floor import floor_force
-from granular_response.scene import Scene
 from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL
 from granular_response_paper.trials.random_scenes import check, contradiction, rounding_of
@@ -32,12 +32,8 @@ def test_no_disk_is_out_of_balance(case):
 
 
 def test_frictional_walls_carry_part_of_the_weight_and_balance_sideways():
-    scene = {
-        "packing": {"kind": "slab", "layers": 6, "disks_per_row": 11},
-        "wall": {"friction": 0.3},
-        "loads": [{"disk": "top-centre", "force": [1.0, -3.0], "torque": 0.5}],
-    }
-    solution = solve_scene(Scene.from_dict(scene))
+    loads = [{"disk": "top-centre", "force": [1.0, -3.0], "torque": 0.5}]
+    solution = solve_scene(scene(6, 11, wall__friction=0.3, loads=loads))
     state, problem = solution.loaded[-1], solution.problem
     force = state.wall_force()
     assert force.sum(axis=0) == pytest.approx([-1.0, problem.n + 3.0], abs=1e-9)
