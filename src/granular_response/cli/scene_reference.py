@@ -6,7 +6,6 @@ What is allowed is not written down a second time either: it is what the message
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, get_args
 
@@ -33,10 +32,9 @@ class Key:
     unit: str  #: empty without one
     meaning: str
 
-    def cells(self) -> tuple[str, str, str, str]:
-        """Key, default, what is allowed with the unit in brackets, meaning, as Markdown."""
-        default = f"`{self.default}`" if self.default else "must be given"
-        return f"`{self.path}`", default, f"{self.allowed} [{self.unit}]" if self.unit else self.allowed, self.meaning
+    def words(self) -> tuple[str, str]:
+        """What is allowed, with the unit in brackets, and the meaning."""
+        return f"{self.allowed} [{self.unit}]" if self.unit else self.allowed, self.meaning
 
 
 @dataclass(frozen=True)
@@ -127,7 +125,10 @@ def lines() -> str:
         _table(("part", "meaning"), [(f"`{n}`", f.description or "") for n, f in scene.Scene.model_fields.items()])
     ]
     for section in sections():
-        rows = [key.cells() for key in section.listed()]
+        rows: list[tuple[str, ...]] = [
+            (f"`{key.path}`", f"`{key.default}`" if key.default else "must be given", *key.words())
+            for key in section.listed()
+        ]
         parts += [f"## {section.title}", _table(("key", "default", "allowed [unit]", "meaning"), rows)]
     return "\n\n".join(parts)
 
@@ -165,7 +166,7 @@ def _holds_float(annotation: Any) -> bool:
     return annotation is float or any(_holds_float(part) for part in get_args(annotation))
 
 
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     """A Markdown table; a bar within a cell would end it."""
     texts = [head, ("---",) * len(head), *(tuple(cell.replace("|", "\\|") for cell in row) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in texts)
