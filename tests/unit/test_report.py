@@ -326,8 +326,8 @@ def test_every_figure_with_parameters_stands_beside_its_caption():
     ("paper", "remark", "said"),
     [
         ((1.0, 4.0), "", "| 3 | (a) | F_ext, mg: 1, 4 |"),
-        ((4.0,), "as in Fig. 3", "| 3 | (a) | F_ext, mg | 4 | 1, 4, 90 | as in Fig. 3 |"),
-        ((5.0,), "a reason", "| 3 | (a) | F_ext, mg | 5 | 1, 4, 90 | a reason |"),
+        ((4.0,), "as in Fig. 3", "| 3 | (a) | F_ext, mg | 4 | 1, 4, 90 | yes; as in Fig. 3 |"),
+        ((5.0,), "a reason", "| 3 | (a) | F_ext, mg | 5 | 1, 4, 90 | no: a reason |"),
         ((), "on the plots only", "| 3 | (a) | F_ext, mg | – | 1, 4, 90 | on the plots only |"),
     ],
 )

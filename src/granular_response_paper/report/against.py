@@ -180,7 +180,7 @@ ROWS: tuple[Row, ...] = (
 
 
 def markdown(folder: Path) -> str:
-    """Two tables from the datasets in ``folder``: parameters that are the paper's, and the others with the reason.
+    """Two tables from the datasets in ``folder``: parameters that are the paper's, and those with a remark.
 
     Equal data give equal text.
 
@@ -196,21 +196,25 @@ def markdown(folder: Path) -> str:
     others = []
     for row in ROWS:
         stored = row.stored(datasets[row.group])
-        paper, here = _values(row.paper), _values(np.unique(stored).tolist())
-        if row.remark:
-            others.append((str(row.figure), row.panels, row.parameter, paper or "–", here, row.remark))
-        elif row.paper and row.agrees(stored):
+        paper, here, judged = _values(row.paper), _values(np.unique(stored).tolist()), _judged(row, stored)
+        if judged == "yes":
             same.setdefault((str(row.figure), row.panels), []).append(f"{row.parameter}: {paper}")
         else:
-            raise ValueError(
-                f"figure {row.figure}, {row.parameter}: {here} where the paper has {paper}, and nothing says why"
-            )
-    agreed = [(figure, panels, "; ".join(parameters)) for (figure, panels), parameters in same.items()]
-    return (
-        table(("figure", "panels", "as in the paper"), agreed)
-        + "\n\n"
-        + table(("figure", "panels", "parameter", "paper", "here", "remark"), others)
-    )
+            others.append((str(row.figure), row.panels, row.parameter, paper or "–", here, judged))
+    agreed = [(*place, "; ".join(parameters)) for place, parameters in same.items()]
+    heads = ("figure", "panels", "parameter", "paper", "here", "the same")
+    return table(("figure", "panels", "as in the paper"), agreed) + "\n\n" + table(heads, others)
+
+
+def _judged(row: Row, stored: NDArray[np.float64]) -> str:
+    if not row.paper:
+        return row.remark
+    if row.agrees(stored):
+        return f"yes; {row.remark}" if row.remark else "yes"
+    if not row.remark:
+        raise ValueError(f"figure {row.figure}, {row.parameter}: {_values(stored.tolist())} where the paper has "
+                         f"{_values(row.paper)}, and nothing says why")  # fmt: skip
+    return f"no: {row.remark}"
 
 
 def _values(values: Sequence[float]) -> str:
