@@ -22,59 +22,54 @@ from granular_response.store import atomic, generated
 
 HERE = Path(__file__).resolve().parent
 
-#: Disks, and unknowns of a matrix, from which on they are rows of a table.
-LARGE, MANY = 50_000, 5_000
+#: Unknowns of a matrix from which on it is a row of a table.
+MANY = 5_000
 
 TEXTS = {
     "precision": (
         "Run time against error",
-        "Error: largest difference of the normalized floor response from the quasi-static limit; times include "
-        "the fall under gravity. Open symbols: without the static finish. With friction the initial equilibrium "
-        "depends a little on the fall, so LAMMPS is also compared with its own limit.",
+        "Error: largest difference of the normalized floor response from the quasi-static limit. Times include the "
+        "fall under gravity. Open symbols: without the static finish. With friction LAMMPS is also compared with "
+        "its own limit.",
     ),
     "nine_points": (
         "Path against dynamics",
-        "From the initial equilibrium: load path, and dynamics by leapfrog with ramps of 1 to 100 sqrt(R/g) and a "
-        "static finish, of which the best-case ramp counts. The error is relative to the path.",
+        "From the initial equilibrium: load path, and leapfrog with ramps of 1 to 100 sqrt(R/g) and a static "
+        "finish, of which the best-case ramp counts. The error is relative to the path.",
     ),
     "exactness": (
         "Accuracy of the path",
-        "Load paths against the same path in small increments with the return map. The error is the largest "
-        "difference of a force of the floor or a wall, per load; up to 1e-8 and the error of the increments it "
-        "counts as exact. Paths that lose an equilibrium are not compared.",
+        "Against the same path in small increments with the return map. Error: largest difference of a force of the "
+        "floor or a wall, per load; up to 1e-8 and the error of the increments it counts as exact. Paths that lose "
+        "an equilibrium are not compared.",
     ),
     "convergence": (
         "Convergence of dynamics to the path",
-        "The difference falls like one over the ramp time. Lines: its symmetric part; dotted: all of it, since at "
-        "friction 1 a slow ramp amplifies rounding.",
+        "Lines: symmetric part of the difference, which falls like one over the ramp time; dotted: all of it.",
     ),
     "trajectory": (
         "Order of the integrators",
-        "Leapfrog's dashpots see the velocity of half a step before. In a fall, contacts that open, close or "
-        "begin to slide limit the order to one.",
+        "In a fall, contacts that open, close or begin to slide limit the order to one.",
     ),
     "kernel": (
         "Time of a step",
-        "Slabs in equilibrium, same time step and dashpots as `pair_style gran/hooke/history` of LAMMPS.",
+        "Slabs in equilibrium, with time step and dashpots of `pair_style gran/hooke/history`.",
     ),
     "arena": (
         "Comparison with other codes: a step",
-        "Slabs with friction 0.2; same start, contact law and time step, one core each, interleaved; processor "
-        "time, least of all rounds. LIGGGHTS runs `gran model hooke/stiffness tangential history`, YADE "
-        "`Law2_ScGeom_ViscElPhys_Basic`.",
+        "Friction 0.2; same start, contact law and time step, interleaved; processor time. LIGGGHTS runs `gran "
+        "model hooke/stiffness tangential history`, YADE `Law2_ScGeom_ViscElPhys_Basic`.",
     ),
     "responses": (
         "Comparison with other codes: a response",
-        "Scenes and errors of run time against error; processor time with the fall under gravity. The other codes "
-        "ramp the load between two equilibria.",
+        "Scenes and errors of run time against error. The other codes ramp the load between two equilibria.",
     ),
     "bounces": (
         "Single collisions with a frictional wall",
-        "Against a wall with friction 0.5. A disk that slides throughout has a closed form (dotted), from which "
-        "`fix wall/gran hooke/history` of LAMMPS of 2025 deviates "
-        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE lets "
-        "no contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk; equilibria do not depend on "
-        "this.",
+        "Friction 0.5. A disk that slides throughout has a closed form (dotted), from which `fix wall/gran "
+        "hooke/history` of LAMMPS of 2025 deviates "
+        "([lammps/lammps#5007](https://github.com/lammps/lammps/pull/5007)). With the paper's dashpots YADE lets no "
+        "contact pull, and YADE and LIGGGHTS keep less energy of a grazing disk.",
     ),
     "limits": (
         "Roofline",
@@ -83,13 +78,12 @@ TEXTS = {
     ),
     "linear": (
         "Factorisations of the tangent stiffness",
-        "With friction LU of three unknowns a disk; without, two, symmetric and positive for LAPACK, fronts and "
-        "PARDISO; the time of SuperLU has its ordering. One thread each.",
+        "With friction LU; without, symmetric and positive for LAPACK, fronts and PARDISO. SuperLU's time has its "
+        "ordering.",
     ),
     "skipping": (
         "Cost of work that is skipped",
-        "Rotations without friction, neighbour searches in a network that does not change, wall tests for every "
-        "disk. Results are bitwise the same.",
+        "Rotations without friction, neighbour searches in a network that does not change, wall tests for every disk.",
     ),
     "scale": (
         "Large systems",
@@ -98,8 +92,7 @@ TEXTS = {
     ),
     "depth": (
         "The teardrop in deep slabs",
-        "Open region without friction (Fig. 5), where stiffness grows with the size; open symbols: it has reached "
-        "the floor.",
+        "Open region without friction (Fig. 5); stiffness grows with the size. Open symbols: it has reached the floor.",
     ),
     "shares": (
         "Profile",
@@ -107,12 +100,11 @@ TEXTS = {
     ),
     "startup": (
         "Start-up",
-        "Whole processes, least of five, with cached kernels.",
+        "Whole processes, with cached kernels.",
     ),
     "pipeline": (
         "The pipeline",
-        "Every group from nothing, with compiled kernels, one after another on all cores (`make figure` lists the "
-        "seconds of each).",
+        "Every group from nothing, with compiled kernels, one after another on all cores.",
     ),
 }
 
@@ -230,12 +222,6 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
             "forces and tangents": "contacts", "dynamics": "dynamics",
         }  # fmt: skip
         return [table(metrics["runs"], columns)]
-    if benchmark == "scale":
-        columns = {
-            "method": "method", "disks": "disks", "seconds": "time [s]", "cpu_seconds": "processor [s]",
-            "peak_gibibytes": "memory [GiB]",
-        }  # fmt: skip
-        return [table([row for row in metrics["runs"] if row["disks"] >= LARGE], columns)]
     if benchmark == "depth":
         columns = {
             "layers": "layers", "from_force": "from force [mg]", "to_force": "to force [mg]",
@@ -366,6 +352,8 @@ def text(found: dict[str, Metrics]) -> str:
     """The page."""
     parts = [part(benchmark, found[benchmark]) for benchmark in TEXTS if benchmark in found]
     missing = [title for benchmark, (title, _) in TEXTS.items() if benchmark not in found]
+    machines = [one["measured_on"] for one in parts]
+    usual = max(machines, key=machines.count, default="")
     environment = Environment(
         loader=FileSystemLoader(HERE),
         trim_blocks=True,
@@ -375,7 +363,7 @@ def text(found: dict[str, Metrics]) -> str:
         keep_trailing_newline=True,
     )
     page = environment.get_template("benchmarks.md.j2")
-    return page.render(goals=goals(found), parts=parts, missing=missing, machine=found.get("machine"))
+    return page.render(goals=goals(found), parts=parts, usual=usual, missing=missing, machine=found.get("machine"))
 
 
 #: Goals that the README quotes, after what the arena has measured.
@@ -404,7 +392,7 @@ def over_others(found: dict[str, Metrics]) -> list[dict[str, str]]:
         said = ", ".join(f"{code} {value:.0f}" for code, value in times.items() if code != OURS)
         if said:
             what = f"A step of {disks:,} disks with friction, times ours"
-            rows.append({"what": what, "measured": said, "on": measured_on(found["arena"])})
+            rows.append({"what": what, "measured": said})
     for scene, (error, words) in COMPARED.items():
         least: dict[str, float] = {}
         for row in pick(found.get("responses", {}).get("reached", []), scene=scene):
@@ -414,7 +402,7 @@ def over_others(found: dict[str, Metrics]) -> list[dict[str, str]]:
         said = ", ".join(f"{code} {value / least[OURS]:.0f}" for code, value in least.items() if code != OURS)
         if said:
             what = f"A response of 908 disks ({words}), times ours"
-            rows.append({"what": what, "measured": said, "on": measured_on(found["responses"])})
+            rows.append({"what": what, "measured": said})
     return rows
 
 
@@ -430,9 +418,8 @@ def family(code: str) -> str:
 def quoted(found: dict[str, Metrics]) -> str:
     """The lines of the README."""
     rows = {row["what"]: row for row in goals(found)}
-    lines = ["| | measured | processor |", "|---|---|---|"]
     quotes = [*over_others(found), *(rows[what] for what in QUOTED)]
-    return "\n".join([*lines, *(f"| {row['what']} | {row['measured']} | {row['on']} |" for row in quotes)])
+    return "\n".join(["| | measured |", "|---|---|", *(f"| {row['what']} | {row['measured']} |" for row in quotes)])
 
 
 def main() -> None:

@@ -9,15 +9,14 @@ import numpy as np
 import xarray as xr
 
 from granular_response.store import generated
-from granular_response_paper.groups.phase_diagram.claims import linear_end
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTES = ROOT / "docs" / "reproduction-notes.md"
 #: Name of the generated lines.
 BLOCK = "survey"
 FOUND, BELOW, ABOVE = 0, 1, 2
-#: Linear ranges that are shown: frictions, and how far off a response at x = 0 is no longer linear.
-FRICTIONS, OFF = (0.0, 0.05, 0.2), 0.01
+#: Of the smoothing, as in Fig. 22; the polydispersity of which the paper states what contacts are missing.
+WIDTH, STATED = 6.0, 0.01
 #: Places of the 2.5 and 97.5 per cent quantiles among the stored levels.
 ENDS = (0, -1)
 
@@ -25,10 +24,8 @@ ENDS = (0, -1)
 def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """A line for each disordered case that starts with the largest disks touching, and for each lattice."""
     found, single = datasets["crossovers"], datasets["realizations"]
-    widths = found["width"].values.tolist()
-    heads = ["δ", "µ", "realizations (collapsed)"]
-    for width in widths:
-        heads += [f"w = {width:g}", "median of realizations"]
+    w = found["width"].values.tolist().index(WIDTH)
+    heads = ["δ", "µ", "realizations (collapsed)", "mean response", "median of realizations"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
     usual = found["lattice_constant"].values == found["lattice_constant"].values[0]
     order = np.lexsort((found["friction"].values, found["polydispersity"].values))
@@ -37,9 +34,7 @@ def crossovers(datasets: Mapping[str, xr.Dataset]) -> list[str]:
         count = int(found["realizations"].values[case])
         cells = [f"{found['polydispersity'].values[case]:g}", f"{found['friction'].values[case]:g}"]
         cells.append(f"{count} ({collapsed})" if collapsed else f"{count}")
-        for w in range(len(widths)):
-            cells.append(force(found, (w, case)))
-            cells.append(number(float(single["median"].values[w, case])))
+        cells += [force(found, (w, case)), number(float(single["median"].values[w, case]))]
         lines.append("|" + "".join(f" {cell} |" for cell in cells))
     return lines
 
@@ -59,39 +54,25 @@ def number(value: float) -> str:
 
 
 def starts(datasets: Mapping[str, xr.Dataset]) -> list[str]:
-    """A line for each polydispersity and start: contacts without friction, and the dips with and without it."""
+    """A line for each initial lattice: contacts without friction, and the dips with and without it."""
     data = datasets["starts"]
-    heads = ["δ", "lattice constant", "coordination number", "horizontal part of the missing ones", "force"]
-    heads += ["dip, µ = 0", "dip, µ = 0.2", *(f"linear up to, µ = {mu:g}" for mu in FRICTIONS)]
+    heads = ["lattice constant", "coordination number", "horizontal part of the missing ones"]
+    heads += ["dip, µ = 0", "dip, µ = 0.2"]
     lines = ["|" + "".join(f" {head} |" for head in heads), "|---" * len(heads) + "|"]
-    place = {
-        (delta, round(distance, 6), mu): case
-        for case, (delta, distance, mu) in enumerate(
-            zip(*(data[name].values.tolist() for name in ("polydispersity", "distance", "friction")), strict=True)
-        )
-    }
-    for delta, distance in sorted({key[:2] for key in place if (*key[:2], 0.0) in place and (*key[:2], 0.2) in place}):
-        without, full = place[delta, distance, 0.0], place[delta, distance, 0.2]
+    pairs = zip(data["distance"].values.tolist(), data["friction"].values.tolist(), strict=True)
+    place = {(round(distance, 6), mu): case for case, (distance, mu) in enumerate(pairs)
+             if data["polydispersity"].values[case] == STATED}  # fmt: skip
+    for distance in sorted(distance for distance, mu in place if mu == 0.0 and (distance, 0.2) in place):
+        without, full = place[distance, 0.0], place[distance, 0.2]
         name = str(data["lattice_constant"].values[without])
         lines.append(
-            f"| {delta:g} | {distance:.5g}{', largest disks touch' if name.startswith('touching') else ''} "
+            f"| {distance:.5g}{', largest disks touch' if name.startswith('touching') else ''} "
             f"| {with_interval(data, 'contacts', (without,), 1.0, 3)} "
             f"| {with_interval(data, 'missing_horizontal', (without,), 100.0, 0)} % "
-            f"| {float(data['applied_force'].values[without]):g} "
             f"| {with_interval(data, 'dip', (0, without), 100.0, 0)} % "
-            f"| {with_interval(data, 'dip', (0, full), 100.0, 1)} % "
-            f"| {' | '.join(linear(datasets['linear_range'], delta, mu, name) for mu in FRICTIONS)} |"
+            f"| {with_interval(data, 'dip', (0, full), 100.0, 1)} % |"
         )
-    ends = (linear(datasets["linear_range"], 0.0, mu, "touching-largest") for mu in FRICTIONS)
-    lines.append(f"| 0 | lattice | | | | | | {' | '.join(ends)} |")
     return lines
-
-
-def linear(data: xr.Dataset, delta: float, friction: float, start: str) -> str:
-    """The median end of the linear range of a start beside smooth walls; nothing where it was not simulated."""
-    here = np.isclose(data["polydispersity"].values, delta) & np.isclose(data["friction"].values, friction)
-    here &= data["lattice_constant"].values.astype(str) == start
-    return linear_end(data.isel(case=int(np.flatnonzero(here)[0])), OFF).text() if here.any() else ""
 
 
 def with_interval(data: xr.Dataset, name: str, place: tuple[int, ...], factor: float, digits: int) -> str:
@@ -104,12 +85,12 @@ def text(datasets: Mapping[str, xr.Dataset]) -> str:
     """Both tables in Markdown. Equal data give equal text."""
     return "\n".join(
         [
-            "Crossover forces in mg, with 95 % of the bootstrap draws:",
+            "Crossover forces in mg (w = 6), with 95 % of the bootstrap draws:",
             "",
             *crossovers(datasets),
             "",
-            "Initial lattices, with half the width of the 95 % interval; contacts with walls, dips smoothed with w = 3;"
-            " the linear range (beside smooth walls, 1 % off) with its 95 % interval:",
+            "Initial lattices at δ = 0.01, with half the width of the 95 % interval; contacts with walls, dips under"
+            " 15 mg smoothed with w = 3:",
             "",
             *starts(datasets),
         ]

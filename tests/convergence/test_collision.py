@@ -95,19 +95,3 @@ def test_restitution(damping_ratio, wall):
     assert error[0] < 8e-3
     assert error[1] < 2e-3
     assert error[2] < 5e-4
-
-
-def test_slide_turns_into_rolling():
-    """Deceleration mu g until v = 2/3 of the start, whatever the friction; then it rolls with no loss."""
-    for friction in (0.05, 0.3):
-        problem, state = free_disks(
-            [[500.0, 1.0 - 1.0 / 6000.0]], velocity=[(0.3, 0.0)], contact__friction=0.0, wall__friction=friction
-        )
-        dynamics = Dynamics(problem, state, "beeman", 2e-4)
-        dynamics.advance(1000)
-        assert dynamics.v == pytest.approx([0.3 - friction * 0.2, 0.0, -2.0 * friction * 0.2], abs=1e-4)
-        dynamics.advance(20_000)
-        assert dynamics.v == pytest.approx([0.2, 0.0, -0.2], abs=1e-9)
-        rolled = dynamics.position[0, 0] - dynamics.angle[0] * -1.0
-        dynamics.advance(1000)
-        assert dynamics.position[0, 0] + dynamics.angle[0] == pytest.approx(rolled, abs=1e-9)

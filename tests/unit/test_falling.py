@@ -14,15 +14,8 @@ from granular_response.solvers.timestep import resolve_time_step
 def test_a_disk_that_falls_from_high_is_not_at_rest_before_it_has_landed(tmp_path):
     """Slow at first, and without a contact; it used to count as settled on the way, having touched nothing."""
     (tmp_path / "one.csv").write_text("x,z,radius\n5,10,1\n")
-    falling = Scene.from_dict(
-        {
-            "packing": {"kind": "file", "path": "one.csv", "width": 10.0},
-            "loads": [],
-            "protocol": {"static_finish": False},
-        },
-        folder=tmp_path,
-    )
-    rest = solve_scene(falling).rest
+    packing = {"kind": "file", "path": str(tmp_path / "one.csv"), "width": 10.0}
+    rest = solve_scene(Scene.from_dict({"packing": packing, "loads": [], "protocol": {"static_finish": False}})).rest
     assert rest.reached.settled
     assert rest.reached.time > np.sqrt(2.0 * 9.0)
     assert rest.position[0, 1] == pytest.approx(1.0 - 1.0 / 6000.0, abs=1e-7)

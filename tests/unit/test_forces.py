@@ -164,27 +164,6 @@ def test_loops_agree_with_plain_python(packing, runs, friction, rule):
     assert force.sum(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-def test_torques_balance_up_to_the_overlap():
-    """Orbital torque of a pair is (R_i + R_j - overlap) f_t, its spins take (R_i + R_j) f_t."""
-    rng = np.random.default_rng(3)
-    position, radius, first, second = lattice(rng, 21, 5)
-    n = len(radius)
-    velocity, spin = rng.normal(0, 0.1, (n, 2)), rng.normal(0, 0.1, n)
-    material = Material()
-    springs = rng.normal(0, 1e-3, len(first))
-    force, torque, *_ = run_kernel(position, velocity, spin, radius, first, second, springs, material, 5e-4)
-    total = (position[:, 0] * force[:, 1] - position[:, 1] * force[:, 0]).sum() + torque.sum()
-    left = 0.0
-    for c, (i, j) in enumerate(zip(first, second, strict=True)):
-        _, t, _ = forces(
-            position[[i, j]], velocity[[i, j]], spin[[i, j]], radius[[i, j]], [(0, 1)], springs[[c]], material, 5e-4
-        )
-        overlap = 2.0 - np.linalg.norm(position[i] - position[j])
-        left += max(overlap, 0.0) * t[0] / radius[i]
-    assert abs(left) > 1e-3
-    assert total == pytest.approx(left, abs=1e-9)
-
-
 def test_slots_of_no_listed_pair_stay_silent_even_when_their_disks_are_far_or_level():
     """Gaps inside a run hold pairs such as the end of one row and the start of the next."""
     rng = np.random.default_rng(5)
@@ -197,20 +176,6 @@ def test_slots_of_no_listed_pair_stay_silent_even_when_their_disks_are_far_or_le
     gaps = np.setdiff1d(np.arange(len(spring)), slot)
     assert len(gaps) > 0
     assert not spring[gaps].any()
-
-
-def test_vector_loop_and_single_pairs_agree():
-    rng = np.random.default_rng(11)
-    position, radius, first, second = lattice(rng)
-    n = len(radius)
-    args = (position, rng.normal(0, 0.1, (n, 2)), rng.normal(0, 0.1, n), radius, first, second)
-    springs = rng.normal(0, 1e-3, len(first))
-    in_runs = run_kernel(*args, springs, Material(), 5e-4)
-    again = run_kernel(*args, springs, Material(), 5e-4)
-    alone = run_kernel(*args, springs, Material(), 5e-4, shortest_run=10**9)
-    for a, b, c in zip(in_runs[:3], again[:3], alone[:3], strict=True):
-        assert np.array_equal(a, b)
-        assert c == pytest.approx(a, abs=1e-11)
 
 
 @pytest.mark.parametrize(("friction", "rule"), [(0.0, CUT), (0.3, CUT), (0.3, LITERAL), (0.3, UNLOADING)])

@@ -19,24 +19,6 @@ from granular_response.contact.law import normal_force
 
 # round numbers: k_N 1000, nu_N 10, k_T 800, nu_T 5, mu 0.5
 LAW = Linear(1000.0, 10.0, 800.0, 5.0, 0.5, -math.inf)
-NO_PULL = LAW._replace(least_force=0.0)
-
-
-def test_head_on():
-    assert normal_force(0.01, None, -0.3, LAW) == pytest.approx(10.0 + 3.0)
-    assert normal_force(0.01, None, 0.3, LAW) == pytest.approx(10.0 - 3.0)
-
-
-def test_dashpot_may_pull_unless_cut_off():
-    assert normal_force(0.001, None, 2.0, LAW) == pytest.approx(1.0 - 20.0)
-    assert normal_force(0.001, None, 2.0, NO_PULL) == 0.0
-    assert normal_force(0.01, None, 0.3, NO_PULL) == normal_force(0.01, None, 0.3, LAW)
-
-
-def test_sticking():
-    """Spring 1e-3 + 0.2 * 5e-3 = 2e-3; force -(1.6 + 1.0) is below the limit 0.5 * 10."""
-    force, spring = tangential_cut(1e-3, 0.2, 10.0, LAW, 5e-3)
-    assert (force, spring) == (pytest.approx(-2.6), pytest.approx(2e-3))
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -47,28 +29,6 @@ def test_sliding_is_cut_with_the_dashpot_and_the_spring_follows(sign):
     assert spring == pytest.approx(sign * 1.0 / 800.0)
     again, kept = tangential_cut(spring, sign * 0.2, 4.0, LAW, 0.0)
     assert (again, kept) == (pytest.approx(force), pytest.approx(spring))
-
-
-def test_coulomb_limit_of_a_pulling_contact_uses_its_magnitude():
-    force, _ = tangential_cut(1e-2, 0.0, -4.0, LAW, 0.0)
-    assert force == pytest.approx(-2.0)
-
-
-def test_sliding_contact_sticks_as_soon_as_it_turns_back():
-    _, spring = tangential_cut(1e-2, 0.0, 4.0, LAW, 0.0)
-    assert spring == pytest.approx(2.0 / 800.0)
-    force, back = tangential_cut(spring, -0.1, 4.0, LAW, 1e-3)
-    assert back == pytest.approx(spring - 1e-4)
-    assert force == pytest.approx(-800.0 * back + 0.5)
-
-
-def test_literal_rule_freezes_the_spring_beyond_the_limit_also_on_unloading():
-    free, moved = tangential_literal(1e-3, 0.2, 10.0, LAW, 5e-3)
-    assert (free, moved) == (pytest.approx(-2.6), pytest.approx(2e-3))
-    for slip in (0.2, -0.2):
-        force, frozen = tangential_literal(1e-2, slip, 10.0, LAW, 5e-3)
-        assert frozen == 1e-2
-        assert force == pytest.approx(-8.0 - 5.0 * slip)  # beyond the limit of 5: the force is not cut
 
 
 def test_unloading_rule_freezes_the_spring_against_further_stretch_alone():

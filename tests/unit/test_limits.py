@@ -24,14 +24,9 @@ DOWN = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("force", [[0.0, -1.0], [0.0, -15.0], [0.3, -1.0]])
 def test_a_single_disk(friction, force):
-    one = Scene.from_dict(
-        {
-            "packing": {"kind": "pile", "layers": 1},
-            "contact": {"friction": friction},
-            "wall": {"friction": friction},
-            "loads": [{"disk": 0, "force": force}],
-        }
-    )
+    loads = [{"disk": 0, "force": force}]
+    pile = {"kind": "pile", "layers": 1}
+    one = scene(packing=pile, contact__friction=friction, wall__friction=friction, loads=loads)
     solution = solve_scene(one)
     for state, weight in zip((solution.rest, *solution.loaded), (1.0, 1.0 - force[1]), strict=True):
         assert state.wall_force()[:, 1].sum() == pytest.approx(weight, abs=1e-9)
@@ -57,15 +52,10 @@ def test_a_disk_that_slides_alone_has_no_unstable_direction():
 
 def test_fast_disks_in_long_steps_are_followed_and_not_taken_for_a_blow_up():
     """Soft disks without damping on a wide lattice bounce for ever: true, and what it says."""
-    bouncing = Scene.from_dict(
-        {
-            "packing": {"kind": "pile", "layers": 2, "lattice_constant": 2.5},
-            "contact": {"normal_stiffness": 30.0, "damping_ratio": 0.0, "friction": 0.0},
-            "protocol": {"time_step": "auto", "method": "dynamics", "maximum_steps": 5000},
-            "loads": [],
-        }
-    )
-    problem = Problem.from_scene(bouncing)
+    soft = {"contact__normal_stiffness": 30.0, "contact__damping_ratio": 0.0, "contact__friction": 0.0, "loads": []}
+    pile = {"kind": "pile", "layers": 2, "lattice_constant": 2.5}
+    protocol = {"time_step": "auto", "method": "dynamics", "maximum_steps": 5000}
+    problem = Problem.from_scene(scene(packing=pile, protocol=protocol, **soft))
     dynamics = Dynamics(problem, problem.bare_state(), "verlet", solving.resolve_time_step(problem))
     dynamics.advance(5000)
     height = 2.0 + 1.25 * np.sqrt(3.0)
@@ -111,16 +101,12 @@ def test_a_friction_that_newton_cannot_follow_is_named(where, friction):
 )
 def test_a_response_that_is_rounding_says_so(force, stiffness, said):
     """Of small loads, and of larger ones on disks so stiff that the last digit of a position is a force."""
-    scene = {
-        "packing": {"kind": "slab", "layers": 4, "disks_per_row": 7},
-        "preparation": {"gravity": "frictionless"},
-        "contact": {"normal_stiffness": stiffness},
-        "loads": [{"disk": "top-centre", "force": [0.0, -force]}],
-    }
+    load = [{"disk": "top-centre", "force": [0.0, -force]}]
+    small = scene(preparation__gravity="frictionless", contact__normal_stiffness=stiffness, loads=load)
     line = "of the response to the smallest load may be rounding; take larger loads"
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        granular_response.solve(scene)
+        granular_response.solve(small)
     assert any(line in str(warning.message) for warning in caught) is said
 
 

@@ -27,77 +27,58 @@ TWO = profile(0.5, 0.7, 1.0, 0.4)
 THREE = profile(0.6, 0.5, 1.0, 0.4)
 
 
-def test_single_peak():
-    peaks = find_peaks(X, ONE)
-    assert peaks.position.tolist() == [0.0]
-    assert peaks.height.tolist() == [1.0]
-    assert peaks.prominence.tolist() == [1.0]
+def nearly(r, by):
+    """The profile with one of its equal peaks lower by a little."""
+    noisy = r.copy()
+    noisy[X == 4.0] -= by
+    return noisy
 
 
-def test_equal_peaks_share_the_depth_of_their_dip():
-    peaks = find_peaks(X, TWO)
-    assert peaks.position.tolist() == [-4.0, 4.0]
-    assert peaks.height.tolist() == [1.0, 1.0]
-    assert peaks.prominence.tolist() == [0.5, 0.5]
+HILL = np.array([0.1, 1.0, 0.4, 0.1, 0.5, 0.6, 0.5999])
+#: Samples, values, options, and the peaks: positions and prominences.
+FOUND = {
+    "one": (X, ONE, {}, [0.0], [1.0]),
+    "equal ones share the depth of their dip": (X, TWO, {}, [-4.0, 4.0], [0.5, 0.5]),
+    "equal but for the noise of a solver": (X, nearly(TWO, 5e-6), {}, [-4.0, 4.0], [0.5, 0.5]),
+    "not equal": (X, nearly(TWO, 5.5e-5), {}, [-4.0, 4.0], [1.0, 0.499945]),
+    "unequal ones": (
+        np.arange(7.0), [0.0, 0.6, 0.2, 1.0, 0.7, 0.8, 0.1], {}, [1.0, 3.0, 5.0], [0.4, 0.9, 0.1],
+    ),
+    "three": (X, THREE, {}, [-4.0, 0.0, 4.0], [0.5, 0.1, 0.5]),
+    "a plateau at its middle": (X, profile(1.0, 1.0, 0.3), {}, [0.0], [1.0]),
+    "a plateau aside": (np.arange(6.0), [0.0, 1.0, 1.0, 0.5, 0.4, 0.0], {}, [1.5], [1.0]),
+    "none at an end": (np.arange(5.0), [1.0, 0.5, 0.3, 0.2, 0.1], {}, [], []),
+    "none on a plateau at an end": (np.arange(5.0), [0.1, 0.5, 0.9, 1.0, 1.0], {}, [], []),
+    "an end is higher ground": (np.arange(5.0), [2.0, 1.0, 1.5, 0.2, 0.1], {}, [2.0], [0.5]),
+    "a hill that hardly falls towards the end is none": (np.arange(7.0), HILL, {}, [1.0], [0.9]),
+    "unless so little counts": (
+        np.arange(7.0), HILL[::-1], {"relative_prominence": 1e-5}, [1.0, 5.0], [1e-4, 0.9],
+    ),
+    "a dip that separates": (
+        X, profile(0.995, 1.0, 0.5), {"relative_prominence": 0.004}, [-2.0, 2.0], [0.005, 0.005],
+    ),
+    "a dip below the threshold": (X, profile(0.995, 1.0, 0.5), {"relative_prominence": 0.006}, [0.0], [1.0]),
+    "bumps beside a peak": (X, profile(1.0, 0.5, 0.1, 0.1005), {"relative_prominence": 1e-3}, [0.0], [1.0]),
+    "bumps that count": (
+        X, profile(1.0, 0.5, 0.1, 0.1005), {"relative_prominence": 1e-4}, [-6.0, 0.0, 6.0], [5e-4, 1.0, 5e-4],
+    ),
+    "near a wall": (X, np.where(X == -8.0, 3.0, ONE), {}, [-8.0, 0.0], [3.0, 0.9]),
+    "in the interior": (X, np.where(X == -8.0, 3.0, ONE), {"interior": np.abs(X) < 7.0}, [0.0], [0.9]),
+    "none in zeros": (X, np.zeros(X.size), {}, [], []),
+    "none in a constant": (X, np.ones(X.size), {}, [], []),
+}  # fmt: skip
 
 
-def test_peaks_that_differ_by_solver_noise_are_equal():
-    noisy = TWO.copy()
-    noisy[X == 4.0] -= 5e-6
-    np.testing.assert_allclose(find_peaks(X, noisy).prominence, [0.5, 0.5], atol=1e-5)
-    noisy[X == 4.0] -= 5e-5
-    np.testing.assert_allclose(find_peaks(X, noisy).prominence, [1.0, 0.5], atol=1e-4)
+@pytest.mark.parametrize(("x", "r", "options", "position", "prominence"), FOUND.values(), ids=FOUND)
+def test_peaks_of_a_profile(x, r, options, position, prominence):
+    peaks = find_peaks(x, r, **options)
+    assert peaks.position.tolist() == position and peak_count(x, r, **options) == len(position)
+    assert peaks.prominence == pytest.approx(prominence, abs=1e-5)
 
 
-def test_unequal_peaks_have_the_usual_prominence():
-    r = np.array([0.0, 0.6, 0.2, 1.0, 0.7, 0.8, 0.1])
-    peaks = find_peaks(np.arange(7.0), r)
-    assert peaks.position.tolist() == [1.0, 3.0, 5.0]
-    np.testing.assert_allclose(peaks.prominence, [0.4, 0.9, 0.1])
-
-
-def test_third_peak_is_found_with_its_prominence():
-    peaks = find_peaks(X, THREE)
-    assert peaks.position.tolist() == [-4.0, 0.0, 4.0]
-    np.testing.assert_allclose(peaks.prominence, [0.5, 0.1, 0.5])
-
-
-def test_plateau_is_one_peak_at_its_middle():
-    assert find_peaks(X, profile(1.0, 1.0, 0.3)).position.tolist() == [0.0]
-    x = np.arange(6.0)
-    assert find_peaks(x, [0.0, 1.0, 1.0, 0.5, 0.4, 0.0]).position.tolist() == [1.5]
-
-
-def test_ends_are_no_peaks_but_count_as_higher_ground():
-    x = np.arange(5.0)
-    assert peak_count(x, [1.0, 0.5, 0.3, 0.2, 0.1]) == 0
-    assert peak_count(x, [0.1, 0.5, 0.9, 1.0, 1.0]) == 0
-    peaks = find_peaks(x, [2.0, 1.0, 1.5, 0.2, 0.1])
-    assert peaks.position.tolist() == [2.0]
-    np.testing.assert_allclose(peaks.prominence, [0.5])
-
-
-def test_hill_that_hardly_falls_towards_the_end_is_no_peak():
-    x = np.arange(7.0)
-    r = np.array([0.1, 1.0, 0.4, 0.1, 0.5, 0.6, 0.5999])
-    assert find_peaks(x, r).position.tolist() == [1.0]
-    peaks = find_peaks(x, r[::-1], relative_prominence=1e-5)
-    assert peaks.position.tolist() == [1.0, 5.0]
-    np.testing.assert_allclose(peaks.prominence, [1e-4, 0.9])
-
-
-def test_dips_below_the_threshold_do_not_separate_peaks():
-    r = profile(0.995, 1.0, 0.5)
-    assert find_peaks(X, r, relative_prominence=0.004).position.tolist() == [-2.0, 2.0]
-    merged = find_peaks(X, r, relative_prominence=0.006)
-    assert merged.position.tolist() == [0.0]
-    assert merged.height.tolist() == [1.0]
-
-
-def test_small_bumps_beside_a_peak_do_not_count():
-    r = profile(1.0, 0.5, 0.1, 0.1005)
-    assert peak_count(X, r, relative_prominence=1e-3) == 1
-    assert peak_count(X, r, relative_prominence=1e-4) == 3
+def test_heights_are_those_of_the_samples_of_merged_peaks_the_highest():
+    assert find_peaks(X, TWO).height.tolist() == [1.0, 1.0]
+    assert find_peaks(X, profile(0.995, 1.0, 0.5), relative_prominence=0.006).height.tolist() == [1.0]
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([ONE, TWO, THREE, profile(1.0, 1.0, 0.3), profile(0.9, 1, 1)]))
@@ -139,18 +120,6 @@ def test_distinct_heights_agree_with_scipy(values):
     peaks = find_peaks(np.arange(r.size), r, relative_prominence=0.1)
     np.testing.assert_array_equal(peaks.position, expected)
     np.testing.assert_allclose(peaks.prominence, properties["prominences"])
-
-
-def test_interior_hides_peaks_near_the_walls():
-    r = ONE.copy()
-    r[1] = 3.0
-    assert find_peaks(X, r).position.tolist() == [-8.0, 0.0]
-    assert find_peaks(X, r, interior=np.abs(X) < 7.0).position.tolist() == [0.0]
-
-
-def test_flat_response_has_no_peak():
-    assert peak_count(X, np.zeros(X.size)) == 0
-    assert peak_count(X, np.ones(X.size)) == 0
 
 
 def test_double_peak_needs_both_sides_higher_than_the_centre():

@@ -49,12 +49,6 @@ def test_compression_is_positive_and_swapping_the_partners_changes_nothing():
     assert np.all(stress[:, :, 1] == 0.0)
 
 
-def test_integral_over_the_plane_is_force_times_branch():
-    axis = np.linspace(-12.0, 12.0, 97)
-    stress = coarse_grained_stress(one_contact([0.5, 0.5], [1.0, 1.7], [0.3, 2.0]), grid_points(axis, axis))
-    np.testing.assert_allclose(stress.sum(axis=(0, 1)) * 0.25**2, np.outer([0.3, 2.0], [1.0, 1.7]), rtol=1e-6)
-
-
 def test_shape_follows_the_points_and_the_grid_is_z_by_x():
     grid = grid_points(np.array([0.0, 1.0, 2.0]), np.array([5.0, 6.0]))
     assert grid.shape == (2, 3, 2)

@@ -24,10 +24,6 @@ def row_pairs(row, *middles):
     return found
 
 
-def test_the_loaded_disk_is_in_the_middle_of_the_top_row():
-    np.testing.assert_allclose(REST.position[TOP], [LONG, 1.0 + 6 * ROW])
-
-
 def test_no_opened_contact_is_an_empty_region():
     region = teardrop(REST, REST, TOP)
     assert (region.count, region.depth, region.width, region.reaches_floor) == (0, 0.0, 0.0, False)

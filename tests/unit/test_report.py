@@ -313,19 +313,17 @@ def test_every_figure_with_parameters_stands_beside_its_caption():
 @pytest.mark.parametrize(
     ("paper", "remark", "said"),
     [
-        ((1.0, 4.0), "", "yes"),
-        ((4.0,), "as in Fig. 3", "yes; as in Fig. 3"),
-        ((5.0,), "a reason", "no: a reason"),
-        ((), "on the plots only", "on the plots only"),
+        ((1.0, 4.0), "", "| 3 | (a) | F_ext, mg: 1, 4 |"),
+        ((4.0,), "as in Fig. 3", "| 3 | (a) | F_ext, mg | 4 | 1, 4, 90 | yes; as in Fig. 3 |"),
+        ((5.0,), "a reason", "| 3 | (a) | F_ext, mg | 5 | 1, 4, 90 | no: a reason |"),
+        ((), "on the plots only", "| 3 | (a) | F_ext, mg | – | 1, 4, 90 | on the plots only |"),
     ],
 )
 def test_a_parameter_is_the_papers_or_has_a_reason(tmp_path, monkeypatch, paper, remark, said):
     store.write(tmp_path / "theory.nc", {"one": friction_study()["response"]})
     row = against.Row(3, "(a)", "F_ext, mg", paper, "theory/one:force", remark)
     monkeypatch.setattr(against, "ROWS", (row,))
-    last = against.markdown(tmp_path).splitlines()[-1]
-    given = ", ".join(f"{value:g}" for value in paper) or "–"
-    assert last == f"| 3 | (a) | F_ext, mg | {given} | 1, 4, 90 | {said} | `theory/one:force` |"
+    assert [line for line in against.markdown(tmp_path).splitlines() if line.startswith("| 3")] == [said]
 
 
 def test_another_parameter_without_a_reason_is_an_error(tmp_path, monkeypatch):

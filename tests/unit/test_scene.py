@@ -119,13 +119,6 @@ def test_a_packing_of_another_kind_and_a_description_replace_what_is_there():
     assert scene.updated({"contact": Contact(stiffness_ratio=0.5)}).contact == Contact(stiffness_ratio=0.5)
 
 
-def test_updated_takes_a_table_from_its_folder(tmp_path):
-    (tmp_path / "disks.csv").write_text("x,z,radius\n1,1,1\n")
-    (tmp_path / "scene.yaml").write_text("packing: {kind: file, path: disks.csv, width: 4}\nloads: []\n")
-    table = Scene.from_yaml(tmp_path / "scene.yaml").packing
-    assert Scene(loads=[]).updated({"packing": table}).packing.build().n == 1
-
-
 def test_updated_replaces_values_and_sections():
     scene = Scene()
     other = scene.updated(
@@ -187,6 +180,7 @@ def test_file_packing_belongs_to_the_folder_of_its_scene(tmp_path):
         Scene.from_text(scene.to_yaml(), folder=scene.folder),
         pickle.loads(pickle.dumps(scene)),
         Scene(packing=scene.packing),
+        Scene(loads=[]).updated({"packing": scene.packing}),
     ):
         assert other.packing == scene.packing
         assert other.packing.build().n == 1

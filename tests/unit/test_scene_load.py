@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from granular_response.scene import (
-    Load,
     Packing,
     PilePacking,
     RowSelector,
@@ -141,16 +140,6 @@ def test_packings_from_files_have_no_rows():
         SceneError, match=r"^loads\[0\]\.disk\.row = 'top': a packing from a file or arrays has no rows"
     ):
         resolve_disk(RowSelector(row="top"), packing, packing.position, key="loads[0].disk")
-
-
-def test_selectors_in_a_scene_file():
-    scene = Scene.from_text(
-        "loads: [{disk: {row: top, offset: -3}, force: [0, -1]}, {disk: 877, force: [1, 0], torque: -2}]"
-    )
-    assert scene.loads == (
-        Load(disk=RowSelector(row="top", offset=-3), force=(0.0, -1.0)),
-        Load(disk=877, force=(1.0, 0.0), torque=-2.0),
-    )
 
 
 def test_sideways_forces_that_sum_to_zero_but_for_rounding_are_allowed():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from small_scenes import scene
 
 import granular_response as gr
 from granular_response.observe.difference import pair_force_difference, wall_force_difference
@@ -23,15 +24,8 @@ CASES = {
 
 
 def described(changes, disk, load) -> Scene:
-    packing = {"kind": "slab", "layers": 6, "disks_per_row": 15}
-    base = {
-        "packing": packing,
-        "contact": {"friction": 0.2},
-        "wall": {"friction": 0.2},
-        "protocol": {"time_step": "auto"},
-        "loads": [{"disk": disk, "force": [float(load[0]), float(load[1])], "torque": float(load[2])}],
-    }
-    return Scene.from_dict(base).updated(changes)
+    loads = [{"disk": disk, "force": list(load[:2]), "torque": float(load[2])}]
+    return scene(6, 15, wall__friction=0.2, protocol__time_step="auto", loads=loads).updated(changes)
 
 
 @pytest.mark.parametrize("disk", [19, 80])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from small_scenes import scene
 
-from granular_response.scene import Scene, SceneError
+from granular_response.scene import SceneError
 from granular_response.solvers import path
 from granular_response.solvers.dynamics import DynamicsError
 from granular_response.solvers.equilibrium import EquilibriumError
@@ -146,19 +146,14 @@ def test_friction_that_comes_after_gravity_leaves_no_tangential_force():
 
 def test_rows_that_just_touch_stay_up_when_friction_comes():
     """Contacts without force may open in the last digit; the state that is returned is stable all the same."""
-    packing = {"kind": "slab", "layers": 5, "disks_per_row": 11, "sides": "periodic"}
-    solution = solve_scene(
-        Scene.from_dict(
-            {
-                "packing": packing,
-                "contact": {"normal_stiffness": 102.98014201713849, "damping_ratio": 1.744, "friction": 0.0},
-                "wall": {"friction": 0.7},
-                "preparation": {"gravity": "frictionless"},
-                "protocol": {"integrator": "verlet", "time_step": "auto"},
-                "loads": [],
-            }
-        )
-    )
+    changes = {
+        "contact": {"normal_stiffness": 102.98014201713849, "damping_ratio": 1.744, "friction": 0.0},
+        "protocol": {"integrator": "verlet", "time_step": "auto"},
+        "packing.sides": "periodic",
+        "wall.friction": 0.7,
+        "preparation.gravity": "frictionless",
+    }
+    solution = solve_scene(scene(5, 11, loads=[]).updated(changes))
     assert solution.rest.certificate.stable
 
 
@@ -189,8 +184,3 @@ def test_a_path_asks_for_a_stable_time_step_only_where_it_takes_one():
         contact__normal_stiffness=1e5, preparation__gravity="frictionless", protocol__time_step=5e-4, loads=LOAD
     )
     assert not any(event.lost for event in solve_scene(stiff).loaded[0].reached.events)
-
-
-def test_a_torque_needs_friction():
-    with pytest.raises(SceneError, match=r"loads\[0\].torque = 2.0: must be 0 without friction"):
-        scene(contact__friction=0.0, loads=[{"disk": 0, "force": [0.0, 0.0], "torque": 2.0}])

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_scenes import scene as small
 
 from granular_response.scene import Scene
 from granular_response.solvers.equilibrium import EquilibriumError
@@ -19,14 +20,9 @@ ALIKE = pytest.approx
 
 
 def described(changes, loads=()) -> Scene:
-    base = {
-        "packing": {"kind": "slab", "layers": LAYERS, "disks_per_row": ROW, "sides": "periodic"},
-        "contact": {"friction": 10.0, "stiffness_ratio": 0.4},
-        "wall": {"friction": 10.0},
-        "protocol": {"time_step": "auto"},
-        "loads": list(loads),
-    }
-    return Scene.from_dict(base).updated(changes)
+    base = small(LAYERS, ROW, packing__sides="periodic", protocol__time_step="auto", loads=list(loads))
+    rubs = {"contact": {"friction": 10.0, "stiffness_ratio": 0.4}, "wall.friction": 10.0}
+    return base.updated(rubs).updated(changes)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from small_scenes import free_disks, scene
 
 from granular_response.scene import Scene
 from granular_response.scene.protocol import PAPERS_TIME_STEP
-from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
+from granular_response.solvers.dynamics import Dynamics, DynamicsError
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import solve_scene
 from granular_response.solvers.timestep import (
@@ -25,24 +25,6 @@ def test_unstable_time_step_is_one_clear_line():
     with pytest.raises(UnstableTimeStep, match=message) as error:
         solve_scene(scene(protocol__time_step=0.01))
     assert "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize("integrator", ["beeman", "verlet", "leapfrog", "gear"])
-def test_limit_separates_steps_that_settle_from_steps_that_do_not(integrator):
-    problem = Problem.from_scene(scene(protocol__integrator=integrator))
-    limit = stability_limit(problem)
-    safe = Problem.from_scene(scene(protocol__integrator=integrator, protocol__time_step="auto"))
-    assert resolve_time_step(safe) < limit
-
-    def settles(step: float) -> bool:
-        dynamics = Dynamics(problem, problem.bare_state(), integrator, step)
-        try:
-            return relax(dynamics, Stop(1e-12, maximum_steps=40_000)).reached.settled
-        except DynamicsError:
-            return False
-
-    assert settles(0.9 * limit)
-    assert not settles(2.5 * limit)
 
 
 def test_undamped_limit_of_verlet_is_two_over_the_frequency():

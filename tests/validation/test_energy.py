@@ -45,21 +45,6 @@ def test_a_falling_packing_loses_energy_all_the_time(friction, law):
     assert energy[0] - energy[-1] > 1e-3
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_undamped_frictionless_packing_keeps_its_energy(law):
-    undamped = {"contact__friction": 0.0, "contact__damping_ratio": 0.0, "wall__damping_ratio": 0.0}
-    problem = Problem.from_scene(scene(**undamped, contact__law=law))
-    start = problem.bare_state()
-    drift = []
-    for step in (4e-4, 1e-4):
-        dynamics = Dynamics(problem, start, "verlet", step)
-        before = mechanical_energy(dynamics)
-        dynamics.advance(round(2.0 / step))
-        drift.append(abs(mechanical_energy(dynamics) - before))
-    assert drift[1] < 1e-4
-    assert drift[1] < 0.5 * drift[0]
-
-
 def test_literal_friction_rule_never_settles_and_says_so():
     """The spring frozen beyond the limit keeps disks turning: flagged by ``relax``, an error from ``solve_scene``."""
     literal = scene(protocol__friction_law="literal", protocol__maximum_steps=40_000)

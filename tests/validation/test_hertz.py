@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from small_scenes import scene
 
 from granular_response.observe.floor import floor_force
-from granular_response.scene import Scene
 from granular_response.solvers.solution import Solution, solve_scene
 
 FLOOR = np.arange(9)
@@ -12,17 +12,9 @@ FLOOR = np.arange(9)
 
 def solved(friction: float, method: str, factors=(1.0,)) -> Solution:
     # pressed together along x: without friction there is one equilibrium then
-    packing = {"kind": "slab", "layers": 5, "disks_per_row": 9, "lattice_constant": 1.999}
-    return solve_scene(
-        Scene.from_dict(
-            {
-                "packing": packing,
-                "contact": {"law": "hertz", "friction": friction},
-                "loads": [{"disk": "top-centre", "force": [0.0, -1.0]}],
-                "protocol": {"method": method, "load_factors": list(factors)},
-            }
-        )
-    )
+    loads = [{"disk": "top-centre", "force": [0.0, -1.0]}]
+    hertz = {"contact__law": "hertz", "contact__friction": friction, "packing__lattice_constant": 1.999}
+    return solve_scene(scene(5, 9, **hertz, loads=loads, protocol__method=method), load_factors=factors)
 
 
 def by_hand(solution: Solution) -> None:

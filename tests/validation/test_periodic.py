@@ -149,18 +149,8 @@ def test_what_is_measured_of_contacts_does_not_depend_on_where_the_side_is():
     found = []
     for offset in (0, -5, -10, 10):
         load = {"disk": {"row": "top", "offset": offset}, "force": [0.0, -40.0]}
-        solution = solve_scene(
-            Scene().updated(
-                {
-                    "packing.layers": 8,
-                    "packing.disks_per_row": 21,
-                    "packing.sides": "periodic",
-                    "packing.lattice_constant": 1.9995,
-                    "contact.friction": 0.0,
-                    "loads": [load],
-                }
-            )
-        )
+        size = {"packing.layers": 8, "packing.disks_per_row": 21}
+        solution = solve_scene(slab(0, **size, **{"contact.friction": 0.0, "loads": [load]}))
         disk = int(solution.problem.load_disk[0])
         region = teardrop(solution.rest, solution.loaded[0], disk)
         profile = force_profile(solution.rest, solution.loaded[0], disk, 2.5 * 3**0.5)

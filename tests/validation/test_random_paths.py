@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from small_scenes import scene
 
 from granular_response.scene import Scene
 from granular_response.solvers.path import PathRecord, follow
@@ -66,11 +67,8 @@ def test_paths_end(seed):
 
 def test_a_path_of_no_length_ends():
     """Neighbours in a row touch at no force: whether they are closed is a matter of rounding, and so is stability."""
-    packing = {"kind": "slab", "layers": 3, "disks_per_row": 10, "sides": "periodic"}
-    material = {"contact": {"friction": 0.5}, "wall": {"friction": 0.0}}
-    problem = Problem.from_scene(
-        Scene.from_dict({"packing": packing, **material, "loads": [{"disk": "top-centre", "force": [0.0, -0.05]}]})
-    )
+    loads = [{"disk": "top-centre", "force": [0.0, -0.05]}]
+    problem = Problem.from_scene(scene(3, 10, packing__sides="periodic", contact__friction=0.5, loads=loads))
     rest = rest_state(problem)
     same, loaded = follow(problem.with_loads(rest.position), rest, [0.0, 1.0])
     assert same.certificate == rest.certificate and loaded.certificate.stable

@@ -1,4 +1,4 @@
-"""The slab's Fourier series against two discretisations: finite elements and a packing of springs."""
+"""The slab's Fourier series against finite elements."""
 
 import numpy as np
 import pytest
@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 
-from granular_response.theory import crossover, lattice
+from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli
-from granular_response.theory.slab import Slab, response_of_layers
+from granular_response.theory.slab import Slab
 
 
 def finite_element_floor_force(moduli: Moduli, floor: str, half_width: float, cells: int) -> NDArray[np.float64]:
@@ -66,75 +66,3 @@ def test_finite_elements_converge_to_the_series(moduli: Moduli, floor: str) -> N
         errors.append(np.max(np.abs(share - slab.floor_pressure(x))) / slab.floor_pressure(0.0))
     assert errors[1] < 4e-3
     assert errors[1] < 0.4 * errors[0]
-
-
-def packing_floor_share(
-    layers: int, disks_per_row: int, normal: float, tangential: float, *, horizontal: bool = True
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Floor disks' positions and shares of a small force on the middle top disk of a triangular packing.
-
-    Linear springs at every contact, disks free to turn, floor and side walls twice as stiff and smooth.
-    """
-    position = []
-    for layer in range(layers):
-        count = disks_per_row - layer % 2
-        position += [(2.0 * i + 1.0 + layer % 2, 1.0 + np.sqrt(3.0) * layer) for i in range(count)]
-    disk = np.array(position)
-    n = len(disk)
-    by_place = {(round(x), round((z - 1.0) / np.sqrt(3.0))): i for i, (x, z) in enumerate(disk)}
-    entries: list[tuple[list[tuple[int, float]], float]] = []
-    for (x, layer), i in by_place.items():
-        for dx, dz in ((2, 0), (1, 1), (-1, 1)):
-            j = by_place.get((x + dx, layer + dz))
-            if j is None:
-                continue
-            nx, nz = dx / 2.0, dz * np.sqrt(3.0) / 2.0
-            if dz or horizontal:
-                entries.append(([(3 * j, nx), (3 * j + 1, nz), (3 * i, -nx), (3 * i + 1, -nz)], normal))
-                shift = [(3 * j, -nz), (3 * j + 1, nx), (3 * i, nz), (3 * i + 1, -nx)]
-                entries.append(([*shift, (3 * i + 2, -1.0), (3 * j + 2, -1.0)], tangential))
-        if layer == 0:
-            entries.append(([(3 * i + 1, 1.0)], 2.0 * normal))
-        if x in (1, 2 * disks_per_row - 1):
-            entries.append(([(3 * i, 1.0)], 2.0 * normal))
-    row = np.concatenate([[r] * len(spring) for r, (spring, _) in enumerate(entries)])
-    column = np.array([c for spring, _ in entries for c, _ in spring])
-    value = np.array([v for spring, _ in entries for _, v in spring])
-    stretch = coo_array((value, (row, column)), shape=(len(entries), 3 * n)).tocsr()
-    k = np.array([stiffness for _, stiffness in entries])
-    matrix = (stretch.T @ (stretch * k[:, None])).tolil()
-    if tangential == 0.0:
-        for i in range(n):
-            matrix[3 * i + 2, 3 * i + 2] = 1.0
-    load = np.zeros(3 * n)
-    top = np.flatnonzero(disk[:, 1] == disk[:, 1].max())
-    loaded = top[len(top) // 2]
-    load[3 * loaded + 1] = -1.0
-    u = spsolve(matrix.tocsc(), load)
-    return disk[:disks_per_row, 0] - disk[loaded, 0], -2.0 * normal * u[1 : 3 * disks_per_row : 3]
-
-
-@pytest.mark.parametrize("ratio", [0.0, 0.8], ids=["frictionless", "sticking"])
-def test_packing_of_springs_tends_to_the_isotropic_slab(ratio: float) -> None:
-    moduli = lattice.moduli(Springs.uniform(1.0, ratio), "free")
-    for layers, disks, tolerance in ((15, 61, 4e-3), (31, 125, 2e-3)):
-        x, share = packing_floor_share(layers, disks, 1.0, ratio)
-        assert share.sum() == pytest.approx(1.0, rel=1e-9)
-        elastic = response_of_layers(x, layers=layers, moduli=moduli, floor="smooth", width=2.0 * disks)
-        error = np.abs(share - elastic)[np.abs(x) < 2.0 * layers].max() / elastic.max()
-        assert error < tolerance
-
-
-@pytest.mark.parametrize("beta", [0.25, 0.32], ids=["two peaks", "one peak"])
-def test_packing_without_horizontal_springs_has_the_moduli_of_free_rotations(beta: float) -> None:
-    error: dict[str, list[float]] = {"free": [], "suppressed": []}
-    for layers, disks in ((15, 61), (31, 125)):
-        x, share = packing_floor_share(layers, disks, 1.0, beta, horizontal=False)
-        for rotations, series in error.items():
-            moduli = lattice.moduli(Springs(0.0, 1.0, 0.0, beta), rotations)
-            elastic = response_of_layers(x, layers=layers, moduli=moduli, floor="smooth", width=2.0 * disks)
-            series.append(np.abs(share - elastic).max() / elastic.max())
-    assert error["free"][1] < 0.5 * error["free"][0]
-    assert error["suppressed"][1] > 0.5 * error["suppressed"][0]
-    middle = len(x) // 2
-    assert (share[middle] > share[middle + 1]) == (beta > crossover.stiffness_ratio("smooth floor", "free"))

@@ -112,10 +112,15 @@ def lines() -> str:
     found = [_table(("part", "meaning"), parts)]
     for section in sections():
         rows = [
-            (f"`{key.path}`", f"`{key.default}`" if key.default else "must be given", *key[2:])
+            (
+                f"`{key.path}`",
+                f"`{key.default}`" if key.default else "must be given",
+                f"{key.allowed} [{key.unit}]" if key.unit else key.allowed,
+                key.meaning,
+            )
             for key in section.listed()
         ]
-        found += [f"## {section.title}", _table(("key", "default", "allowed", "unit", "meaning"), rows)]
+        found += [f"## {section.title}", _table(("key", "default", "allowed [unit]", "meaning"), rows)]
     return "\n\n".join(found)
 
 

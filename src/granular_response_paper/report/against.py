@@ -175,7 +175,9 @@ ROWS: tuple[Row, ...] = (
 
 
 def markdown(folder: Path) -> str:
-    """The table, from the datasets in ``folder``. Equal data give equal text.
+    """Two tables from the datasets in ``folder``: parameters that are the paper's, and those with a remark.
+
+    Equal data give equal text.
 
     Raises
     ------
@@ -185,13 +187,18 @@ def markdown(folder: Path) -> str:
         If a parameter is another one than the paper's, and no remark says why.
     """
     datasets = {group: store.read(folder / f"{group}.nc") for group in dict.fromkeys(row.group for row in ROWS)}
-    cells = []
+    same: dict[tuple[str, str], list[str]] = {}
+    others = []
     for row in ROWS:
         stored = row.stored(datasets[row.group])
-        paper, here = _values(row.paper) or "–", _values(np.unique(stored).tolist())
-        judged = _judged(row, stored)
-        cells.append((str(row.figure), row.panels, row.parameter, paper, here, judged, f"`{row.source}`"))
-    return table(("figure", "panels", "parameter", "paper", "here", "the same", "dataset"), cells)
+        paper, here, judged = _values(row.paper), _values(np.unique(stored).tolist()), _judged(row, stored)
+        if judged == "yes":
+            same.setdefault((str(row.figure), row.panels), []).append(f"{row.parameter}: {paper}")
+        else:
+            others.append((str(row.figure), row.panels, row.parameter, paper or "–", here, judged))
+    agreed = [(*place, "; ".join(parameters)) for place, parameters in same.items()]
+    heads = ("figure", "panels", "parameter", "paper", "here", "the same")
+    return table(("figure", "panels", "as in the paper"), agreed) + "\n\n" + table(heads, others)
 
 
 def _judged(row: Row, stored: NDArray[np.float64]) -> str:
