@@ -1,0 +1,133 @@
+"""Claims B14 to B17, beyond the paper: what rolling resistance changes (Secs. V.F and VIII)."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from ...claims import asked
+from ...claims.claim import Claims, Condition, Data, Finding, Quantity, Reading
+from ...claims.words import Bounds
+
+GROUP = "rolling_resistance"
+CLAIMS = Claims(GROUP)
+
+#: Of the paper's pile with friction (Fig. 17).
+FRICTION = 0.94
+#: Mean radii below which a length of a continuum is none: that of one disk.
+RADIUS = 1.0
+
+
+def _held(data: Data, rolling: int) -> dict[str, xr.Dataset]:
+    """Piles at the least friction with the smallest rolling friction (0) or the largest (-1), by their names."""
+    found = data.get(GROUP, "thresholds", "low", "high", "floor_dip", "layers", "rolling_friction", "ramp")
+    found = found.sortby("rolling_friction").isel(rolling_friction=rolling)
+    return {
+        f"{int(size)} layers, gravity {f'in {ramp:g} sqrt(R/g)' if ramp else 'at once'}": found.sel(
+            layers=size, ramp=ramp
+        )
+        for ramp in found["ramp"].values
+        for size in found["layers"].values
+    }
+
+
+def _bracket(one: xr.Dataset) -> Quantity:
+    return Quantity.bracket(float(one["low"]), float(one["high"]))
+
+
+@CLAIMS.add(
+    "B14",
+    "beyond the paper, V.F",
+    "least friction of disks and floor that holds an ordered pile on a flat floor without support, without rolling "
+    "resistance",
+    "stable piles on a flat floor require rolling resistance",
+    17,
+)
+def without_resistance(data: Data, words: Bounds) -> Finding:
+    least, most = _held(data, 0), _held(data, -1)
+    there = all(float(one["rolling_friction"]) == 0.0 for one in least.values())
+    CLAIMS.needs(there, "thresholds holds nothing without rolling resistance")
+    largest = float(next(iter(most.values()))["rolling_friction"])
+    resisting = asked.listed({name: _bracket(one) for name, one in most.items()})
+    return asked.each(
+        "without rolling resistance: ",
+        {name: _bracket(one) for name, one in least.items()},
+        lambda one: Condition("least friction that holds the pile", one, FRICTION),
+        remark=f"With rolling friction {largest:g}: {resisting}. Asked for more than {FRICTION:g}, the friction of the "
+        "paper's pile. The pile is placed, not built disk by disk",
+    )
+
+
+@CLAIMS.add(
+    "B15",
+    "beyond the paper, V.F",
+    "dip of the floor force under the apex of piles without support that rolling resistance holds, per largest force",
+    "no dip with friction (there with side walls)",
+    17,
+)
+def no_dip(data: Data, words: Bounds) -> Finding:
+    piles = data.get(GROUP, "piles", "floor_dip", "layers", "case").sel(case="resisting")
+    dips = {f"friction of Fig. 17, {int(n)} layers": float(piles["floor_dip"].sel(layers=n)) for n in piles["layers"]}
+    dips |= {f"least friction, {name}": float(one["floor_dip"]) for name, one in _held(data, -1).items()}
+    CLAIMS.needs(all(dip == dip for dip in dips.values()), "thresholds lacks a pile that rolling resistance holds")
+    return asked.each(
+        "with the largest rolling friction: ",
+        dips,
+        lambda dip: asked.at_most("dip per largest force", dip, words, "visible", "%"),
+        form=".1%",
+    )
+
+
+def _slabs(data: Data, *names: str) -> xr.Dataset:
+    found = data.get(GROUP, "slabs", *names, "friction", "rolling_friction", "load").sortby("rolling_friction")
+    CLAIMS.needs(found.sizes["rolling_friction"] > 1, "slabs holds one rolling friction, there is nothing to compare")
+    return found
+
+
+@CLAIMS.add(
+    "B16",
+    "beyond the paper, V.A and VIII",
+    "largest change of a slab's response to the small load by rolling resistance, per largest response",
+    "rolling resistance matters: models of micropolar or Cosserat type may be required",
+)
+def small_load(data: Data, words: Bounds) -> Finding:
+    response = _slabs(data, "floor_response")["floor_response"].isel(load=0)
+    without = response.isel(rolling_friction=0)
+    change = abs(response - without).max("floor_disk") / without.max("floor_disk")
+    return asked.each(
+        "the response to the small load changes by ",
+        {f"friction {float(mu):g}": Quantity.range(change.sel(friction=mu).values[1:]) for mu in change["friction"]},
+        lambda one: asked.at_least("change per largest response", one, words, "nearly", "%"),
+        unit="%",
+        remark="Ranges over the rolling frictions above the least",
+    )
+
+
+@CLAIMS.add(
+    "B17",
+    "beyond the paper, VIII",
+    "what the gradient of the rotations leaves of the squares of the load's couple stress, and the Cosserat length of "
+    "the fit in radii",
+    "rolling resistance supports continuum models of micropolar or Cosserat type",
+)
+def cosserat(data: Data, words: Bounds) -> Finding:
+    slabs = _slabs(data, "unexplained", "length").isel(rolling_friction=slice(1, None))
+    readings, lengths = [], []
+    for mu in slabs["friction"].values.tolist():
+        for load in slabs["load"].values.tolist():
+            one = slabs.sel(friction=mu, load=load)
+            length = Quantity.range(one["length"].values)
+            left = Quantity.range(one["unexplained"].values)
+            name = f"friction {mu:g}, {load:g} mg"
+            lengths.append(f"{length.text()}, {left.text('%')} left ({name})")
+            readings.append(
+                Reading(
+                    name,
+                    asked.at_most("part of the squares that is left", left, words, "quite well", "%"),
+                    Condition("Cosserat length in radii", length, RADIUS),
+                )
+            )
+    return Finding(
+        f"the Cosserat length is {'; '.join(lengths)}",
+        readings,
+        "Ranges over the rolling frictions above the least. Asked for a radius: less is no length of a continuum",
+    )
