@@ -87,7 +87,7 @@ def _slabs(data: Data, *names: str) -> xr.Dataset:
     "B16",
     "beyond the paper, V.A and VIII",
     "largest change of a slab's response to the small load by rolling resistance, per largest response",
-    "rolling resistance matters: models of micropolar or Cosserat type may be required",
+    "the effects of rolling resistance support that models of micropolar, or Cosserat type may be required",
 )
 def small_load(data: Data, words: Bounds) -> Finding:
     response = _slabs(data, "floor_response")["floor_response"].isel(load=0)
@@ -107,7 +107,7 @@ def small_load(data: Data, words: Bounds) -> Finding:
     "beyond the paper, VIII",
     "what the gradient of the rotations leaves of the squares of the load's couple stress, and the Cosserat length of "
     "the fit in radii",
-    "rolling resistance supports continuum models of micropolar or Cosserat type",
+    "the effects of rolling resistance support that models of micropolar, or Cosserat type may be required",
 )
 def cosserat(data: Data, words: Bounds) -> Finding:
     slabs = _slabs(data, "unexplained", "length").isel(rolling_friction=slice(1, None))
