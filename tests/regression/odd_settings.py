@@ -118,6 +118,11 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"scene": {"packing.layers": 5}, "polydispersities": [0.25], "frictions": [0.2], "band": 100.0},
         {"polydispersities": [0.1], "frictions": [0.2], "realizations": 1, "band": 1e-6, "margin": 0.9},
     ),
+    "rolling_resistance": (
+        {"layers": [1], "rolling_frictions": [0.0], "slab_rolling_frictions": [0.0], "ramps": [0.0]},
+        {"most_friction": 0.1, "tolerance": 1.0, "scene": SMALL},
+        {"moved": 1e-9, "slabs": [{"friction": 0.2, "forces": [0.01]}], "shown_forces": [0.01, 0.02], "heights": 1},
+    ),
     "crossover_scaling": (
         {"series": [{"name": "width", "friction": 0.0, "layers": [5], "disks_per_layer": [3.0, 4.0]}]},
         {"most_forces": 5, "first_force": 0.01, "series": [{"name": "low", "friction": 0.0, "layers": [5, 7]}]},

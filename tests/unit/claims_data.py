@@ -616,6 +616,32 @@ def network_study():
     }
 
 
+def rolling_study():
+    """Piles that rolling resistance alone holds, and a Cosserat slab."""
+    piles = {"layers": [5, 11], "rolling_friction": [0.0, 0.3], "ramp": [0.0, 30.0]}
+    dims, ends = tuple(piles), np.array([[0.95], [0.1]])
+    slabs = {"friction": [0.2, 1.0], "rolling_friction": [0.0, 0.5], "load": [0.5, 10.0]}
+    response = np.array([0.1, 0.2, 0.1]) * np.array([1.0, 1.2])[:, None, None]
+    return {
+        "thresholds": dataset(
+            piles,
+            low=(dims, np.broadcast_to(ends, (2, 2, 2))),
+            high=(dims, np.broadcast_to(ends + 0.02, (2, 2, 2))),
+            floor_dip=(dims, np.full((2, 2, 2), -0.01)),
+        ),
+        "piles": dataset(
+            {"layers": [5, 11], "case": ["supported", "free", "resisting"]},
+            floor_dip=(("layers", "case"), np.full((2, 3), -0.01)),
+        ),
+        "slabs": dataset(
+            slabs,
+            floor_response=((*slabs, "floor_disk"), np.broadcast_to(response, (2, 2, 2, 3))),
+            unexplained=(tuple(slabs), np.full((2, 2, 2), 0.05)),
+            length=(tuple(slabs), np.full((2, 2, 2), 3.0)),
+        ),
+    }
+
+
 def everything():
     """Datasets in which every claim holds, in every interpretation and every variant."""
     return {
@@ -640,4 +666,5 @@ def everything():
         "moduli": moduli_study(),
         "contact_law": law_study(),
         "network": network_study(),
+        "rolling_resistance": rolling_study(),
     }

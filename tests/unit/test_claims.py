@@ -198,6 +198,7 @@ ONE_MARGIN = np.array([[1.0, 1.0], [1.0, 1.0], [1.0, 1.0], [1.0, 0.1]])
 FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
 
 ENDS = ("low", "high")
+ROLLING = "rolling_resistance"
 #: The reversible range of the second case alone ends early.
 IRREVERSIBLE = [[[1.0, 1.0]], [[1.0, 0.2]]]
 
@@ -380,6 +381,12 @@ PLANTED = [
     ("B18", scaled("preparation", "mobilized", "force", FIRST_CASE_ALONE), "contradicted"),
     ("B18", scaled("preparation", "mobilized", "mobilized_part", ONE_MARGIN), DEPENDS),
     ("B13", scaled("network", "statistics", "hyperstaticity", 2.0), "undecided"),
+    ("B14", scaled(ROLLING, "thresholds", "low", 0.5), "undecided"),
+    ("B14", both(*(scaled(ROLLING, "thresholds", end, 0.5) for end in ENDS)), "contradicted"),
+    ("B15", put(ROLLING, "piles", "floor_dip", 0.05), DEPENDS),
+    ("B16", put(ROLLING, "slabs", "floor_response", 0.1), "contradicted"),
+    ("B17", put(ROLLING, "slabs", "length", 0.3), "contradicted"),
+    ("B17", scaled(ROLLING, "slabs", "unexplained", [1.0, 10.0]), DEPENDS),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), DEPENDS),
     ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "undecided"),

@@ -51,7 +51,14 @@ QUESTIONS: Mapping[str, tuple[str, ...]] = {
         "symmetry_breaking",
     ),
     "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network"),
-    "What do piles, torques and several forces do?": ("pile_dip", "torque", "superposition", "influence", "hysteresis"),
+    "What do piles, torques and several forces do?": (
+        "pile_dip",
+        "torque",
+        "superposition",
+        "influence",
+        "hysteresis",
+        "rolling_resistance",
+    ),
     "How certain are the numbers?": ("sensitivity", "numerics", "contact_law", "stability"),
 }
 FURTHER = "Further figures"

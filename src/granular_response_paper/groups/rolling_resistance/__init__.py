@@ -1,0 +1,1 @@
+"""Figure group ``rolling_resistance``."""

@@ -1,0 +1,121 @@
+"""Least friction of piles, their floor forces, and the response and couple stress of slabs, with rolling resistance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import family, grey_limit, titles
+
+from .parameters import Parameters
+
+ROLLING = r"\mu_R"
+#: Part of the slab that is shown, to both sides of the load (radii).
+REACH = 20.0
+#: Cases of piles by their names in the picture.
+PILES = {"supported": "side walls", "free": "none", "resisting": f"none, ${ROLLING}$"}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``rolling_resistance`` from the three datasets of the study of the same name."""
+    thresholds, piles, slabs = (datasets[name] for name in ("thresholds", "piles", "slabs"))
+    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    (least, floor, events), (*responses, couples) = panels
+    _least(least, thresholds)
+    _floor(floor, piles, thresholds)
+    _events(events, slabs)
+    drawn = slabs["friction"].values[[0, -1]].tolist()
+    for axes, friction in zip(responses, drawn, strict=True):
+        _response(axes, slabs.sel(friction=friction))
+    responses[0].legend(loc="lower center", handlelength=1.4, fontsize=6.5)
+    _couples(couples, slabs.sel(friction=drawn[0]))
+    slab = [f"slab, {style.equals(style.FRICTION, friction)}" for friction in drawn]
+    titles(panels.flat, ["least friction", "floor force", "events, slab", *slab, f"couple stress, {slab[0][6:]}"])
+    return {"rolling_resistance": figure}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    p = parameters
+    said = of_scene(p.scene, friction=[slab.friction for slab in p.slabs])
+    layers = ", ".join(map(str, p.layers))
+    small, large = p.shown_forces
+    return of_group(
+        "rolling_resistance", {"rolling_resistance": said}, layers=layers, ramp=max(p.ramps), small=small, large=large
+    )
+
+
+def _places(axes: Axes, values: np.ndarray) -> np.ndarray:
+    """(k,) places of rolling frictions, evenly spaced, with 0 among them; they label the axis."""
+    places = np.arange(len(values), dtype=float)
+    axes.set(xlabel=f"rolling friction ${ROLLING}$", xticks=places, xticklabels=[f"{value:g}" for value in values])
+    return places
+
+
+def _least(axes: Axes, thresholds: xr.Dataset) -> None:
+    places = _places(axes, thresholds["rolling_friction"].values)
+    for size, look in family(thresholds["layers"].values, of="length"):
+        one = thresholds.sel(layers=size)
+        middle = 0.5 * (one["low"] + one["high"])
+        for k, ramp in enumerate(one["ramp"].values):
+            slow = {"markerfacecolor": "white", "markeredgecolor": look["color"], "markeredgewidth": 0.9}
+            fill: dict[str, Any] = slow | {"linestyle": "--"} if k else {"label": f"{size} layers"}
+            axes.plot(places, middle.sel(ramp=ramp), **look | {"markersize": 4.0} | fill)
+        axes.plot(places, one["balance"], color=look["color"], linestyle=":", linewidth=1.2)
+    axes.set(ylabel=f"${style.FRICTION}$ that holds the pile", ylim=(0.0, None))
+    axes.legend(loc="upper right", fontsize=7)
+
+
+def _floor(axes: Axes, piles: xr.Dataset, thresholds: xr.Dataset) -> None:
+    highest = piles.isel(layers=int(np.argmax(piles["layers"].values)))
+    for k, (case, name) in enumerate(PILES.items()):
+        one = highest.sel(case=case)
+        axes.plot(one["x"], one["floor_force"], **style.line(k), label=name)
+    last = thresholds.sel(layers=highest["layers"]).isel(rolling_friction=-1, ramp=0)
+    if np.isfinite(float(last["high"])):
+        name = f"none, ${ROLLING}$, {style.equals(style.FRICTION, round(float(last['high']), 2))}"
+        axes.plot(last["x"], last["floor_force"], **style.line(len(PILES)), label=name)
+    axes.set(xlabel=style.POSITION, ylabel=rf"floor force$\,/\,{style.WEIGHT}$", ylim=(0.0, None))
+    axes.legend(loc="lower center", title="support", handlelength=1.6, fontsize=7, title_fontsize=7)
+
+
+def _events(axes: Axes, slabs: xr.Dataset) -> None:
+    places = _places(axes, slabs["rolling_friction"].values)
+    names = {"opening": ("first opening", "o"), "crossover": ("two peaks", "s")}
+    for friction, look in family(slabs["friction"].values, of="friction", marked=False):
+        for event, (name, marker) in names.items():
+            low, high = slabs[event].sel(friction=friction).values.T
+            shown = look | {"marker": marker, "markersize": 4.0}
+            axes.plot(places, high, **shown, label=f"{name}, ${style.FRICTION} = {friction:g}$")
+            never = np.isnan(high)
+            axes.errorbar(places[never], low[never], 0.15 * low[never], lolims=True, **shown | {"linestyle": "none"})
+    ticks = [1, 2, 3, 5, 10, 20, 40]
+    axes.set(ylabel=rf"${style.F_EXT}\,/\,{style.WEIGHT}$", yscale="log", yticks=ticks, yticklabels=ticks, ylim=(2, 60))
+    axes.minorticks_off()
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.86), fontsize=6.5)
+
+
+def _response(axes: Axes, slab: xr.Dataset) -> None:
+    x = slab["x"].isel(rolling_friction=0).values
+    shown = np.abs(x) <= REACH
+    grey_limit(axes, x[shown], slab["floor_response"].isel(rolling_friction=0, load=0).values[shown])
+    for rolling, look in family(slab["rolling_friction"].values, of="other", marked=False, dashed=True):
+        curve = slab["floor_response"].sel(rolling_friction=rolling).isel(load=-1).values
+        axes.plot(x[shown], curve[shown], **look, label=f"${ROLLING} = {rolling:g}$")
+    axes.set(xlabel=style.POSITION, ylabel=style.RESPONSE)
+
+
+def _couples(axes: Axes, slab: xr.Dataset) -> None:
+    part = 100.0 * slab["couple_stress"] / slab["vertical_stress"]
+    for rolling, look in family(slab["rolling_friction"].values, of="other", marked=False):
+        for load, dashes in zip((0, -1), ("-", "--"), strict=True):
+            axes.plot(part["z"], part.sel(rolling_friction=rolling).isel(load=load), **look | {"linestyle": dashes})
+    axes.set(xlabel="height / slab's", ylabel=rf"couple stress$\,/\,\sigma_{{zz}}{style.RADIUS}$ (%)", ylim=(0.0, None))

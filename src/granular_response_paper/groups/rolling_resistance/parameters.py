@@ -1,0 +1,52 @@
+"""Parameters of what rolling resistance changes."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from granular_response.scene import PilePacking, Scene
+from granular_response.scene.base import Count, Description, NonNegative, Positive
+from granular_response.scene.errors import Problem
+from granular_response_paper.parameters import UNIT_LOAD, Coefficients, Counts, Growing, SceneGroup, over, some
+
+_ROLLING = ("contact.rolling_friction", "wall.rolling_friction")
+_PILE = Scene(packing=PilePacking(), loads=())
+
+
+class Slab(Description):
+    """A slab under a growing force."""
+
+    friction: Positive = Field(description="Between disks.")
+    forces: Growing = Field(description="In mean disk weights.")
+
+
+class Parameters(SceneGroup):
+    """Section ``rolling_resistance``."""
+
+    pile: Annotated[Scene, over(_PILE, "packing", "loads", "preparation", *_ROLLING)] = Field(
+        description="The pile with support."
+    )
+    layers: Counts = Field(description="Of the piles.")
+    rolling_frictions: Coefficients = Field(description="Of piles; at the floor the same.")
+    ramps: tuple[NonNegative, ...] = Field(
+        min_length=1, description="Times over which gravity grows, in sqrt(R/g); 0: at once."
+    )
+    least_friction: Positive = Field(description="From which on piles are tried, floor and disks alike.")
+    most_friction: Positive = Field(description="Up to which they are.")
+    tolerance: Positive = Field(description="Width of the bracket of the least friction that holds a pile.")
+    moved: Positive = Field(description="A pile holds if no disk moves farther on its way to rest, in radii.")
+    scene: Annotated[Scene, over(UNIT_LOAD, "contact.friction", "loads", *_ROLLING)] = Field(description="The slab.")
+    slabs: Annotated[tuple[Slab, ...], AfterValidator(some)] = Field(description="One for each friction.")
+    slab_rolling_frictions: Coefficients = Field(description="Of disks in slabs.")
+    shown_forces: tuple[Positive, Positive] = Field(description="Whose stresses are stored: a small and a large one.")
+    stress_width: Positive = Field(description="w of the Gaussian, in radii.")
+    heights: Count = Field(description="Number of heights at which stresses are taken.")
+
+    @model_validator(mode="after")
+    def _check_range(self) -> Parameters:
+        if self.least_friction >= self.most_friction:
+            rule = f"must be above least_friction = {self.least_friction:g}"
+            raise Problem(rule, key=("most_friction",), value=self.most_friction)
+        return self
