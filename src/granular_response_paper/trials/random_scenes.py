@@ -33,6 +33,9 @@ RELATIVE = 1e-6
 #: One scene in so many is compared with its twin, where both rest states agree within ``SAME_REST`` (mean disk weights)
 #: on the floor: responses are then the same within ``TWINS`` of the load.
 TWIN_EVERY, SAME_REST, TWINS = 4, 1e-6, 1e-4
+#: Part by which x is changed to see whether a last digit turns the motion aside: the response then changes by more than
+#: ``TURNED`` of the load, and there is nothing to compare.
+LAST_DIGIT, TURNED = 1e-15, 1e-6
 #: Stiffnesses (weights per radius) from soft to nearly rigid.
 STIFFNESS = ((1.0, 1e2), (1e2, 1e4), (1e4, 1e6), (1e6, 1e9))
 METHODS = ("auto", "dynamics", "path", "minimise")
@@ -330,10 +333,12 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
     mirror = [packing.width - packing.position[:, 0], packing.position[:, 1]]
     table = np.column_stack([packing.position, packing.radius, *masses])
     mirrored = np.column_stack([*(unit * column for column in (*mirror, packing.radius)), *masses])
-    solved = []
+    nudged = table * np.array([1.0 + LAST_DIGIT, *np.ones(table.shape[1] - 1)])
+    found: list[list[np.ndarray]] = []
     for disks, width, where, sign in (
         (table, packing.width, np.arange(packing.n), 1.0),
         (mirrored[order], unit * packing.width, place, -1.0),
+        (nudged, packing.width, np.arange(packing.n), 1.0),
     ):
         write_table(Path(folder, "twin.csv"), disks)
         sides = "periodic" if packing.periodic else "walls"
@@ -343,21 +348,26 @@ def twin_difference(description: dict[str, Any], solution: Solution, folder: str
         ]
         file = {"kind": "file", "path": "twin.csv", "width": float(width), "sides": sides}
         try:
-            solved.append(solve_scene(Scene.from_dict(description | {"packing": file, "loads": loads}, folder=folder)))
+            one = solve_scene(Scene.from_dict(description | {"packing": file, "loads": loads}, folder=folder))
         except (SceneError, SolveError):
             return float("nan")
-    one, other = solved
-    both = [(one.rest, other.rest), *zip(one.loaded, other.loaded, strict=True)]
-    if any(lost(pair) or not all(state.certificate.stable for state in pair) for pair in both):
+        states = (one.rest, *one.loaded)
+        if lost(states) or not all(state.certificate.stable for state in states):
+            return float("nan")
+        found.append([_floor(state)[where] for state in states])
+    first, twin, near = found
+    if np.abs(first[0] - twin[0]).max() > SAME_REST:
         return float("nan")
-    floor = [(_floor(a), _floor(b)[place]) for a, b in both]
-    if np.abs(floor[0][0] - floor[0][1]).max() > SAME_REST:
-        return float("nan")
-    response = max(np.abs((a - floor[0][0]) - (b - floor[0][1])).max() for a, b in floor[1:])
+    response, turned = (
+        max(np.abs((a - first[0]) - (b - other[0])).max() for a, b in zip(first[1:], other[1:], strict=True))
+        for other in (twin, near)
+    )
     largest = max(abs(factor) for factor in scene.protocol.load_factors)
     size = max(solution.applied_force(state) for state in solution.loaded)
     size += largest * sum(abs(load.torque) for load in scene.loads)
-    return float(response) / size if size > 0.0 else float("nan")
+    if not size or turned > TURNED * size:
+        return float("nan")
+    return float(response) / size
 
 
 def _mirrored(load: Load, sign: float) -> dict[str, Any]:
