@@ -20,7 +20,7 @@ from granular_response.state import FloatArray
 from granular_response.store.result import FORCE
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.preparation.parameters import Parameters, Part
+from granular_response_paper.groups.preparation.parameters import Parameters
 from granular_response_paper.records import axes, column, record, table
 from granular_response_paper.tasks import computed
 
@@ -92,13 +92,11 @@ def tasks(parameters: Parameters) -> dict[tuple[float, float, int, int], partial
         for p, part in enumerate(parameters.parts)
         for k, way in enumerate(parameters.ways)
         if not part.ways or way.name in part.ways
-        for scene in [_scene(parameters.base, part).updated(way.changes)]
+        for walls in [part.friction if part.walls == "rough" else 0.0]
+        for scene in [
+            parameters.base.updated({"contact.friction": part.friction, "wall.friction": walls, **way.changes})
+        ]
     }
-
-
-def _scene(base: Scene, part: Part) -> Scene:
-    rough = part.walls == "rough"
-    return base.updated({"contact.friction": part.friction, "wall.friction": part.friction if rough else 0.0})
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
