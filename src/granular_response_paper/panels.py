@@ -9,12 +9,11 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from granular_response.plot import network, style
-from granular_response.state import SLIDING, FloatArray
+from granular_response.state import FloatArray
 
 from .captions import letters
 
@@ -151,25 +150,3 @@ def label_ends(axes: Axes, ends: Iterable[tuple[str, float, float, str]], *, gap
 def grey_limit(axes: Axes, x: FloatArray, response: FloatArray) -> None:
     """The elastic response, or that to the smallest force, as a broad grey line behind all others."""
     axes.plot(x, response, color=style.FAINT, linestyle="-", linewidth=3.5, zorder=1, label="elastic")
-
-
-def profiles(axes: Axes, curves: xr.Dataset, along: str, elastic: FloatArray, *, markersize: float = 3.2) -> None:
-    """Floor responses for each value ``along`` a dimension, before the ``elastic`` one in grey.
-
-    Symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen.
-    """
-    grey_limit(axes, curves["x"].values, elastic)
-    for index, (value, look) in enumerate(family(curves[along].values, of=along, dashed=True)):
-        look |= {"markersize": markersize, "markevery": (index % 3, 3)}
-        axes.plot(curves["x"], curves["floor_response"].isel({along: index}), label=f"{value:g}", **look)
-    axes.set_xlabel(style.POSITION)
-
-
-def contact_changes(
-    figure: Figure, panels: Iterable[Axes], rest: xr.Dataset, states: Iterable[xr.Dataset], **legend: Any
-) -> None:
-    """What a load changes in the contacts of a slab at ``rest``, one of the states in each panel, with one legend."""
-    handles: dict[str, Any] = {}
-    for axes, one in zip(panels, states, strict=False):
-        handles |= network.draw_state_changes(axes, rest, one, one["contact_status"].values == SLIDING)
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), **legend)

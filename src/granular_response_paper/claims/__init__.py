@@ -1,4 +1,5 @@
 """The machinery of claims: records, words, verdicts, bootstrap, table.
 
-What is claimed stands beside each figure group, in ``groups/<group>/claims.py``; :mod:`table` collects it.
+What is claimed stands beside each figure group: texts in ``groups/<group>/claims.yaml``, the functions that measure in
+``claims.py``; :mod:`table` collects both.
 """

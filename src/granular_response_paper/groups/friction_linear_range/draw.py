@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -11,8 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+from granular_response.state import SLIDING
 from granular_response_paper.captions import WEIGHT, Caption, of_group, of_scene, panels
-from granular_response_paper.panels import among, contact_changes, family, label_ends, profiles, titles, zero
+from granular_response_paper.panels import among, family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
 
@@ -29,6 +31,8 @@ AXIS_FRICTIONS = (0.0, 0.1, 0.15, 0.2, 0.5, 1.0)
 #: Part of the slab that profiles show, to both sides of the load (radii): beyond it the walls matter.
 REACH = 40.0
 
+#: Symbols of a profile stand at every so many disks.
+SPREAD = 3
 
 #: What the paper says, in mean disk weights: forces that open the first contact, by friction (Sec. V.B), crossover and
 #: third peak at friction 0.2, and the last symmetric response at friction 1 (Sec. V.E).
@@ -120,7 +124,7 @@ def _profiles(response: xr.Dataset) -> Figure:
     titles(axes[0], [style.equals(style.FRICTION, friction) + notes[friction] for friction in PROFILE_FRICTIONS])
     for panel, friction in zip(axes[0], PROFILE_FRICTIONS, strict=True):
         one = response.sel(friction=friction)
-        _profile(panel, at_forces(one, PROFILE_FORCES), "force", one.isel(force=0))
+        _plot_profiles(panel, at_forces(one, PROFILE_FORCES), "force", one.isel(force=0))
     axes[0, 0].set(ylabel=style.RESPONSE, ylim=(0.0, None))
     handles, names = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, names, title=style.FORCE, loc="outside upper center", ncols=len(names), handlelength=2.8)
@@ -131,7 +135,7 @@ def _friction_axis(axis: xr.Dataset, response: xr.Dataset) -> Figure:
     """Fig. 12."""
     figure, axes = style.figure(height=2.6)
     curves = axis.sel(friction=among(axis["friction"], AXIS_FRICTIONS))
-    _profile(axes[0, 0], curves, "friction", response.isel(friction=-1, force=0))
+    _plot_profiles(axes[0, 0], curves, "friction", response.isel(friction=-1, force=0))
     axes[0, 0].set(ylabel=style.RESPONSE, ylim=(0.0, None))
     axes[0, 0].legend(title=f"${style.FRICTION}$", loc="upper right", handlelength=2.8)
     return figure
@@ -142,8 +146,8 @@ def _large_forces(response: xr.Dataset, dynamic: xr.Dataset) -> Figure:
     figure, axes = style.figure(1, 2, width="double", height=2.9)
     left, right = axes[0]
     one = response.sel(friction=LARGE_FRICTION)
-    _profile(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
-    _profile(right, at_forces(dynamic, DYNAMIC_FORCES), "force", response.isel(friction=-1, force=0))
+    _plot_profiles(left, at_forces(one, LARGE_FORCES), "force", one.isel(force=0))
+    _plot_profiles(right, at_forces(dynamic, DYNAMIC_FORCES), "force", response.isel(friction=-1, force=0))
     paper = (
         f"paper: two peaks from {PAPER_CROSSOVER:g}, third from {PAPER_THIRD_PEAK:g}",
         f"paper: symmetric at {PAPER_SYMMETRIC:g}",
@@ -170,17 +174,27 @@ def at_forces(dataset: xr.Dataset, forces: Sequence[float]) -> xr.Dataset:
     return stored.sel(force=among(stored["force"], forces))
 
 
-def _profile(panel: Axes, curves: xr.Dataset, along: str, elastic: xr.Dataset) -> None:
-    profiles(panel, curves, along, elastic["floor_response"].values)
-    panel.set_xlim(-REACH, REACH)
+def _plot_profiles(panel: Axes, curves: xr.Dataset, along: Literal["force", "friction"], elastic: xr.Dataset) -> None:
+    """Response against position, a curve for each value ``along`` a dimension, before the ``elastic`` one in grey."""
+    grey_limit(panel, curves["x"].values, elastic["floor_response"].values)
+    # symbols at other disks for each curve, and dashes, so that curves which cover each other are all seen
+    for index, (value, look) in enumerate(family(curves[along].values, of=along, dashed=True)):
+        look |= {"markersize": 3.2, "markevery": (index % SPREAD, SPREAD)}
+        panel.plot(curves["x"], curves["floor_response"].isel({along: index}), label=f"{value:g}", **look)
+    panel.set(xlabel=style.POSITION, xlim=(-REACH, REACH))
 
 
 def _contacts(states: xr.Dataset, friction: float) -> Figure:
     """Figs. 8 and 9: the central third, one panel for each force."""
-    shown = contact_forces(states)
-    figure, (panels,) = style.figure(1, len(shown), width="double", height=2.1)
-    loaded = [states.isel(state=states["force"].values.tolist().index(force)) for force in shown]
-    contact_changes(figure, panels, states.isel(state=0), loaded, columnspacing=1.2)
+    stored, shown = states["force"].values, contact_forces(states)
+    figure, axes = style.figure(1, len(shown), width="double", height=2.1)
+    rest = states.isel(state=0)
+    handles: dict[str, Any] = {}
+    for panel, force in zip(axes[0], shown, strict=True):
+        loaded = states.isel(state=int(np.flatnonzero(stored == force)[0]))
+        drawn = draw_state_changes(panel, rest, loaded, loaded["contact_status"].values == SLIDING)
+        handles.update({name: line for name, line in drawn.items() if name not in handles})
     mu = style.equals(style.FRICTION, friction)
-    titles(panels, [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown])
+    titles(axes[0], [f"{mu}, {style.equals(style.F_EXT, force, style.WEIGHT)}" for force in shown])
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), columnspacing=1.2)
     return figure

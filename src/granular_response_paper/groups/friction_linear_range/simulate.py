@@ -96,7 +96,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     paths = computed(_paths(parameters), "load paths")
 
     axis_frictions = sorted(axis.frictions)
-    on_axis = [_at_force(paths[mu], axis.force) for mu in axis_frictions]
+    on_axis = [paths[mu].measured.isel(state=[paths[mu].forces.index(axis.force)]) for mu in axis_frictions]
     double = [bool(measured["double_peaked"][0]) for measured in on_axis]
     low, high = slab.first_change(axis_frictions, [not two for two in double])
     further: dict[float | str, Callable[[], Any]] = {}
@@ -162,10 +162,6 @@ def _paths(parameters: Parameters) -> dict[float, partial[PathResult]]:
         reached = tuple(sorted(force for force in forces if force <= largest.get(mu, np.inf)))
         paths[mu] = partial(follow, scene, reached, parameters.asymmetry, mu in parameters.states_of)
     return paths
-
-
-def _at_force(result: PathResult, force: float) -> xr.Dataset:
-    return result.measured.isel(state=[result.forces.index(force)])
 
 
 def _response_dataset(results: dict[float, PathResult]) -> xr.Dataset:

@@ -8,17 +8,19 @@ region of opened contacts reaches the floor (open marker). The band of ``fig05b_
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
 from granular_response.plot import style
+from granular_response.plot.network import draw_state_changes
+from granular_response.state import SLIDING
 from granular_response_paper.captions import Caption, of_group, of_scene, panels, values
-from granular_response_paper.panels import contact_changes, family, label_ends, profiles, titles, zero
+from granular_response_paper.panels import family, grey_limit, label_ends, titles, zero
 
 from .parameters import Parameters
 
@@ -84,16 +86,20 @@ def nearest(stored: np.ndarray, wanted: Sequence[float]) -> list[int]:
 
 
 def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
-    figure, ((floor, centre),) = style.figure(
+    figure, ((profiles, centre),) = style.figure(
         1, 2, width="double", height=2.7, gridspec_kw={"width_ratios": [1.45, 1.0]}
     )
     data = data.isel(floor_disk=np.flatnonzero(data["interior"].values))
     x = data["x"].values
-    chosen = data.isel(force=nearest(data["force"].values, PROFILE_FORCES))
-    profiles(floor, chosen, "force", data["floor_response"].values[0], markersize=3.0)
-    zero(floor)
-    floor.set(ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
-    floor.legend(title=style.FORCE, loc="upper right")
+    chosen = nearest(data["force"].values, PROFILE_FORCES)
+    grey_limit(profiles, x, data["floor_response"].values[0])
+    for at, (k, look) in enumerate(family(chosen, of="force", dashed=True)):
+        one = data.isel(force=k)
+        look |= {"markersize": 3.0, "markevery": (at % 3, 3)}
+        profiles.plot(x, one["floor_response"], **look, label=f"{float(one['force']):g}")
+    zero(profiles)
+    profiles.set(xlabel=style.POSITION, ylabel=style.RESPONSE, xlim=(x[0], x[-1]))
+    profiles.legend(title=style.FORCE, loc="upper right")
 
     centre.plot(data["force"], data["response_at_centre"], **style.marked_line(0), label="at $x=0$")
     centre.plot(data["force"], data["peak_height"], **style.marked_line(1), label="largest")
@@ -120,7 +126,7 @@ def _response(data: xr.Dataset, events: xr.Dataset) -> Figure:
     centre.set(xscale="log", xlabel=style.FORCE, ylabel=style.RESPONSE)
     centre.xaxis.set_major_formatter("{x:g}")
     centre.legend(loc="lower left", frameon=True, facecolor="white", edgecolor="none", framealpha=1.0)
-    titles((floor, centre))
+    titles((profiles, centre))
     return figure
 
 
@@ -129,24 +135,28 @@ def _contacts(rest: xr.Dataset, states: xr.Dataset) -> Figure:
     columns = min(3, len(chosen))
     rows = -(-len(chosen) // columns)
     figure, panels = style.figure(rows, columns, width="double", height=0.2 + 1.85 * rows)
-    contact_changes(figure, panels.flat, rest.isel(state=0), [states.isel(force=k) for k in chosen])
-    titles(panels.flat, [style.equals(style.F_EXT, float(states["force"][k]), style.WEIGHT) for k in chosen])
-    for axes in panels.flat[len(chosen) :]:
-        axes.set_axis_off()
+    handles: dict[str, LineCollection] = {}
+    for at, axes in enumerate(panels.ravel()):
+        if at >= len(chosen):
+            axes.set_axis_off()
+            continue
+        one = states.isel(force=chosen[at])
+        handles |= draw_state_changes(axes, rest.isel(state=0), one, one["contact_status"].values == SLIDING)
+    forces = states["force"].values[chosen]
+    titles(panels.flat, [style.equals(style.F_EXT, force, style.WEIGHT) for force in forces])
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles))
     return figure
-
-
-def _of(slabs: xr.Dataset, stiffness: float) -> xr.Dataset:
-    """The slabs of one stiffness."""
-    return slabs.isel(slab=np.flatnonzero(slabs["normal_stiffness"].values == stiffness))
 
 
 def _teardrop(sizes: xr.Dataset) -> Figure:
     stiffnesses = np.unique(sizes["normal_stiffness"].values)
     figure, panels = style.figure(len(stiffnesses), 2, width="double", height=0.3 + 2.2 * len(stiffnesses), sharex=True)
     for row, stiffness in zip(panels, stiffnesses, strict=True):
-        for axes, name, label in zip(row, ("depth", "width"), (style.DEPTH, style.WIDTH), strict=True):
-            _growth(axes, _of(sizes, stiffness), f"teardrop_{name}", lambda one: f"{int(one['layers'])}")
+        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
+        for axes, name, label in zip(
+            row, ("teardrop_depth", "teardrop_width"), (style.DEPTH, style.WIDTH), strict=True
+        ):
+            _growth(axes, slabs, name, lambda one: f"{int(one['layers'])}")
             axes.set_ylabel(label)
     panels[0, 0].legend(title="layers", loc="upper left")
     for axes in panels[-1]:
@@ -206,7 +216,9 @@ def _stiffness(data: xr.Dataset) -> Figure:
     style.paper_value(size, PAPER_SATURATION, f"paper: {PAPER_SATURATION:g}", at=0.3)
 
     for at, (name, label) in enumerate(EVENTS.items()):
-        _middles(events, k[held], data[f"{name}_bracket"].values[held], label=label, **style.marked_line(at))
+        bracket = data[f"{name}_bracket"].values
+        known = held & np.isfinite(bracket).all(axis=1)
+        events.plot(k[known], bracket[known].mean(axis=1), **style.marked_line(at), label=label)
     style.logarithmic(events, "y")
     events.set(ylabel=f"onset force, {style.FORCE}")
     events.yaxis.set_major_locator(FixedLocator([0.5, 1.0, 2.0, 5.0, 10.0]))
@@ -222,21 +234,11 @@ def _stiffness(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _middles(axes: Axes, x: np.ndarray, brackets: np.ndarray, **look: Any) -> None:
-    """The middles of those of the ``brackets`` (n, 2) that have two ends."""
-    known = np.isfinite(brackets).all(axis=1)
-    axes.plot(x[known], brackets[known].mean(axis=1), **look)
-
-
 def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     figure, ((box, profiles, events),) = style.figure(1, 3, width="double", height=3.2)
     stiffnesses = np.unique(sizes["normal_stiffness"].values)
-    _growth(
-        box,
-        _of(widths, stiffnesses[-1]),
-        "teardrop_depth",
-        lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}",
-    )
+    stiffest = widths.isel(slab=np.flatnonzero(widths["normal_stiffness"].values == stiffnesses[-1]))
+    _growth(box, stiffest, "teardrop_depth", lambda one: f"{int(one['layers'])} $\\times$ {int(one['disks_per_row'])}")
     box.set(xlabel=style.FORCE, ylabel=style.DEPTH)
     handles, names = box.get_legend_handles_labels()
     figure.legend(
@@ -248,7 +250,7 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
         handlelength=3.0,
     )
 
-    softest = _of(sizes, stiffnesses[0])
+    softest = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffnesses[0]))
     at_force = softest.isel(force=nearest(softest["force"].values, [COMPARED_FORCE])[0])
     for at, look in family(range(softest.sizes["slab"]), of="length", marked=False, dashed=True):
         one = at_force.isel(slab=at)
@@ -261,11 +263,13 @@ def _slabs(sizes: xr.Dataset, widths: xr.Dataset) -> Figure:
     profiles.legend(title="layers", loc="upper right", handlelength=1.6, fontsize=7)
 
     for stiffness, face in zip(stiffnesses, ("white", None), strict=False):  # colours as in (g)
-        slabs = _of(sizes, stiffness)
+        slabs = sizes.isel(slab=np.flatnonzero(sizes["normal_stiffness"].values == stiffness))
         for at, name in list(enumerate(EVENTS))[1:]:
+            bracket = slabs[f"{name}_bracket"].values
+            known = np.isfinite(bracket).all(axis=1)
             look = style.marked_line(at) | ({"markeredgewidth": 0.8, "markerfacecolor": face} if face else {})
             label = f"{EVENTS[name]}, {style.equals('k_N', stiffness, style.STIFFNESS_UNIT)}"
-            _middles(events, slabs["layers"].values, slabs[f"{name}_bracket"].values, label=label, **look)
+            events.plot(slabs["layers"].values[known], bracket[known].mean(axis=1), label=label, **look)
     events.set(xlabel="layers", ylabel=f"onset force, {style.FORCE}")
     events.set_ylim(0.0, 1.5 * events.get_ylim()[1])
     events.legend(fontsize=7, loc="upper left")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -41,8 +40,10 @@ SIMULATED = "#EFF2F4"
 @style.context()
 def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """Fig. 22 and what stands behind it, from the datasets of the study of the same name."""
+    crossovers = datasets["crossovers"]
+    usual = np.flatnonzero(crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0])
     shown, shapes, others, realizations = (
-        _usual(datasets[name]) for name in ("crossovers", "shapes", "definitions", "realizations")
+        datasets[name].isel(case=usual) for name in ("crossovers", "shapes", "definitions", "realizations")
     )
     return {
         "fig22_phase_diagram": _diagram(shown.isel(width=-1)),
@@ -55,10 +56,13 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
 
 def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
     """By file stem."""
-    crossovers = _usual(datasets["crossovers"])
-    frictions, deltas = (sorted(set(crossovers[name].values.tolist())) for name in ("friction", "polydispersity"))
+    crossovers = datasets["crossovers"]
+    usual = crossovers["lattice_constant"].values == crossovers["lattice_constant"].values[0]
+    frictions, deltas = (
+        sorted(set(crossovers[name].values[usual].tolist())) for name in ("friction", "polydispersity")
+    )
     rubbing, disordered = [mu for mu in frictions if mu], {"polydispersity": [delta for delta in deltas if delta]}
-    realizations = sorted(set(crossovers["realizations"].values[crossovers["polydispersity"] > 0.0].tolist()))
+    realizations = sorted(set(crossovers["realizations"].values[usual & (crossovers["polydispersity"] > 0.0)].tolist()))
     rows = len(parameters.widths)
     given: dict[str, Value] = {
         "friction": frictions,
@@ -84,11 +88,6 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     )
 
 
-def _usual(study: xr.Dataset) -> xr.Dataset:
-    """The cases whose start is that of the first one."""
-    return study.isel(case=study["lattice_constant"].values == study["lattice_constant"].values[0])
-
-
 def _diagram(crossovers: xr.Dataset) -> Figure:
     """Fig. 22: the crossover force of every polydispersity in one plane, beside the forces of experiments."""
     figure, ((axes,),) = style.figure(width="double", height=3.9)
@@ -96,7 +95,7 @@ def _diagram(crossovers: xr.Dataset) -> Figure:
     axes.set(xlim=(-0.05, 1.14), ylim=FORCES)
     axes.yaxis.set_major_formatter("{x:g}")
     ends = []
-    deltas = _deltas(crossovers)
+    deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
     for k, (delta, look) in enumerate(family(deltas, of="polydispersity")):
         one = crossovers.isel(case=_of(crossovers, delta))
         friction, force, found = one["friction"].values, one["force"].values, one["kind"].values == FOUND
@@ -132,11 +131,12 @@ def _bounds(axes: Axes, data: xr.Dataset, colour: str, shift: float, limits: tup
 
 def _intervals(crossovers: xr.Dataset, shapes: xr.Dataset, realizations: xr.Dataset) -> Figure:
     """A row for each smoothing width, a column for each polydispersity: 68 and 95 % of the draws."""
-    deltas = _deltas(crossovers)
+    deltas = sorted(set(crossovers["polydispersity"].values.tolist()))
+    widths = crossovers["width"].values.tolist()
     applied = shapes["applied_force"].values
     limits = FORCES[0], 2.0 * float(np.nanmax(applied))
     colours = style.ordered_colours(len(deltas), of="polydispersity")
-    figure, panels = _grid(crossovers, deltas, (0.5, 1.85), f"${style.BOTH_FRICTIONS}$", style.FORCE)
+    figure, panels = _grid(widths, deltas, 0.5 + 1.85 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     for (width, delta), axes in panels.items():
         here = _of(crossovers, delta)
         one, colour = crossovers.sel(width=width).isel(case=here), colours[deltas.index(delta)]
@@ -165,22 +165,12 @@ _FRICTION_AXES: dict[str, Any] = {
 }
 
 
-def _deltas(crossovers: xr.Dataset) -> list[float]:
-    """The polydispersities, in order."""
-    return sorted(set(crossovers["polydispersity"].values.tolist()))
-
-
 def _grid(
-    crossovers: xr.Dataset, deltas: Sequence[float], height: tuple[float, float], x: str, y: str
+    widths: Sequence[float], deltas: Sequence[float], height: float, x: str, y: str
 ) -> tuple[Figure, dict[tuple[float, float], Axes]]:
-    """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels.
-
-    ``height`` is that beside the rows and that of each (inches).
-    """
-    widths = crossovers["width"].values.tolist()
-    size = height[0] + height[1] * len(widths)
-    figure, panels = style.figure(len(widths), len(deltas), width="double", height=size, sharex=True, sharey=True)
-    found = dict(zip(product(widths, deltas), panels.ravel(), strict=True))
+    """A figure with a row for each smoothing width and a column for each polydispersity, named, and its panels."""
+    figure, panels = style.figure(len(widths), len(deltas), width="double", height=height, sharex=True, sharey=True)
+    found = dict(zip(((w, d) for w in widths for d in deltas), panels.ravel(), strict=True))
     titles(found.values(), [f"{packing(delta)}, $w = {width:g}\\,\\bar R$" for width, delta in found])
     outer(panels, x, y)
     return figure, found
@@ -220,11 +210,12 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
 
     A column for each polydispersity, a row for each smoothing width, a line for each friction.
     """
+    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
     looks = dict(family(sorted(set(crossovers["friction"].values.tolist())), of="friction"))
+    widths = crossovers["width"].values.tolist()
     tolerance, few = float(shapes.attrs["tolerance"]), shapes.isel(number=0)
     what = f"fraction of means of {int(few['number'])}"
-    deltas = [delta for delta in _deltas(crossovers) if delta]
-    figure, panels = _grid(crossovers, deltas, (0.6, 1.7), "force over crossover force", what)
+    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), "force over crossover force", what)
     drawn = {}
     for (width, delta), axes in panels.items():
         one = crossovers.sel(width=width)
@@ -237,16 +228,21 @@ def _few(crossovers: xr.Dataset, shapes: xr.Dataset) -> Figure:
             (drawn[friction],) = axes.plot(force, agree, **looks[friction])
         axes.axvline(1.0, color=style.MUTED, linewidth=0.6, linestyle="-", zorder=0)
         axes.set(xscale="log", ylim=(0.2, 1.05))
-    drawn = dict(sorted(drawn.items()))
-    names = [f"$\\mu = {friction:g}$" for friction in drawn]
-    figure.legend(list(drawn.values()), names, loc="outside upper center", ncols=len(drawn))
+    order = sorted(drawn)
+    figure.legend(
+        [drawn[friction] for friction in order],
+        [f"$\\mu = {friction:g}$" for friction in order],
+        loc="outside upper center",
+        ncols=len(order),
+    )
     return figure
 
 
 def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Dataset) -> Figure:
     """Crossovers by what counts as two peaks; found ones alone, those of single realizations beside them."""
-    deltas = [delta for delta in _deltas(crossovers) if delta]
-    figure, panels = _grid(crossovers, deltas, (0.6, 1.7), f"${style.BOTH_FRICTIONS}$", style.FORCE)
+    deltas = [delta for delta in sorted(set(crossovers["polydispersity"].values.tolist())) if delta]
+    widths = crossovers["width"].values.tolist()
+    figure, panels = _grid(widths, deltas, 0.6 + 1.7 * len(widths), f"${style.BOTH_FRICTIONS}$", style.FORCE)
     tolerances = [(float(crossovers.attrs["tolerance"]), crossovers)]
     tolerances += [(float(t), others.sel({"tolerance": t})) for t in others["tolerance"].values]
     handles = {}
@@ -269,9 +265,10 @@ def _definitions(crossovers: xr.Dataset, others: xr.Dataset, realizations: xr.Da
 
 def _starts(starts: xr.Dataset) -> Figure:
     """The dip under one force and the contacts at rest against the start; a column for each polydispersity."""
-    deltas, texts = _deltas(starts), []
+    deltas = sorted(set(starts["polydispersity"].values.tolist()))
     frictions = sorted({mu for mu in starts["friction"].values.tolist() if mu <= 0.2 and mu != 0.05})
     figure, panels = style.figure(2, len(deltas), width="double", height=4.0, sharex="col")
+    names: list[str] = []
     for column, delta in enumerate(deltas):
         touching = 2.0 / (1.0 - 0.5 * delta)
         dips, contacts = panels[:, column]
@@ -288,9 +285,9 @@ def _starts(starts: xr.Dataset) -> Figure:
         for axes in (dips, contacts):
             axes.axvline(touching, color=style.MUTED, linewidth=0.6, linestyle="--", zorder=0)
         dips.axhline(0.0, color=style.FAINT, linewidth=0.6, linestyle="-", zorder=0)
-        texts.append(f"{packing(delta)}, {style.equals(style.F_EXT, force, style.WEIGHT)}")
+        names.append(f"{packing(delta)}, {style.equals(style.F_EXT, force, style.WEIGHT)}")
         contacts.set_xlabel("initial lattice constant / $\\bar R$")
-    titles(panels.flat, [*texts, *("" for _ in deltas)])
+    titles(panels.flat, [*names, *[""] * len(names)])
     panels[0, 0].set_ylabel("relative depth of the dip")
     panels[1, 0].set_ylabel("coordination number $z$, with walls")
     panels[0, 0].legend(loc="best")
