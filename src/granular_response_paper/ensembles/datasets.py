@@ -11,7 +11,7 @@ from granular_response.store.result import FORCE, LENGTH, variable
 from granular_response_paper.ensembles import NOT_REACHED
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import ANGLE_BINS, Realization
-from granular_response_paper.records import axes, labels, stacked, table
+from granular_response_paper.records import axes, stacked, table, variables
 
 #: A case and a realization of it.
 Place = tuple[int, int]
@@ -25,14 +25,13 @@ def places(cases: Sequence[Case]) -> list[Place]:
 
 
 def _case_coordinates(cases: Sequence[Case]) -> dict[str, xr.Variable]:
-    texts = {"polydispersity": "delta: spread of the radii", "friction": "coefficient of friction, walls included"}
-    starts = variable(
-        "case",
-        [str(case.lattice_constant) for case in cases],
-        f"distance of neighbours before gravity acts {LENGTH}, or how it is chosen",
+    starts = [str(case.lattice_constant) for case in cases]
+    return variables(
+        polydispersity=("case", [case.polydispersity for case in cases], "delta: spread of the radii"),
+        friction=("case", [case.friction for case in cases], "coefficient of friction, walls included"),
+        lattice_constant=("case", starts, f"distance of neighbours before gravity acts {LENGTH}, or how it is chosen"),
+        realizations=("case", [case.realizations for case in cases], "number of packings"),
     )
-    numbers = labels("case", cases, realizations="number of packings")
-    return labels("case", cases, **texts) | {"lattice_constant": starts} | numbers
 
 
 def ensembles_dataset(cases: Sequence[Case], found: Mapping[Place, Realization]) -> xr.Dataset:

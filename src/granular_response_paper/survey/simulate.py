@@ -90,7 +90,6 @@ class Block:
     scene: Scene  #: that those of the tasks are changes to
     given: Mapping[str, Any]  #: the parameters
     parts: tuple[str, ...]  #: the sources that an outcome depends on
-    parameter_file: Path
 
 
 def read_parameters(path: Path) -> Parameters:
@@ -127,7 +126,7 @@ def ensemble(name: str, parameter_file: Path, realizations: int | None = None) -
     ]
     tasks = {(c, r): ensemble_task(parameters, cases[c], r) for c, r in places(cases)}
     given = parameters.model_dump(mode="json", exclude={"blocks", "scene"})
-    return Block(name, tasks, partial(block_datasets, cases), parameters.base, given, SOURCES, parameter_file)
+    return Block(name, tasks, partial(block_datasets, cases), parameters.base, given, SOURCES)
 
 
 def packings_of(group: str, parameter_file: Path) -> Block:
@@ -144,7 +143,7 @@ def packings_of(group: str, parameter_file: Path) -> Block:
     # the first argument of each is its scene
     order = sorted(tasks, key=lambda key: tasks[key].args[0].packing.disk_count)
     scene = parameters.base  # type: ignore[attr-defined]
-    return Block(group, {key: tasks[key] for key in order}, datasets, scene, given, sources_of(group), parameter_file)
+    return Block(group, {key: tasks[key] for key in order}, datasets, scene, given, sources_of(group))
 
 
 def tasks_of(group: str, parameters: Any) -> dict[Any, partial[Any]]:
@@ -164,7 +163,7 @@ def run(block: Block, folder: Path, *, workers: int | None = None, progress: Pro
     Raises SweepError and StoreError.
     """
     output = folder / "data" / f"{block.name}.nc"
-    store.check_writable(output, [block.parameter_file])
+    store.check_writable(output)  # before the work
     with using(packages=(PACKAGE,)):
         found = map_tasks(
             operator.call,
