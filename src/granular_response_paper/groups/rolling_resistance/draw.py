@@ -48,9 +48,7 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     said = of_scene(p.scene, friction=[slab.friction for slab in p.slabs])
     layers = ", ".join(map(str, p.layers))
     small, large = p.shown_forces
-    return of_group(
-        "rolling_resistance", {"rolling_resistance": said}, layers=layers, ramp=max(p.ramps), small=small, large=large
-    )
+    return of_group("rolling_resistance", {"rolling_resistance": said}, layers=layers, small=small, large=large)
 
 
 def _places(axes: Axes, values: np.ndarray) -> np.ndarray:
