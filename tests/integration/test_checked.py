@@ -1,4 +1,6 @@
-"""Results as others read them, and sealed files that are no results."""
+"""Results as others read them, as versions before wrote them, and sealed files that are no results."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +12,9 @@ import granular_response as gr
 from granular_response.solvers.solution import continue_solution, solve_scene
 from granular_response.store import files as store
 from granular_response.store.checked import checked, read_result
-from granular_response.store.result import ResultError, indexed, load_coordinates, state_from, to_dataset
+from granular_response.store.result import ResultError, indexed, load_coordinates, solution_from, state_from, to_dataset
+
+OLDER = Path(__file__).parents[1] / "data" / "result_layout_1.nc"
 
 
 @pytest.fixture(scope="module")
@@ -195,3 +199,19 @@ def test_what_a_file_says_is_shown_as_it_is(solution, tmp_path):
     for text in ("[red]not[/red] red [/]", ":smile:", "[bold", "[/nothing]"):
         assert text in shown.stdout
     assert "\x1b" not in shown.stdout
+
+
+def test_results_of_the_layout_before_are_read(tmp_path):
+    with xr.open_dataset(OLDER) as raw:
+        assert raw["load_factor"].dims == ("state",) and raw.attrs["format"] == "granular_response 1"
+        data = read_result(OLDER)
+        assert data["floor_response"].sel(load_factor=2.0).values.tolist() == raw["floor_response"].values[2].tolist()
+        assert data["state_load_factor"].values.tolist() == raw["load_factor"].values.tolist()
+    assert gr.open_result(OLDER).load_factors == (0.5, 1.0, 2.0)
+    again = to_dataset(solution_from(data))
+    for name in ("position", "contact_force", "wall_force", "load_factor", "floor_response"):
+        np.testing.assert_array_equal(again[name], data[name])
+    assert call("show", OLDER, folder=tmp_path).returncode == 0
+    assert call("continue", OLDER, "--to", 2.5, "-o", "more.nc", folder=tmp_path).returncode == 0
+    with xr.open_dataset(tmp_path / "more.nc") as more:
+        assert more["load_factor"].values.tolist() == [0.5, 1.0, 2.0, 2.5]

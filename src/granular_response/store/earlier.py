@@ -1,4 +1,4 @@
-"""Results of versions before events were stored, brought into the layout of today."""
+"""Results of versions before events were stored, also of their first layout, brought into that of today."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import xarray as xr
 from ..scene import text as scene_text
 from ..scene.protocol import without_replaced
 from ..state import Event
-from .result import ResultError, described_events, load_coordinates
+from .result import ResultError, described_events, described_forces, load_coordinates, state_from
 from .variables import described
 
 #: What those versions wrote of equilibria that were lost.
@@ -24,8 +24,15 @@ def of_today(dataset: xr.Dataset) -> xr.Dataset:
 
     One of today is returned as it is. Raises ResultError where a part of what those versions wrote is missing.
     """
-    if "branch" in dataset.variables or not {"state_load_factor", "scene"} <= {*dataset.variables, *dataset.attrs}:
+    if "branch" in dataset.variables or "scene" not in dataset.attrs or "state" not in dataset.dims:
         return dataset
+    if "state_load_factor" not in dataset and "load_factor" in dataset.variables:
+        dataset = dataset.reset_coords("load_factor").rename(load_factor="state_load_factor")
+    if "state_load_factor" not in dataset or dataset["state_load_factor"].dims != ("state",):
+        return dataset  # which is refused
+    if "contact_force" not in dataset and "contact_spring" in dataset:
+        states = [state_from(dataset, k) for k in range(dataset.sizes["state"])]
+        dataset = dataset.assign(described_forces(states))
     scene = without_replaced(scene_text.read(dataset.attrs["scene"]))
     return _with_events(_along_load(dataset)).assign_attrs(scene=scene_text.write(scene))
 

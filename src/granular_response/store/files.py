@@ -34,6 +34,8 @@ from . import atomic
 SUFFIX = ".nc"
 #: Root attribute by which a file of ours is known; its number grows when the layout changes.
 FORMAT = "granular_response 2"
+#: Layouts that are read.
+_READ = (FORMAT, "granular_response 1")
 
 #: For files in memory, whatever the name of the file on disk.
 _NO_NAME = "memory"
@@ -232,11 +234,11 @@ def _open(path: str | os.PathLike[str], sealed: bool) -> netCDF4.Dataset:
         raise _error(path, "is truncated or damaged") from error
     if sealed and not has_seal:
         dataset.close()
-        if attributes.get("format") == FORMAT:
+        if attributes.get("format") in _READ:
             raise _error(path, "is truncated or damaged, or another program has written it anew")
         raise _error(path, f"was not written by granular_response (no attribute format = {FORMAT!r})")
     by_xarray = not sealed and attributes.get("package") == "granular_response" and "format" not in attributes
-    if attributes.get("format") != FORMAT and not by_xarray:
+    if attributes.get("format") not in _READ and not by_xarray:
         dataset.close()
         raise _error(path, f"has another layout, must have the attribute format = {FORMAT!r}")
     return dataset

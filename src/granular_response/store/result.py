@@ -304,7 +304,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     data = {
         "state_load_factor": of_states.pop("load_factor"),
         **of_states,
-        **_forces(states),
+        **described_forces(states),
         **load_coordinates(solution.load_factors),
     }
     numbers = {
@@ -385,7 +385,7 @@ def _as_solved(dataset: xr.Dataset, index: int) -> State:
     return replace(state, pairs=own(state.pairs, "contact"), walls=own(state.walls, "wall"))
 
 
-def _forces(states: Sequence[State]) -> dict[str, xr.Variable]:
+def described_forces(states: Sequence[State]) -> dict[str, xr.Variable]:
     """Contact forces as vectors, on the disk named first."""
     return {
         "contact_force": described("contact_force", np.stack([state.pair_force() for state in states])),

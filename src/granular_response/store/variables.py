@@ -70,6 +70,8 @@ CERTIFICATE: dict[str, tuple[Any, ...]] = {
     "unbalanced_part": ("largest unbalanced force on a disk, as a part of what it bears",),
     "rolling_excess": (f"largest excess of a rolling force over its limit {WEIGHTS}", FORCE),
 }
+#: Of these, those that versions before did not write; a rolling excess is written of contacts that resist rolling.
+ADDED_LATER = ("unbalanced_part", "rolling_excess")
 #: Of the record of each state, where it is known for one of them.
 REACHED: dict[str, tuple[Any, ...]] = {
     "method": ("method that found the state", "", TEXT),
@@ -151,7 +153,7 @@ VARIABLES: dict[str, Stored] = {
         for prefix, along in CONTACTS.items()
     },
     **{
-        f"certificate_{name}": Stored("state", *said)._replace(finite=False, optional=name == "rolling_excess")
+        f"certificate_{name}": Stored("state", *said)._replace(finite=False, optional=name in ADDED_LATER)
         for name, said in CERTIFICATE.items()
     },
     **{
