@@ -62,8 +62,12 @@ class Study:
 def group(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "params.yaml").write_text("common: {method: auto}\nsquares: {count: 4}\n")
+
+    def member(group, module, name, optional=False):
+        return getattr(Study, name, None) if optional else getattr(Study, name)
+
     for module in (simulation, drawing):
-        monkeypatch.setattr(module, "group_member", lambda group, module, name: getattr(Study, name))
+        monkeypatch.setattr(module, "group_member", member)
     return "squares"
 
 
