@@ -102,10 +102,10 @@ for b in range(8, 129, 8):
     for i in range(n):
         first, last = max(0, i - b), min(n, i + b + 1)
         rows[i, b + first - i : b + last - i] = matrix[i, first:last]
-    x = padded(np.ones((2, n)), b)
+    x = padded(np.ones((1, n)), b)
     eliminate(rows.ravel(), n, b)
     solve(rows.ravel(), n, b, x.reshape(-1), x.shape[1])
-    found += [*x[:, b : b + n].ravel()]
+    found += [*x[0, b : b + n]]
 print(*(float(value).hex() for value in found))
 """
 
