@@ -134,7 +134,7 @@ class LoadPath:
         """Where something happens first: after the one force and not after the other.
 
         ``forces`` are neighbours on the path, with known states. The first of them at which it has happened is narrowed
-        by halves to the event of the path between it and the one before, or to ``width`` (per force) within a piece
+        to the event of the path between it and the one before, or to ``width`` (per force) within a piece
         between two events; see :class:`Event` for the ends.
         """
         low, high = first_change(forces, [happening.happened(self.known[force]) for force in forces])
@@ -152,7 +152,7 @@ class LoadPath:
                 ends.append(force)
         ends.append(high)
         while len(ends) > 2:
-            middle = len(ends) // 2
+            middle = 1 if happening.in_turn else len(ends) // 2
             ends = ends[: middle + 1] if happening.happened(self.at(ends[middle])) else ends[middle:]
         low, high = ends
         if gone := lost([self.known[high]]):  # and no equilibrium from there on
@@ -190,6 +190,9 @@ class Happening:
     happened: Callable[[State], bool]
     definition: str
     of_contacts: bool = False  #: whether which disks touch decides it
+    #: Whether the events between two forces are looked at in turn and not by halves. A symmetric state that has lost its
+    #: stability is left where a path ends, not where it only passes.
+    in_turn: bool = False
 
 
 @record
@@ -399,6 +402,7 @@ def happenings(measures: Measures, smallest: State, asymmetry: float) -> dict[st
         "loss_of_symmetry_path": Happening(
             lambda state: measures.asymmetry(state) > asymmetry,
             f"along the load path, the asymmetry of the floor response exceeds {asymmetry:g}",
+            in_turn=True,
         ),
     }
 
