@@ -95,10 +95,10 @@ def _events(axes: Axes, slabs: xr.Dataset) -> None:
             axes.plot(places, high, **shown, label=f"{name}, ${style.FRICTION} = {friction:g}$")
             never = np.isnan(high)
             axes.errorbar(places[never], low[never], 0.15 * low[never], lolims=True, **shown | {"linestyle": "none"})
-    ticks = [1, 2, 3, 5, 10, 20, 40]
-    axes.set(ylabel=rf"${style.F_EXT}\,/\,{style.WEIGHT}$", yscale="log", yticks=ticks, yticklabels=ticks, ylim=(2, 60))
+    ticks = [0.5, 1, 2, 5, 10, 20, 40]
+    axes.set(ylabel=rf"${style.F_EXT}\,/\,{style.WEIGHT}$", yscale="log", yticks=ticks, yticklabels=ticks, ylim=(0.3, 60))
     axes.minorticks_off()
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.86), fontsize=6.5)
+    axes.legend(loc="lower center", fontsize=6.5)
 
 
 def _response(axes: Axes, slab: xr.Dataset) -> None:
