@@ -190,7 +190,7 @@ class Happening:
     happened: Callable[[State], bool]
     definition: str
     of_contacts: bool = False  #: whether which disks touch decides it
-    #: Whether the events between two forces are looked at in turn and not by halves. A symmetric state that has lost its
+    #: Whether the events between two forces are looked at in turn, not by halves: a symmetric state that has lost its
     #: stability is left where a path ends, not where it only passes.
     in_turn: bool = False
 

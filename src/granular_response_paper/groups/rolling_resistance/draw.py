@@ -96,7 +96,7 @@ def _events(axes: Axes, slabs: xr.Dataset) -> None:
             never = np.isnan(high)
             axes.errorbar(places[never], low[never], 0.15 * low[never], lolims=True, **shown | {"linestyle": "none"})
     ticks = [0.5, 1, 2, 5, 10, 20, 40]
-    axes.set(ylabel=rf"${style.F_EXT}\,/\,{style.WEIGHT}$", yscale="log", yticks=ticks, yticklabels=ticks, ylim=(0.3, 60))
+    axes.set(ylabel=style.FORCE, yscale="log", yticks=ticks, yticklabels=ticks, ylim=(0.3, 60))
     axes.minorticks_off()
     axes.legend(loc="lower center", fontsize=6.5)
 
