@@ -1,4 +1,4 @@
-"""Studies run in this process, and are those of the notebooks."""
+"""Studies run in this process, at reduced size."""
 
 from pathlib import Path
 
