@@ -1,6 +1,6 @@
 """The reproduction of the paper, on top of the library: figure groups, claims, report, stress trials."""
 
-#: Whose code makes what tasks hand back: see ``granular_response.sweeps.resources``.
+#: Whose code makes what tasks hand back, and whose classes hold it: see ``granular_response.sweeps.resources``.
 PACKAGE = __name__
 
 #: What simulating, drawing and measuring may raise where allowed parameters have left nothing of what they look at.

@@ -2,10 +2,9 @@
 
 One file for each value, ``FOLDER/SOURCES/NAME.kept``: ``SOURCES`` is the key of the code that made it and ``NAME`` that
 of what it was made from (see :mod:`.keys`), so nothing is found that this code would not make of this content. Files
-are sealed pickles: what is damaged or stands under another name counts as absent. Reading a pickle can run code, so a
-folder is one that nobody else writes.
+hold no code (see :mod:`.encoding`) and are sealed: what is damaged or stands under another name counts as absent.
 
-A memory is optional. What cannot be written costs one warning, never the result.
+A memory is optional. What cannot be written or is of a kind that is not kept costs one warning, never the result.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import pickle
 import re
 import shutil
 import time
@@ -23,6 +21,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..store import atomic
+from .encoding import NotDecodable, NotEncodable, decode, encode
 from .keys import Indistinct, key, sources
 
 Value = TypeVar("Value")
@@ -49,7 +48,9 @@ class Memory:
     parts
         The sources that make the values, as :func:`.keys.sources` takes them; all if none is named.
     packages
-        Others whose code makes the values too.
+        Others whose code makes the values too, and of whose classes they may be.
+    module
+        One more whose classes values may be of.
     """
 
     def __init__(
@@ -57,10 +58,11 @@ class Memory:
         folder: str | os.PathLike[str],
         parts: Sequence[str] = (),
         packages: Sequence[str] = (),
+        module: str = "granular_response",
     ) -> None:
         self.folder = Path(folder).absolute()  # also where it is used: in a worker process
         self.shelf = self.folder / sources(*(parts or ("", *packages)))
-        self.packages = packages
+        self.packages, self.modules = packages, (module, *packages)
 
     def name(self, *values: Any) -> str | None:
         """The key of values; None, with a MemoryWarning, where they cannot be told from others."""
@@ -86,22 +88,20 @@ class Memory:
             data = self._path(name).read_bytes()
             if data[-32:] != _seal(name, data[:-32]):
                 return MISSING
-            return pickle.loads(data[:-32])
-        except Exception:  # a class that is no longer there can raise anything
+            return decode(data[:-32], self.modules)
+        except (OSError, NotDecodable):
             return MISSING
 
     def save(self, name: str, value: Any) -> None:
         """Keep a value, unless it cannot be kept: then a MemoryWarning says why, once for each reason."""
         try:
-            data = pickle.dumps(value)
-        except Exception as error:  # whatever the methods of a value raise
-            warn(f"{self.folder}: a value is not kept: {error}")
-            return
-        try:
+            data = encode(value, self.modules)
             if not self.shelf.is_dir():
                 self._clear()
                 self.shelf.mkdir(parents=True, exist_ok=True)
             atomic.write_bytes(self._path(name), data + _seal(name, data))
+        except NotEncodable as error:
+            warn(f"{self.folder}: {error}")
         except OSError as error:
             warn(f"{self.folder}: nothing more is kept there: {error.strerror or error}")
 
