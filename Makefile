@@ -28,7 +28,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PATH := $(BIN):$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup reproduce quote figure survey test fuzz broken scenes coverage lint docs archive restore package matrix
+.PHONY: help setup reproduce quote figure survey test fuzz broken scenes coverage lint docs notebooks archive restore package matrix
 .PHONY: benchmark arena lock clean
 
 help: ## Show this list
@@ -100,6 +100,9 @@ docs: setup ## Build the documentation site into docs/_build/html, running every
 	"$(BIN)/python" -m sphinx -W --keep-going -q -b html docs docs/_build/html
 	"$(BIN)/python" .ci/links docs/_build/html
 
+notebooks: setup ## Write a notebook for each figure group into notebooks/
+	"$(BIN)/granular-response-paper" notebooks
+
 archive: setup ## Write datasets, figures, claims and how each was made into one RO-Crate
 	"$(BIN)/granular-response-paper" archive
 
@@ -134,5 +137,5 @@ lock: ## Renew requirements.lock with the newest versions that pyproject.toml al
 	rm -rf "$(VENV)-lock"
 
 clean: ## Remove .venv, caches and datasets; the DVC cache and the figures stay
-	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint
+	rm -rf .venv .venv-lock docs/_build docs/gallery .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis data/*.nc data/.rest_states data/.*.checkpoint notebooks/*.ipynb notebooks/*.nc
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

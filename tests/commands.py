@@ -17,7 +17,7 @@ from pathlib import Path
 
 LIBRARY, PAPER = "granular_response", "granular_response_paper"
 #: Commands of the reproduction; all others are the library's.
-OF_THE_PAPER = ("simulate", "draw", "measure", "claims", "groups", "report", "archive", "restore")
+OF_THE_PAPER = ("simulate", "draw", "measure", "claims", "groups", "report", "notebooks", "archive", "restore")
 #: Of a command, in seconds.
 LONGEST = 120.0
 

@@ -1,4 +1,4 @@
-"""Figure groups at a size that takes seconds (``reduced.yaml``)."""
+"""Figure groups at reduced size, with the parameters of their notebooks."""
 
 import os
 import time
@@ -11,7 +11,7 @@ import xarray as xr
 from granular_response.store import files as store
 from granular_response_paper.pipeline import GroupError, simulation
 
-PATH = Path(__file__).with_suffix(".yaml")
+PATH = Path(__file__).parents[1] / "notebooks" / "reduced.yaml"
 
 
 def parameters(group: str) -> dict[str, Any]:

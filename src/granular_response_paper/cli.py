@@ -202,6 +202,28 @@ def report(
         reporting.renew(kind, file, root)
 
 
+@commands.command("notebooks", "notebooks pile_dip -o elsewhere")
+def notebooks(
+    groups: Annotated[
+        list[str] | None,
+        typer.Argument(help="Figure groups; all of them if none is given.", autocompletion=_group_names),
+    ] = None,
+    params: Annotated[Path, typer.Option(help="Parameters of the reproduction.")] = Path("params.yaml"),
+    reduced: Annotated[Path, typer.Option(help="Parameters that the notebooks begin with.")] = Path(
+        "notebooks/reduced.yaml"
+    ),
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the notebooks.")] = Path("notebooks"),
+) -> None:
+    """Write a notebook for each figure group: its parameters, simulation, figures and captions."""
+    from . import notebooks as writing
+    from .groups import NAMES
+
+    loaded()
+
+    for path in writing.write(output, groups or NAMES, own=params, reduced=reduced):
+        typer.echo(str(path))
+
+
 @commands.command("archive", "archive -o slabs.zip")
 def archive(
     output: Annotated[Path, typer.Option("--output", "-o", help="Archive to make (RO-Crate, zip).")] = Path(

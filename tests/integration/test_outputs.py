@@ -37,6 +37,7 @@ COMMANDS = {
     "measure": (["measure", "theory", "--data", "theory/fig01_predictions.png"], ["theory/fig01_predictions.png"]),
     "export": (["export", "result.nc"], ["result.nc"]),
     "plot": (["plot", "result.pdf"], ["result.pdf"]),
+    "notebooks": (["notebooks", "theory", "--reduced", "n/theory.ipynb"], ["n"]),
     "archive": (["archive"], ["params.yaml", "LICENSE"]),
     "claims": (["claims", "--data", "data", "--readme", "README.md"], ["data/torque.nc", "README.md"]),
     "report": (["report", "--root", ".", "--notes", "notes.md"], ["notes.md", "data/torque.nc", "figures/claims.json"]),
@@ -53,13 +54,14 @@ def inputs(tmp_path_factory) -> Path:
     (folder / "scene.yaml").write_text(SCENE)
     (folder / "table.yaml").write_text(TABLE)
     (folder / "disks.nc").write_text("x,z,radius\n2,1,1\n4,1,1\n")
-    for name in ("data", "figures", "theory"):
+    for name in ("data", "figures", "theory", "n"):
         (folder / name).mkdir()
     store.write(folder / "data" / "torque.nc", xr.Dataset())
     for path in ("figures/claims.json", "README.md", "notes.md"):
         (folder / path).write_text("{}")
     for name in set(crate.ALSO) - {"README.md"}:
         shutil.copy(ROOT / name, folder)
+    shutil.copy(ROOT / "notebooks" / "reduced.yaml", folder / "n" / "theory.ipynb")
     for name in ("dvc.yaml", "dvc.lock"):
         (folder / name).write_text("stages: {}\n")
     assert call("run", "scene.yaml", "-o", "result.nc", folder=folder).returncode == 0

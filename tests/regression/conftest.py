@@ -1,4 +1,4 @@
-"""Studies run in this process, at reduced size."""
+"""Studies run in this process, and are those of the notebooks."""
 
 from pathlib import Path
 

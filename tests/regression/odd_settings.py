@@ -1,6 +1,6 @@
 """Allowed parameters of each figure group that nobody would take: what is measured is then often nothing.
 
-Three for each group, as changes to its section of ``reduced.yaml``: few disks, one value where there are
+Three for each group, as changes to its section of ``notebooks/reduced.yaml``: few disks, one value where there are
 usually many, forces and places beyond what there is.
 """
 

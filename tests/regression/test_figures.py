@@ -5,9 +5,7 @@ from pathlib import Path
 import pytest
 import reduced
 
-from granular_response.scene import text
 from granular_response_paper.pipeline import group_member
-from granular_response_paper.survey import simulate as survey
 
 GROUPS = (
     "crossover_scaling",
@@ -38,17 +36,3 @@ def test_figures_look_as_stored_and_have_captions(group, looks_as_stored, tmp_pa
     looks_as_stored(drawn)
     parameters = group_member(group, "parameters", "Parameters")(**reduced.parameters(group))
     assert set(group_member(group, "draw", "captions")(datasets, parameters)) == set(drawn)
-
-
-@pytest.mark.parametrize("group", ["numerics", "phase_diagram", "sensitivity"])
-def test_groups_without_tests_of_their_own_draw_what_they_simulate(group, tmp_path, tmp_path_factory, monkeypatch):
-    if group == "phase_diagram":  # it measures what another pipeline has simulated
-        monkeypatch.chdir(tmp_path)
-        file = Path("small_survey", "params.yaml")
-        file.parent.mkdir()
-        file.write_text(text.write(text.read(reduced.PATH.read_text())["survey"]))
-        survey.run(survey.ensemble("small", file), file.parent, workers=1)
-    datasets = reduced.datasets(group, tmp_path_factory)
-    parameters = group_member(group, "parameters", "Parameters")(**reduced.parameters(group))
-    drawn = group_member(group, "draw", "draw")(datasets)
-    assert drawn and set(group_member(group, "draw", "captions")(datasets, parameters)) == set(drawn)

@@ -14,7 +14,7 @@ WIDTH = {"polydispersity": 0.1, "friction": 0.2, "layers": [4], "realizations": 
 LOOP = {"polydispersity": 0.1, "friction": 0.2, "forces": [0.3, 1.0], "increments": 2}
 WAY = {"name": "x", "changes": {}}
 
-#: For each group: changes to its section of the reduced parameters (None: left out), and what is said.
+#: For each group: changes to its section of the notebooks' parameters (None: left out), and what is said.
 MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "crossover_scaling": [
         ({"series": [SERIES | {"layers": [6, 8]}]}, r"layers = \[6, 8\]: must be odd"),
