@@ -8,7 +8,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.scene import Scene
-from granular_response.store.result import UNITS, variable
+from granular_response.store.result import UNITS
+from granular_response.store.variables import variable
 
 
 def labelled(datasets: dict[str, xr.Dataset], scene: Scene | None = None) -> dict[str, xr.Dataset]:

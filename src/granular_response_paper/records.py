@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from granular_response.store.result import variable
+from granular_response.store.variables import variable
 
 #: Indices along the leading dimensions of a table.
 Place = TypeVar("Place", bound=tuple[int, ...])

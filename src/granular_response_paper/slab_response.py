@@ -28,14 +28,8 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.state import OPEN, STICKING, FloatArray, State
 from granular_response.state import Event as PathEvent
-from granular_response.store.result import (
-    FORCE,
-    LENGTH,
-    certificates_dataset,
-    common_candidates,
-    states_dataset,
-    variable,
-)
+from granular_response.store.result import certificates_dataset, common_candidates, states_dataset
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.records import column, record, table, variables
 
@@ -210,11 +204,11 @@ class Scalars:
     asymmetry: float = column("largest difference of the response and its mirror image, per largest response")
     asymmetry_sign: float = column("1 if the part of the response at x > 0 is the larger one, -1 if that at x < 0 is")
     peak_height: float = column("largest floor response")
-    half_maximum_width: float = column(f"full width at half maximum of the floor response {LENGTH}")
+    half_maximum_width: float = column(f"full width at half maximum of the floor response {RADII}")
     opened_contacts: float = column("contacts of disks in the central third that touch at rest and not under load")
     sliding_contacts: float = column("contacts of disks at the Coulomb limit")
-    teardrop_depth: float = column(f"depth of the region of opened contacts below the loaded disk {LENGTH}")
-    teardrop_width: float = column(f"largest width of the region of opened contacts {LENGTH}")
+    teardrop_depth: float = column(f"depth of the region of opened contacts below the loaded disk {RADII}")
+    teardrop_width: float = column(f"largest width of the region of opened contacts {RADII}")
     reaches_floor: float = column("1 where the region of opened contacts reaches the bottom row")
     network_asymmetry: float = column("fraction of the contacts of disks without a mirror image")
 
@@ -338,7 +332,7 @@ class Event:
 
     name: str = column("what happens")
     friction: float = column("coefficient of friction, nan if it is the axis")
-    low: float = column(f"value before the event: force {FORCE}, or coefficient of friction")
+    low: float = column(f"value before the event: force {WEIGHTS}, or coefficient of friction")
     high: float = column("value at which it has happened; nan if not up to the lower one")
     definition: str = column("what counts as the event")
 
@@ -423,9 +417,9 @@ class Lost:
 
     friction: float = column("coefficient of friction of the path")
     kind: str = column("how the path goes on")
-    start: float = column(f"force at which the equilibrium ends {FORCE}")
-    until: float = column(f"force at which the path goes on {FORCE}")
-    displacement: float = column(f"largest of a disk on the way {LENGTH}")
+    start: float = column(f"force at which the equilibrium ends {WEIGHTS}")
+    until: float = column(f"force at which the path goes on {WEIGHTS}")
+    displacement: float = column(f"largest of a disk on the way {RADII}")
 
     @classmethod
     def of(cls, friction: float, event: PathEvent) -> Lost:
@@ -450,9 +444,9 @@ def states_picture(
     force = np.array([abs(state.load_factor) for state in states])
     return dataset.assign(
         variables(
-            force=(dimension, force, f"applied force {FORCE}"),
-            radius=("disk", packing.radius, f"disk radius {LENGTH}"),
-            width=("", packing.width, f"distance of the side walls {LENGTH}"),
+            force=(dimension, force, f"applied force {WEIGHTS}"),
+            radius=("disk", packing.radius, f"disk radius {RADII}"),
+            width=("", packing.width, f"distance of the side walls {RADII}"),
             loaded_disk=("", int(problem.load_disk[0]), "index of the loaded disk"),
         )
     )
@@ -470,7 +464,7 @@ def measured(measures: Measures, states: Sequence[State]) -> xr.Dataset:
     )
     coordinates = variables(
         floor_disk=("floor_disk", measures.disks, "index of the floor disk"),
-        x=("floor_disk", measures.x, f"rest position from the loaded disk {LENGTH}"),
+        x=("floor_disk", measures.x, f"rest position from the loaded disk {RADII}"),
         interior=("floor_disk", measures.interior.astype(np.int8), "1 for disks away from the side walls"),
         margin=("margin", MARGINS, "fraction below the Coulomb limit"),
     )

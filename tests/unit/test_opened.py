@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from granular_response.store import files as store
-from granular_response.store.result import variable
+from granular_response.store.variables import variable
 from granular_response_paper.archive import ArchiveError, lock, opened
 
 PIPELINE = "stages: {simulate: {cmd: simulate, deps: [survey/data], outs: [data/influence.nc]}}\n"

@@ -21,7 +21,7 @@ from xarray import Dataset
 
 from granular_response.store import files as store
 from granular_response.store import generated
-from granular_response.store.result import variable
+from granular_response.store.variables import variable
 from granular_response_paper import groups, report
 from granular_response_paper.claims import table as claims
 from granular_response_paper.claims.claim import Data

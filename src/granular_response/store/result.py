@@ -47,12 +47,11 @@ from .variables import (
     ROLLING,
     WEIGHTS,
     described,
+    flags,
     labelled,
+    variable,
 )
-from .variables import flags as flags
-from .variables import variable as variable
 
-LENGTH, FORCE = RADII, WEIGHTS
 #: The system of units of everything stored.
 UNITS = "reduced: mean disk radius, mean disk mass, g"
 
@@ -251,14 +250,14 @@ def added_forces_dataset(
     """
     pairs, walls = rest[0].pairs, rest[0].walls
     both = list(zip(rest, loaded, strict=True))
-    text = f"contact force that the load adds, on the first disk {FORCE}"
+    text = f"contact force that the load adds, on the first disk {WEIGHTS}"
 
     def stacked(like: str, values: Sequence[np.ndarray], text: str) -> xr.Variable:
         return described(like, np.stack(values), along=dimension, text=text)
 
     return xr.Dataset(
         {
-            "position": stacked("position", [one.position for one in loaded], f"disk centre x, z under load {LENGTH}"),
+            "position": stacked("position", [one.position for one in loaded], f"disk centre x, z under load {RADII}"),
             "radius": described("radius", packing.radius),
             "contact_disk": described("contact_disk", pairs.first),
             "contact_partner": described("contact_partner", pairs.second),
@@ -272,7 +271,7 @@ def added_forces_dataset(
             "wall_disk": described("wall_disk", walls.first, text="disk that the wall's force acts on"),
             "wall_index": described("wall_index", walls.second),
             "wall_added_force": stacked("wall_force", [wall_force_difference(*one) for one in both], text),
-            "width": variable((), packing.width, f"distance of the side walls {LENGTH}"),
+            "width": variable((), packing.width, f"distance of the side walls {RADII}"),
         },
         coords={"axis": described("axis", ["x", "z"])},
     ).merge(certificates_dataset(loaded, dimension))

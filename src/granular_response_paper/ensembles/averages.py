@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from granular_response.state import FloatArray
-from granular_response.store.result import LENGTH
+from granular_response.store.variables import RADII
 from granular_response_paper.ensembles import OUTCOMES, smoothed
 from granular_response_paper.records import axes, variables
 
@@ -48,7 +48,7 @@ def averages_dataset(ensembles: xr.Dataset, x: FloatArray, *, widths: Sequence[f
         text = f"realizations that are {name.replace('_', ' ')}"
         data |= variables(**{f"count_{name}": ("case step", number, text)})
     coordinates = axes(
-        width=(widths, f"width w of the smoothing Gaussian {LENGTH}"), x=(x, f"distance from the loaded disk {LENGTH}")
+        width=(widths, f"width w of the smoothing Gaussian {RADII}"), x=(x, f"distance from the loaded disk {RADII}")
     )
     kept = {name: ensembles[name].variable for name in ("polydispersity", "friction", "lattice_constant")}
     return xr.Dataset(data | {"force": ensembles["force"].variable}, coordinates | kept, {"few": few})

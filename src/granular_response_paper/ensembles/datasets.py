@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.ensembles import NOT_REACHED
 from granular_response_paper.ensembles.parameters import Case
 from granular_response_paper.ensembles.realizations import ANGLE_BINS, Realization
@@ -29,7 +29,7 @@ def _case_coordinates(cases: Sequence[Case]) -> dict[str, xr.Variable]:
     return variables(
         polydispersity=("case", [case.polydispersity for case in cases], "delta: spread of the radii"),
         friction=("case", [case.friction for case in cases], "coefficient of friction, walls included"),
-        lattice_constant=("case", starts, f"distance of neighbours before gravity acts {LENGTH}, or how it is chosen"),
+        lattice_constant=("case", starts, f"distance of neighbours before gravity acts {RADII}, or how it is chosen"),
         realizations=("case", [case.realizations for case in cases], "number of packings"),
     )
 
@@ -40,7 +40,7 @@ def ensembles_dataset(cases: Sequence[Case], found: Mapping[Place, Realization])
     outcome = np.nan_to_num(data["outcome"].values, nan=NOT_REACHED).astype(np.int8)
     force = stacked({(c,): case.forces for c, case in enumerate(cases)}, float)
     return xr.Dataset(
-        {"force": variable(("case", "step"), force, f"applied force {FORCE}")}
+        {"force": variable(("case", "step"), force, f"applied force {WEIGHTS}")}
         | dict(data.assign(outcome=data["outcome"].copy(data=outcome)).variables)
         | dict(table({place: one.loaded for place, one in found.items()}, *ALONG).variables)
     ).assign_coords(_case_coordinates(cases))

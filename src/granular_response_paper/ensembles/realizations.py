@@ -20,7 +20,7 @@ from granular_response.solvers.path import Collapsed
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, flags
+from granular_response.store.variables import RADII, WEIGHTS, flags
 from granular_response_paper.ensembles import AT_REST, COLLAPSED, FAILED, NOT_REACHED, OUTCOMES
 from granular_response_paper.ensembles.parameters import Case, EnsembleGroup
 from granular_response_paper.parameters import material
@@ -44,11 +44,11 @@ class Packed:
     horizontal_contacts: float = column("contacts of disks within 30 degrees of the horizontal, per number of disks")
     oblique_contacts: float = column("contacts of disks more than 30 degrees from the horizontal, per number of disks")
     loose_disks: float = column("disks with fewer than two contacts")
-    force_residual: float = column(f"largest unbalanced force on a disk at rest {FORCE}")
+    force_residual: float = column(f"largest unbalanced force on a disk at rest {WEIGHTS}")
     torque_residual: float = column("largest unbalanced torque on a disk at rest, in mean weight times mean radius")
-    coulomb_excess: float = column(f"largest excess of a tangential force over the Coulomb limit at rest {FORCE}")
+    coulomb_excess: float = column(f"largest excess of a tangential force over the Coulomb limit at rest {WEIGHTS}")
     negative_modes: float = column("unstable directions of the tangent stiffness at rest")
-    largest_overlap: float = column(f"largest overlap of two disks at rest {LENGTH}")
+    largest_overlap: float = column(f"largest overlap of two disks at rest {RADII}")
     settling_steps: float = column("time steps of the fall to rest")
     contact_angle_density: FloatArray = column(
         "distribution of the directions of contacts at rest, per radian", "angle"
@@ -85,14 +85,14 @@ class Packed:
 class Loaded:
     """What is measured under each force; nan after the end."""
 
-    sink: FloatArray = column(f"how far the load has pushed its disk down {LENGTH}", "step")
-    largest_displacement: FloatArray = column(f"largest displacement of a disk since rest {LENGTH}", "step")
-    force_residual: FloatArray = column(f"largest unbalanced force on a disk under load {FORCE}", "step")
+    sink: FloatArray = column(f"how far the load has pushed its disk down {RADII}", "step")
+    largest_displacement: FloatArray = column(f"largest displacement of a disk since rest {RADII}", "step")
+    force_residual: FloatArray = column(f"largest unbalanced force on a disk under load {WEIGHTS}", "step")
     torque_residual: FloatArray = column(
         "largest unbalanced torque on a disk under load, in mean weight times mean radius", "step"
     )
     coulomb_excess: FloatArray = column(
-        f"largest excess of a tangential force over the Coulomb limit under load {FORCE}", "step"
+        f"largest excess of a tangential force over the Coulomb limit under load {WEIGHTS}", "step"
     )
     negative_modes: FloatArray = column("unstable directions of the tangent stiffness under load", "step")
     lost: FloatArray = column("equilibria that the path has lost since the force before", "step")
@@ -103,8 +103,8 @@ class Loaded:
 class Realization:
     """What is left of a task."""
 
-    x: FloatArray = column(f"rest position of a floor disk from the loaded disk {LENGTH}", "slot")
-    floor_force_rest: FloatArray = column(f"vertical floor force at rest {FORCE}", "slot")
+    x: FloatArray = column(f"rest position of a floor disk from the loaded disk {RADII}", "slot")
+    floor_force_rest: FloatArray = column(f"vertical floor force at rest {WEIGHTS}", "slot")
     floor_response: FloatArray = column("vertical floor force that the load adds, per applied force", "step", "slot")
     outcome: NDArray[np.int8] = column("what became of the realization", "step", attributes=flags(OUTCOMES))
     message: str = column("why a realization failed")

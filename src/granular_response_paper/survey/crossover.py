@@ -37,7 +37,7 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, flags
+from granular_response.store.variables import WEIGHTS, flags
 from granular_response_paper.records import column, record
 
 #: What a crossover is known to be.
@@ -213,7 +213,7 @@ def censored_medians(values: FloatArray, censored: NDArray[np.bool_], weights: F
     return np.where(reached.any(axis=1), values[np.argmax(reached, axis=1)], np.inf)
 
 
-_DRAWN = f"bootstrapped crossover forces {FORCE}, alike in cases of as many realizations; infinite beyond bounds"
+_DRAWN = f"bootstrapped crossover forces {WEIGHTS}, alike in cases of as many realizations; infinite beyond bounds"
 _KIND = "whether the crossover was found or is a bound"
 
 
@@ -221,10 +221,10 @@ _KIND = "whether the crossover was found or is a bound"
 class Crossover:
     """Where the mean of one case has two peaks from on, by one tolerance."""
 
-    force: float = column(f"crossover force of the mean response, or its bound {FORCE}")
+    force: float = column(f"crossover force of the mean response, or its bound {WEIGHTS}")
     kind: np.int8 = column(_KIND, attributes=flags(KINDS))
     interval: FloatArray = column(
-        f"quantiles of the bootstrapped crossover force {FORCE}; infinite beyond bounds", "level"
+        f"quantiles of the bootstrapped crossover force {WEIGHTS}; infinite beyond bounds", "level"
     )
     draws: FloatArray = column(_DRAWN, "draw")  #: in their order
 
@@ -234,7 +234,7 @@ class Crossing(Crossover):
     """The crossover of one case with its statistics; arrays along the k forces of the case."""
 
     draw_part: FloatArray = column("part of the bootstrap draws of each kind", "kind_of_draw")
-    limits: tuple[float, float] = column(f"smallest and largest force with a mean {FORCE}", "end")
+    limits: tuple[float, float] = column(f"smallest and largest force with a mean {WEIGHTS}", "end")
     shape: FloatArray = column("shape of the mean response: positive with two peaks", "step")
     shape_interval: FloatArray = column("quantiles of the bootstrapped shape", "step", "level")
     two_peaked_means: FloatArray = column(
@@ -306,12 +306,12 @@ class Singles:
     difference: FloatArray = column(
         "root mean square difference from the mean response, per root mean square of the mean", "realization", "step"
     )
-    crossover: FloatArray = column(f"crossover force, or its bound {FORCE}", "realization")
+    crossover: FloatArray = column(f"crossover force, or its bound {WEIGHTS}", "realization")
     kind: NDArray[np.int8] = column(
         f"{_KIND}; -1 where there is no realization", "realization", attributes=flags(KINDS)
     )
     median: float = column(
-        f"median crossover force of the realizations {FORCE}, what lies beyond a path or a collapse censored"
+        f"median crossover force of the realizations {WEIGHTS}, what lies beyond a path or a collapse censored"
     )
     median_interval: FloatArray = column("quantiles of the bootstrapped median", "level")
     median_draws: FloatArray  #: (draws,) infinite beyond bounds

@@ -28,7 +28,7 @@ import xarray as xr
 from granular_response.errors import GranularError
 from granular_response.scene import Scene, SceneError, text
 from granular_response.store import files as store
-from granular_response.store.result import variable
+from granular_response.store.variables import variable
 from granular_response.sweeps.keys import sources
 from granular_response.sweeps.resources import using
 from granular_response.sweeps.tasks import Progress, map_tasks

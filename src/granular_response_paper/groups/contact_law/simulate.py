@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.contact_law.parameters import Parameters
 from granular_response_paper.records import axes, column, record, table
@@ -30,12 +30,12 @@ class Outcome:
 
     floor_response: FloatArray = column("floor response per applied force", "force", "floor_disk")
     opened_contacts: NDArray[np.intp] = column("contacts of disks that the load opened, central third", "force")
-    force_residual: FloatArray = column(f"largest unbalanced force on a disk {FORCE}", "force")
-    typical_force: float = column(f"mean normal force between disks at rest by the linear law {FORCE}")
+    force_residual: FloatArray = column(f"largest unbalanced force on a disk {WEIGHTS}", "force")
+    typical_force: float = column(f"mean normal force between disks at rest by the linear law {WEIGHTS}")
     normal_stiffness: float = column(
         "contact.normal_stiffness: of the 3/2 law at a normal force of one mean disk weight"
     )
-    x: FloatArray = column(f"rest position from the loaded disk, linear law {LENGTH}", "floor_disk")
+    x: FloatArray = column(f"rest position from the loaded disk, linear law {RADII}", "floor_disk")
 
 
 def matched_stiffness(stiffness: float, force: float) -> float:
@@ -99,7 +99,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             axes(
                 friction=(parameters.friction, "coefficient of friction between disks"),
                 law=(LAWS, "contact law"),
-                force=(parameters.forces, f"applied force {FORCE}"),
+                force=(parameters.forces, f"applied force {WEIGHTS}"),
             )
         )
     )

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.crossover_scaling.parameters import Parameters, Series, varied
 from granular_response_paper.records import axes, column, labels, record, table
@@ -70,7 +70,7 @@ class Slab:
     friction: float = column("coefficient of friction between disks")
     normal_stiffness: float = column("normal stiffness of contacts in mean weights per mean radius")
     asked_confinement: float = column(
-        f"force of horizontal contacts that is asked for {FORCE}"
+        f"force of horizontal contacts that is asked for {WEIGHTS}"
     )  #: of no meaning between walls
     periodic: bool = column("1 for periodic sides, 0 for walls")
 
@@ -92,22 +92,22 @@ class Slab:
 class Outcome:
     """What a task leaves behind; arrays along its forces."""
 
-    confinement: float = column(f"mean force of horizontal contacts in the central third at rest {FORCE}")
+    confinement: float = column(f"mean force of horizontal contacts in the central third at rest {WEIGHTS}")
     linear_opening: float = column(
-        f"force {FORCE} at which the first contact would open if contacts went on as under a small one"
+        f"force {WEIGHTS} at which the first contact would open if contacts went on as under a small one"
     )
     brackets: FloatArray = column(
-        f"forces {FORCE} between which: {'; '.join(EVENTS.values())}", "event", "bracket"
+        f"forces {WEIGHTS} between which: {'; '.join(EVENTS.values())}", "event", "bracket"
     )  #: nan above for what was not seen
     by_motion: float = column(
         "steps of the force in which the motion of the disks had a part; nan: not recorded", later=True
     )
-    force: FloatArray = column(f"applied force {FORCE}", "line")
+    force: FloatArray = column(f"applied force {WEIGHTS}", "line")
     dip: FloatArray = column(
         "how far the response at x = 0 is below the lower maximum beside it, per largest response", "line"
     )
-    depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {LENGTH}", "line")
-    width: FloatArray = column(f"largest width of the region of opened contacts {LENGTH}", "line")
+    depth: FloatArray = column(f"depth of the region of opened contacts below the loaded disk {RADII}", "line")
+    width: FloatArray = column(f"largest width of the region of opened contacts {RADII}", "line")
     opened: FloatArray = column("contacts of the region", "line")
 
 
@@ -299,7 +299,7 @@ def slab_and_path_tables(
         f"{name}_bracket": variable(
             ("slab", "bracket"),
             data["brackets"].values[:, k],
-            f"forces {FORCE} between which: {text}; nan if not up to the first",
+            f"forces {WEIGHTS} between which: {text}; nan if not up to the first",
         )
         for k, (name, text) in enumerate(EVENTS.items())
     }
@@ -326,7 +326,8 @@ class Fitted:
 
     exponent: FloatArray = column(f"power of what is varied with which the event's force grows; {_RANGE}", "end")
     extrapolated: FloatArray = column(
-        f"force {FORCE} of the event by this power law; {_RANGE}, and the largest slab with the power of the continuum",
+        f"force {WEIGHTS} of the event by this power law; {_RANGE}, "
+        "and the largest slab with the power of the continuum",
         "end",
     )
 

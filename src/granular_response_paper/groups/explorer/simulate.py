@@ -16,7 +16,8 @@ from granular_response.observe.floor import smoothed_response
 from granular_response.observe.peaks import peak_count
 from granular_response.scene import Scene
 from granular_response.state import State
-from granular_response.store.result import LENGTH, certificates_dataset, variable
+from granular_response.store.result import certificates_dataset
+from granular_response.store.variables import RADII, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.explorer.parameters import Parameters
 from granular_response_paper.slab_response import LoadPath, Measures, states_picture
@@ -98,8 +99,8 @@ def _dataset(path: LoadPath, found: list[State], width: float) -> xr.Dataset:
         smoothed_response=variable(("state", "floor_disk"), smooth, f"floor response {unit}"),
         response_at_centre=variable("state", centre, f"floor response at x = 0 {unit}"),
         peak_count=variable("state", count, "number of peaks of the smoothed response; 0 at rest"),
-        x=variable("floor_disk", x, f"rest position of a floor disk from the loaded disk {LENGTH}"),
-        smoothing_width=variable((), width, f"width w of the smoothing Gaussian {LENGTH}; 0: none"),
+        x=variable("floor_disk", x, f"rest position of a floor disk from the loaded disk {RADII}"),
+        smoothing_width=variable((), width, f"width w of the smoothing Gaussian {RADII}; 0: none"),
         polydispersity=variable((), scene.packing.model_dump()["polydispersity"], "delta: spread of the radii"),
         friction=variable((), scene.contact.friction, "coefficient of friction between disks"),
         wall_friction=variable((), scene.wall.friction, "coefficient of friction of the walls"),

@@ -26,14 +26,8 @@ from granular_response.observe.network import contact_centre
 from granular_response.observe.profile import ROW_SPACING, force_profile, row_depth
 from granular_response.scene import Packing, Scene
 from granular_response.state import FLOOR, LEFT_WALL, RIGHT_WALL, WALL_NORMAL, FloatArray, State
-from granular_response.store.result import (
-    FORCE,
-    LENGTH,
-    added_forces_dataset,
-    certificates_dataset,
-    common_candidates,
-    variable,
-)
+from granular_response.store.result import added_forces_dataset, certificates_dataset, common_candidates
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.friction_fields.parameters import Parameters
 from granular_response_paper.records import axes, column, record, table
@@ -76,9 +70,9 @@ class Scalars:
 class Profile:
     """The added forces at one depth."""
 
-    contact_x: FloatArray = column(f"position of the contact from the loaded disk {LENGTH}", "point")
-    magnitude: FloatArray = column(f"magnitude of the added contact force {FORCE}", "point")
-    strongest_x: float = column(f"distance of the strongest contact from x = 0 {LENGTH}")
+    contact_x: FloatArray = column(f"position of the contact from the loaded disk {RADII}", "point")
+    magnitude: FloatArray = column(f"magnitude of the added contact force {WEIGHTS}", "point")
+    strongest_x: float = column(f"distance of the strongest contact from x = 0 {RADII}")
     axis_magnitude: float = column("largest magnitude below the load per largest at that depth")
 
     @classmethod
@@ -134,7 +128,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     disk = results[parameters.frictions[0]].loaded_disk
     forces = added_forces_dataset(rest, loaded, packing, "friction").assign(
         loaded_disk=variable((), disk, "index of the loaded disk"),
-        force=variable((), force, f"applied force {FORCE}"),
+        force=variable((), force, f"applied force {WEIGHTS}"),
     )
     datasets = {"forces": forces, "stress": _stress_dataset(parameters, base, rest, loaded, disk)}
     datasets = {name: data.assign_coords(axes(friction=(results, FRICTION))) for name, data in datasets.items()}
@@ -262,13 +256,11 @@ def _stress_dataset(
         .assign(stress_components(("friction", "z", "x"), fields, of))
         .assign(
             stress_zz_lattice=variable(("z", "x"), elastic, f"stress component zz of the harmonic lattice {of}"),
-            stress_width=variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}"),
-            force=variable((), force, f"applied force {FORCE}"),
-            load_height=variable((), middle[1], f"height of the loaded disk before gravity {LENGTH}"),
+            stress_width=variable((), w, f"width w of the coarse-graining Gaussian {RADII}"),
+            force=variable((), force, f"applied force {WEIGHTS}"),
+            load_height=variable((), middle[1], f"height of the loaded disk before gravity {RADII}"),
         )
-        .assign_coords(
-            axes(x=(x, f"distance from the loaded disk {LENGTH}"), z=(z, f"height above the floor {LENGTH}"))
-        )
+        .assign_coords(axes(x=(x, f"distance from the loaded disk {RADII}"), z=(z, f"height above the floor {RADII}")))
     )
 
 
@@ -284,10 +276,10 @@ def _profiles_dataset(packing: Packing, results: Sequence[Loaded], rows: Sequenc
     depth = [row_depth(float(row)) for row in rows]
     return (
         table(found, "friction", "row")
-        .assign(force=variable((), force, f"applied force {FORCE}"))
+        .assign(force=variable((), force, f"applied force {WEIGHTS}"))
         .assign_coords(
             axes(row=(np.array(rows, dtype=float), "rows below the loaded disk"))
-            | {"depth": variable("row", depth, f"depth below the loaded disk {LENGTH}")}
+            | {"depth": variable("row", depth, f"depth below the loaded disk {RADII}")}
         )
         .merge(certificates_dataset(states, "friction"))
     )

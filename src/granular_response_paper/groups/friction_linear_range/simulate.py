@@ -21,7 +21,7 @@ from granular_response.observe import events
 from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.state import State
-from granular_response.store.result import FORCE, variable
+from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.friction_linear_range.parameters import Parameters
@@ -29,7 +29,7 @@ from granular_response_paper.records import axes, table
 from granular_response_paper.slab_response import LoadPath, Measures
 from granular_response_paper.tasks import computed
 
-FRICTION, APPLIED = "coefficient of friction between disks", f"applied force {FORCE}"
+FRICTION, APPLIED = "coefficient of friction between disks", f"applied force {WEIGHTS}"
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,8 @@ from granular_response.scene import Scene
 from granular_response.solvers.equilibrium import Rearranged
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
+from granular_response.store.result import common_candidates
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper import slab_response
 from granular_response_paper.groups.frictionless_crossover.parameters import Parameters
@@ -79,7 +80,7 @@ class Rest:
     """What tells how a slab rests."""
 
     rest_asymmetry: float = column(
-        f"largest horizontal distance of a disk at rest from its place in a symmetric state {LENGTH}"
+        f"largest horizontal distance of a disk at rest from its place in a symmetric state {RADII}"
     )
     new_neighbours: int = column("pairs touching at rest that are no lattice neighbours")
 
@@ -255,7 +256,7 @@ def stiffnesses(
     data["crossovers"] = variable(
         ("normal_stiffness", "dip", "bracket"),
         [[(one.low, one.high) for one in outcomes[slab].crossovers] for slab in slabs],
-        f"forces {FORCE} between which the dip at x = 0 comes to exceed this one; nan if not up to the first",
+        f"forces {WEIGHTS} between which the dip at x = 0 comes to exceed this one; nan if not up to the first",
     )
     data["dip"] = variable("dip", DIPS, "dip at x = 0, per largest response, from which on there are two peaks")
     data["compared_stiffness"] = variable("compared", compared, "normal stiffnesses whose responses are compared")
@@ -290,14 +291,14 @@ def along(
         data[f"{name}_bracket"] = variable(
             (dimension, "bracket"),
             [(one.events[k].low, one.events[k].high) for one in each],
-            f"forces {FORCE} between which: {text}; nan if not up to the first",
+            f"forces {WEIGHTS} between which: {text}; nan if not up to the first",
         )
     return (
         xr.Dataset(data)
         .assign_coords(table(slabs, dimension).variables)
         .assign_coords(table([one.at_rest for one in each], dimension).variables)
         .assign_coords(
-            axes(force=(np.array(forces, float), f"applied force {FORCE}"))
+            axes(force=(np.array(forces, float), f"applied force {WEIGHTS}"))
             | {"x": of("x", "floor_place")}
             | axes(bracket=(["low", "high"], "ends of a bracket"))
         )

@@ -28,7 +28,8 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.solvers.work import slid, stored, work
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
+from granular_response.store.result import common_candidates
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.hysteresis.parameters import Parameters
 from granular_response_paper.records import axes, column, columns, labels, record, stacked, table
@@ -62,9 +63,9 @@ class Turn:
     floor_repeated: float = column(
         "largest difference of a floor force under the load, second and first time, per largest change"
     )
-    displacement: float = column(f"of the loaded disk downwards, first loading {LENGTH}")
-    displacement_left: float = column(f"of the loaded disk downwards, after unloading {LENGTH}")
-    displacement_repeated: float = column(f"of the loaded disk downwards, second loading {LENGTH}")
+    displacement: float = column(f"of the loaded disk downwards, first loading {RADII}")
+    displacement_left: float = column(f"of the loaded disk downwards, after unloading {RADII}")
+    displacement_repeated: float = column(f"of the loaded disk downwards, second loading {RADII}")
     nonlinearity: float = column("response at x = 0, per that to the smallest force, minus 1")
     opened_contacts: float = column("contacts of disks in the central third that touch at rest and not under load")
     sliding_contacts: float = column("contacts at the Coulomb limit under load")
@@ -85,18 +86,20 @@ class Turn:
 
 @record
 class Bracket:
-    low: float = column(f"force before the event {FORCE}; 0: happened at the first one")
-    high: float = column(f"force at which it has happened {FORCE}; nan: not up to low")
+    low: float = column(f"force before the event {WEIGHTS}; 0: happened at the first one")
+    high: float = column(f"force at which it has happened {WEIGHTS}; nan: not up to low")
 
 
 @record
 class Shown:
     """What is drawn of the first packing of a case: the loop to the largest force."""
 
-    load: FloatArray = column(f"load {FORCE}", "branch", "point")
-    displacement: FloatArray = column(f"of the loaded disk downwards {LENGTH}", "branch", "point")
-    added: FloatArray = column(f"floor force at the end of the way, less that at rest {FORCE}", "branch", "floor_disk")
-    x: FloatArray = column(f"rest position from the loaded disk {LENGTH}", "floor_disk")
+    load: FloatArray = column(f"load {WEIGHTS}", "branch", "point")
+    displacement: FloatArray = column(f"of the loaded disk downwards {RADII}", "branch", "point")
+    added: FloatArray = column(
+        f"floor force at the end of the way, less that at rest {WEIGHTS}", "branch", "floor_disk"
+    )
+    x: FloatArray = column(f"rest position from the loaded disk {RADII}", "floor_disk")
 
 
 @record
@@ -105,7 +108,7 @@ class Outcome:
 
     measured: FloatArray = column("; ".join(one.long_name for one in columns(Turn).values()), "line", "quantity")
     brackets: FloatArray = column(
-        f"forces {FORCE} before and at: {', '.join(EVENTS)}; nan: not up to low", "event", "bracket"
+        f"forces {WEIGHTS} before and at: {', '.join(EVENTS)}; nan: not up to low", "event", "bracket"
     )
     shown: Shown | None = None  #: not of the survey's
 
@@ -311,7 +314,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         *along, "turn",
     )  # fmt: skip
     force = stacked({(c,): case.forces for c, case in enumerate(cases)}, float)
-    loops["force"] = variable(("case", "turn"), force, f"force at which the load turns {FORCE}")
+    loops["force"] = variable(("case", "turn"), force, f"force at which the load turns {WEIGHTS}")
     events = table(
         {(*place, e): Bracket(*ends) for place, one in outcomes.items() for e, ends in enumerate(one.brackets)},
         *along, "event",

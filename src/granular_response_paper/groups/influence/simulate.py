@@ -19,7 +19,7 @@ from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.small_loads import at_limit, influence
 from granular_response.state import FloatArray, State
-from granular_response.store.result import LENGTH
+from granular_response.store.variables import RADII
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.influence.parameters import Parameters
@@ -36,12 +36,12 @@ class Outcome:
     difference: FloatArray = column(
         "what a unit force and two halves of it differ by, summed over the floor disks", "row", "separation"
     )
-    height: FloatArray = column(f"mean height of the loads {LENGTH}", "row")
-    spacing: float = column(f"distance of neighbours in a row {LENGTH}")
+    height: FloatArray = column(f"mean height of the loads {RADII}", "row")
+    spacing: float = column(f"distance of neighbours in a row {RADII}")
     exponent: FloatArray = column("power of height with which the difference falls", "separation", "fit")
     at_limit: float = column("contacts at the Coulomb limit, taken to stick")
-    position: FloatArray = column(f"centre from the middle {LENGTH}", "disk", "axis")
-    radius: FloatArray = column(f"disk radius {LENGTH}", "disk")
+    position: FloatArray = column(f"centre from the middle {RADII}", "disk", "axis")
+    radius: FloatArray = column(f"disk radius {RADII}", "disk")
     total: FloatArray = column("sum of the absolute answers of all floor disks to a unit vertical force", "disk")
 
 

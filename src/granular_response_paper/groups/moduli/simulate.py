@@ -24,7 +24,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.small_loads import at_limit, influence
 from granular_response.solvers.strain import FOLLOWING, strained
 from granular_response.state import FloatArray, State
-from granular_response.store.result import LENGTH
+from granular_response.store.variables import RADII
 from granular_response.sweeps.rest import rest_state
 from granular_response.theory import crossover, lattice
 from granular_response.theory.crossover import Body
@@ -90,7 +90,7 @@ _PER = "per largest pressure of the slab"
 
 @record
 class Outcome:
-    height: float = column(f"height of the slab {LENGTH}")  #: distance of the rows times their number
+    height: float = column(f"height of the slab {RADII}")  #: distance of the rows times their number
     coordination: float = column("contacts per disk that bears something")  #: floor included
     at_limit: float = column("contacts at the Coulomb limit, taken to stick")
     matrices: FloatArray = column("stress per strain over k_N, as measured", "following", "stress", "strain")

@@ -25,7 +25,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.solvers.timestep import resolve_time_step, stability_limit
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, variable
+from granular_response.store.variables import WEIGHTS, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.numerics.parameters import Parameters
@@ -230,7 +230,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
             )
         ),
         "restart": table(found["restart"], "load")
-        .assign_coords(axes(load=(asked.restart.forces, f"load of the restarted state {FORCE}")))
+        .assign_coords(axes(load=(asked.restart.forces, f"load of the restarted state {WEIGHTS}")))
         .assign_coords(step=_readings(READ_EVERY, found["restart"], "time steps since the restart")),
         "time_step": _responses(*steps, x, found["time_step"]),
         "integrators": _responses("integrator", asked.integrators, "integrator", x, found["integrators"]),
@@ -250,7 +250,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
     datasets["at_rest"] = datasets["time_step"].drop_vars(["floor_response", "difference"]).isel(time_step=0)
     for dataset in datasets.values():
-        dataset["force"] = variable((), asked.force, f"applied force {FORCE}")
+        dataset["force"] = variable((), asked.force, f"applied force {WEIGHTS}")
     return labelled(datasets, _with_friction(asked))
 
 

@@ -13,7 +13,8 @@ import xarray as xr
 from granular_response.scene import Scene
 from granular_response.solvers.small_loads import influence
 from granular_response.solvers.solution import solve_scene
-from granular_response.store.result import to_dataset, variable
+from granular_response.store.result import to_dataset
+from granular_response.store.variables import variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.overview.parameters import Parameters
 from granular_response_paper.tasks import computed

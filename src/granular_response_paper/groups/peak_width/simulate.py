@@ -27,7 +27,8 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.small_loads import contact_answers
 from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, common_candidates, variable
+from granular_response.store.result import common_candidates
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
@@ -53,15 +54,15 @@ class Slab:
     polydispersity: float = column("polydispersity")
     friction: float = column("friction, of floor and walls too")
     gravity: str = column("how gravity was applied")
-    force: float = column(f"at the reference height {FORCE}; 0 is the limit of small ones")
+    force: float = column(f"at the reference height {WEIGHTS}; 0 is the limit of small ones")
     layers: int = column("number of rows")
     realization: int = column("realization of the disorder")
 
 
 @record
 class Outcome:
-    height: float = column(f"height of the surface {LENGTH}")
-    depth: FloatArray = column(f"depth below the surface {LENGTH}", "line")  #: the last one is the floor
+    height: float = column(f"height of the surface {RADII}")
+    depth: FloatArray = column(f"depth below the surface {RADII}", "line")  #: the last one is the floor
     profile: FloatArray = column("vertical stress per force, times depth", "line", "t")  #: symmetric, mean over loads
     transmitted: FloatArray = column("part of the force that crosses the line", "line")
     loads: float = column("small loads on the packing")
@@ -71,11 +72,11 @@ class Outcome:
 class Widths:
     """What is found of one case, along the lines of its highest slab or the floors of its slabs."""
 
-    depth: FloatArray = column(f"depth below the surface {LENGTH}", "along")
+    depth: FloatArray = column(f"depth below the surface {RADII}", "along")
     profile: FloatArray = column("vertical stress per force, times depth", "along", "t")
     elastic_profile: FloatArray = column("the same in the elastic slab of the same height", "along", "t")
-    length: FloatArray = column(f"length by each definition {LENGTH}", "along", "definition")
-    elastic_length: FloatArray = column(f"the same in the elastic slab {LENGTH}", "along", "definition")
+    length: FloatArray = column(f"length by each definition {RADII}", "along", "definition")
+    elastic_length: FloatArray = column(f"the same in the elastic slab {RADII}", "along", "definition")
     transmitted: FloatArray = column("part of the force that crosses the line", "along")
     power: FloatArray = column("power of depth with which the length grows", "definition", "fit")
     interval: FloatArray = column(

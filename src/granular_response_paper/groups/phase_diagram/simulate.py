@@ -17,7 +17,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.resources import current
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import COLLAPSED, smoothed
@@ -119,8 +119,8 @@ _BOOTSTRAPPED = "quantiles of the bootstrapped mean"
 class Start:
     """What touches at rest in the packings of one start, and under which force the response is compared."""
 
-    applied_force: float = column(f"applied force {FORCE}")
-    distance: float = column(f"distance of neighbours before gravity acts {LENGTH}")
+    applied_force: float = column(f"applied force {WEIGHTS}")
+    distance: float = column(f"distance of neighbours before gravity acts {RADII}")
     contacts: float = column("mean number of contacts of a disk at rest, walls counted")
     contacts_interval: FloatArray = column(_BOOTSTRAPPED, "level")
     missing_horizontal: float = column("horizontal part of the contacts that the lattice has and the packing has not")
@@ -218,7 +218,7 @@ def _linear_range(source: xr.Dataset, width: float, x: FloatArray) -> xr.Dataset
                 np.array(changes),
                 "root mean square change of the smoothed response from that to the smallest force, relative to it",
             ),
-            "applied_force": variable(("case", "step"), source["force"].values, f"applied force {FORCE}"),
+            "applied_force": variable(("case", "step"), source["force"].values, f"applied force {WEIGHTS}"),
         },
         coords={name: source[name].variable for name in CASE},
         attrs={"width": width},
@@ -240,7 +240,7 @@ def _datasets(
     of_each["kind"] = of_each["kind"].copy(data=np.nan_to_num(of_each["kind"].values, nan=-1).astype(np.int8))
 
     crossovers = of_mean[["force", "kind", "interval", "draw_part", "draws", "limits"]]
-    force = {"applied_force": variable(("case", "step"), source["force"].values, f"applied force {FORCE}")}
+    force = {"applied_force": variable(("case", "step"), source["force"].values, f"applied force {WEIGHTS}")}
     spread = of_each[["spread", "spread_interval", "largest_step", "largest_step_interval"]].variables
     shapes = xr.Dataset(force | dict(of_mean[["shape", "shape_interval", "two_peaked_means"]].variables) | dict(spread))
     realizations = of_each[["shape", "asymmetry", "difference", "crossover", "kind", "median", "median_interval"]]
@@ -251,7 +251,7 @@ def _datasets(
     collapse = np.where(gone, np.take_along_axis(applied, at[..., None], axis=-1)[..., 0], np.nan)
 
     coordinates = axes(
-        width=(parameters.widths, f"width w of the smoothing Gaussian {LENGTH}"),
+        width=(parameters.widths, f"width w of the smoothing Gaussian {RADII}"),
         level=(LEVELS, "part of the bootstrap draws below"),
     ) | {name: source[name].variable for name in CASE}
     tolerance = {"tolerance": parameters.tolerance}
@@ -267,7 +267,7 @@ def _datasets(
         .assign_coords(axes(number=(parameters.numbers, "realizations in a mean"))),
         "realizations": realizations.assign(
             collapse_force=variable(
-                ("case", "realization"), collapse, f"force under which the packing collapsed {FORCE}; nan for none"
+                ("case", "realization"), collapse, f"force under which the packing collapsed {WEIGHTS}; nan for none"
             )
         ).assign_coords(coordinates),
     }

@@ -26,7 +26,8 @@ from granular_response.scene import Packing, Scene
 from granular_response.solvers.energy import minimise
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, STATUSES, certificates_dataset, common_candidates, variable
+from granular_response.store.result import STATUSES, certificates_dataset, common_candidates
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.pile_dip.parameters import Parameters
@@ -82,20 +83,20 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
 class Pile:
     """One pile at rest; a region of open contacts is on its axis."""
 
-    position: FloatArray = column(f"disk centre x, z {LENGTH}", "disk", "axis")
-    contact_force: FloatArray = column(f"contact force on the first disk {FORCE}", "contact", "axis")
+    position: FloatArray = column(f"disk centre x, z {RADII}", "disk", "axis")
+    contact_force: FloatArray = column(f"contact force on the first disk {WEIGHTS}", "contact", "axis")
     contact_status: NDArray[np.int8] = column("contact status", "contact", attributes=STATUSES)
-    wall_force: FloatArray = column(f"force of the wall on its disk {FORCE}", "wall_contact", "axis")
-    floor_force: FloatArray = column(f"vertical floor force {FORCE}", "floor_disk")
+    wall_force: FloatArray = column(f"force of the wall on its disk {WEIGHTS}", "wall_contact", "axis")
+    floor_force: FloatArray = column(f"vertical floor force {WEIGHTS}", "floor_disk")
     floor_dip: float = column(
         "how far the floor force under the apex is below the lower maximum beside it, per largest"
     )
-    floor_asymmetry: float = column(f"largest difference of a floor force from its mirror image {FORCE}")
+    floor_asymmetry: float = column(f"largest difference of a floor force from its mirror image {WEIGHTS}")
     open_contacts: float = column("contacts of the lattice that are open")
     central_open_contacts: float = column("open contacts in the connected region on the axis of the pile")
     central_horizontal: float = column("how many of them are horizontal on the lattice")
-    central_height: float = column(f"height of the highest contact of that region above the floor {LENGTH}")
-    central_width: float = column(f"largest extent of one row of it {LENGTH}")
+    central_height: float = column(f"height of the highest contact of that region above the floor {RADII}")
+    central_width: float = column(f"largest extent of one row of it {RADII}")
 
     @classmethod
     def of(cls, packing: Packing, state: State, bottom: NDArray[np.intp], x: FloatArray) -> Pile:
@@ -133,19 +134,19 @@ def _piles_dataset(packing: Packing, states: Sequence[State]) -> xr.Dataset:
     return (
         table(piles, "case")
         .assign(
-            radius=variable("disk", packing.radius, f"disk radius {LENGTH}"),
+            radius=variable("disk", packing.radius, f"disk radius {RADII}"),
             contact_disk=variable("contact", pairs.first, "disk that the contact force acts on"),
             contact_partner=variable("contact", pairs.second, "other disk"),
             wall_disk=variable("wall_contact", walls.first, "disk that the wall's force acts on"),
             wall_index=variable("wall_contact", walls.second, "wall: 0 floor, 1 left, 2 right"),
             image_difference=variable(
-                (), image, f"largest difference of the two minima's floor forces after mirroring {FORCE}"
+                (), image, f"largest difference of the two minima's floor forces after mirroring {WEIGHTS}"
             ),
-            width=variable((), packing.width, f"distance of the side walls {LENGTH}"),
+            width=variable((), packing.width, f"distance of the side walls {RADII}"),
         )
         .assign_coords(
             axes(case=OF_CASES, axis=("xz", "axis labels"), floor_disk=(bottom, "index of the floor disk"))
-            | {"x_floor": variable("floor_disk", x, f"position from the axis of the pile {LENGTH}")}
+            | {"x_floor": variable("floor_disk", x, f"position from the axis of the pile {RADII}")}
         )
         .merge(certificates_dataset(states, "case"))
     )
@@ -174,14 +175,14 @@ def _stress_dataset(packing: Packing, states: Sequence[State], w: float, spacing
         "dip_of_mean": variable(
             (), central_dip(x, line[:2].mean(axis=0)), "the same of the mean of the two frictionless minima"
         ),
-        "dip_height": variable((), height, f"height above the floor of those profiles {LENGTH}"),
-        "stress_width": variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}"),
+        "dip_height": variable((), height, f"height above the floor of those profiles {RADII}"),
+        "stress_width": variable((), w, f"width w of the coarse-graining Gaussian {RADII}"),
     }
     return xr.Dataset(
         data,
         coords=axes(
             case=OF_CASES,
-            x=(x, f"distance from the axis of the pile {LENGTH}"),
-            z=(z, f"height above the floor {LENGTH}"),
+            x=(x, f"distance from the axis of the pile {RADII}"),
+            z=(z, f"height above the floor {RADII}"),
         ),
     )

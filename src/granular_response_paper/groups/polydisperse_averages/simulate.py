@@ -22,7 +22,7 @@ from granular_response.observe.floor import smoothed_response
 from granular_response.scene import Scene, SceneError
 from granular_response.solvers.problem import Problem
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper.datasets import labelled
 from granular_response_paper.ensembles import AT_REST, datasets, smoothed
 from granular_response_paper.ensembles.averages import at_rest, averages_dataset
@@ -103,10 +103,10 @@ def _individual(ensembles: xr.Dataset, shown: Individual, x: FloatArray) -> xr.D
     return xr.Dataset(
         variables(
             response=("case realization x", response, "smoothed response in 1/mean radius: stress per applied force"),
-            force=("", force, f"applied force {FORCE}"),
-            width=("", width, f"width w of the smoothing Gaussian {LENGTH}"),
+            force=("", force, f"applied force {WEIGHTS}"),
+            width=("", width, f"width w of the smoothing Gaussian {RADII}"),
         ),
-        coords=axes(x=(x, f"distance from the loaded disk {LENGTH}")) | kept,
+        coords=axes(x=(x, f"distance from the loaded disk {RADII}")) | kept,
     )
 
 
@@ -117,14 +117,14 @@ def _linear_range(asked: LinearRange, grid: Sequence[tuple[float, float]], found
     below = f"differs by less than {asked.tolerance:.0%} from that to the smallest force"
     until, beyond = zip(*(one.ends for one in each), strict=True)
     ends = variables(
-        linear_until=("path", until, f"last force {FORCE} at which the response {below}"),
-        nonlinear_from=("path", beyond, f"first force {FORCE} at which it does not; nan for none"),
+        linear_until=("path", until, f"last force {WEIGHTS} at which the response {below}"),
+        nonlinear_from=("path", beyond, f"first force {WEIGHTS} at which it does not; nan for none"),
     )
     deltas, frictions = zip(*grid, strict=True)
     coordinates = variables(
         polydispersity=("path", deltas, "delta: spread of the radii"),
         friction=("path", frictions, "coefficient of friction, walls frictionless"),
-        force=("force", asked.forces, f"applied force {FORCE}"),
+        force=("force", asked.forces, f"applied force {WEIGHTS}"),
     )
     found_at = table(each, "path").assign(ends).assign_coords(coordinates)
     return found_at.assign_attrs(width=asked.width, tolerance=asked.tolerance)

@@ -11,8 +11,8 @@ from ...claims.words import Bounds
 
 GROUP = "preparation"
 CLAIMS = Claims(GROUP)
-#: Part of the contacts below which none counts as mobilized, and fewest preparations that have a trend.
-NONE, FEWEST = 1e-3, 4
+#: Fewest preparations that have a trend.
+FEWEST = 4
 EVENTS = {"linear_range": "end of the linear range", "first_opening": "first opening", "crossover": "two peaks"}
 
 
@@ -29,7 +29,7 @@ def mobilized(data: Data, words: Bounds) -> Finding:
             for slab in dict.fromkeys(slabs):
                 alike = study.isel(case=[one == slab for one in slabs]).sel(name=event, margin=margin)
                 part, force = alike["mobilized_part"].values, alike["force"].values
-                free = force[part < NONE]
+                free = force[part == 0.0]
                 if np.isnan(force).any() or len(force) < FEWEST or np.ptp(part) == 0.0 or len(free) < 2:
                     continue
                 trends.append(float(spearmanr(part, force).statistic))

@@ -1,4 +1,4 @@
-"""When each event comes in each prepared slab; the claims take these brackets as readings."""
+"""When each event comes in each prepared slab between smooth walls."""
 
 from __future__ import annotations
 
@@ -12,13 +12,12 @@ EVENTS = ("linear_range", "crossover")
 
 
 def numbers(datasets: Mapping[str, xr.Dataset]) -> dict[str, float]:
-    """Ends of the linear range and crossover forces (mean disk weights), by friction, walls and preparation."""
+    """Ends of the linear range and crossover forces (mean disk weights), by friction and preparation."""
     found = datasets["events"]
+    columns = ("name", "friction", "wall_friction", "way", "high")
+    rows = zip(*(found[key].values.tolist() for key in columns), strict=True)
     return {
-        f"{found['name'].values[k].replace('_', ' ')}, friction {found['friction'].values[k]:g}, "
-        f"{'rough' if found['wall_friction'].values[k] > 0.0 else 'smooth'} walls, {found['way'].values[k]}": float(
-            found["high"].values[k]
-        )
-        for k in np.flatnonzero(np.isfinite(found["high"].values)).tolist()
-        if found["name"].values[k] in EVENTS
+        f"{name.replace('_', ' ')}, friction {friction:g}, smooth walls, {way}": high
+        for name, friction, wall_friction, way, high in rows
+        if name in EVENTS and not wall_friction and np.isfinite(high)
     }

@@ -20,7 +20,7 @@ from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.scene.lattice import TOUCHING_LARGEST
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE
+from granular_response.store.variables import WEIGHTS
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.preparation.parameters import Parameters, Part
@@ -52,7 +52,7 @@ class Rest:
 
     contacts: float = column("contacts of disks at rest")
     level_force: float = column(
-        f"mean normal force at rest of touching horizontal contacts in the central third {FORCE}"
+        f"mean normal force at rest of touching horizontal contacts in the central third {WEIGHTS}"
     )
     rest_mobilised: FloatArray = column(
         "contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit", "margin"
@@ -69,7 +69,7 @@ class Mobilized:
         "part of the contacts of disks at rest whose tangential force is within a fraction of the Coulomb limit",
         "margin",
     )
-    force: FloatArray = column(f"force of the event; nan if it does not come {FORCE}", "name")
+    force: FloatArray = column(f"force of the event; nan if it does not come {WEIGHTS}", "name")
 
 
 #: The events that are set against it; two peaks are asked of ordered slabs alone.
@@ -168,7 +168,7 @@ def _response(outcomes: Sequence[Outcome], forces: Sequence[float]) -> xr.Datase
     dataset = slab.measured_dataset(("case", "force"), parts, (len(outcomes), len(forces)))
     return (
         dataset.assign(table([one.rest for one in outcomes], "case").variables)
-        .assign_coords(axes(force=(forces, f"applied force {FORCE}")))
+        .assign_coords(axes(force=(forces, f"applied force {WEIGHTS}")))
         .assign_coords(table([one.prepared for one in outcomes], "case").variables)
     )
 

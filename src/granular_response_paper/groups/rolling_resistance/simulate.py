@@ -23,7 +23,7 @@ from granular_response.scene import PilePacking, Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.settle import NotSettled
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.rolling_resistance.parameters import Parameters
@@ -45,12 +45,12 @@ CASES = ("supported", "free", "resisting")
 class Pile:
     """A pile that has come to rest."""
 
-    moved: float = column(f"largest displacement of a disk on the way to rest {LENGTH}")
+    moved: float = column(f"largest displacement of a disk on the way to rest {RADII}")
     floor_dip: float = column(
         "how far the floor force under the apex is below the lower maximum beside it, per largest"
     )
-    x: FloatArray = column(f"position of the lowest disks before gravity acts, from the axis {LENGTH}", "floor_disk")
-    floor_force: FloatArray = column(f"vertical floor force {FORCE}", "floor_disk")
+    x: FloatArray = column(f"position of the lowest disks before gravity acts, from the axis {RADII}", "floor_disk")
+    floor_force: FloatArray = column(f"vertical floor force {WEIGHTS}", "floor_disk")
 
 
 @record
@@ -154,16 +154,16 @@ def balance(layers: int, rolling: float, most: float, tolerance: float) -> Balan
 class Slab:
     """A slab under a growing force; along ``load`` under the small and the large force that are shown."""
 
-    x: FloatArray = column(f"position from the loaded disk {LENGTH}", "floor_disk")
-    opening: FloatArray = column(f"force of the first opening, before and after {FORCE}", "end")
-    crossover: FloatArray = column(f"force from which on there are two peaks, before and after {FORCE}", "end")
+    x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
+    opening: FloatArray = column(f"force of the first opening, before and after {WEIGHTS}", "end")
+    crossover: FloatArray = column(f"force from which on there are two peaks, before and after {WEIGHTS}", "end")
     floor_response: FloatArray = column("floor response per force", "load", "floor_disk")
-    width: FloatArray = column(f"full width at half maximum of the floor response {LENGTH}", "load")
+    width: FloatArray = column(f"full width at half maximum of the floor response {RADII}", "load")
     couple_stress: FloatArray = column("largest couple stress of the load at a height, in weights", "load", "z")
     vertical_stress: FloatArray = column("largest vertical stress of it there, in weights per radius", "load", "z")
     modulus: FloatArray = column("couple stress per gradient of the rotation, in k_N times radii squared", "load")
     unexplained: FloatArray = column("part of the squares of the couple stress that this modulus leaves", "load")
-    length: FloatArray = column(f"Cosserat length sqrt(B / 4 G) with the lattice's shear modulus {LENGTH}", "load")
+    length: FloatArray = column(f"Cosserat length sqrt(B / 4 G) with the lattice's shear modulus {RADII}", "load")
     moment_error: FloatArray = column("largest lack of the couples across a vertical line, per largest couple", "load")
 
 
@@ -264,7 +264,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     of_slabs = axes(
         friction=([slab.friction for slab in p.slabs], "coefficient of friction between disks"),
         rolling_friction=(p.slab_rolling_frictions, "coefficient of rolling friction between disks"),
-        load=(p.shown_forces, f"force {FORCE}"),
+        load=(p.shown_forces, f"force {WEIGHTS}"),
         z=(np.linspace(0.0, 1.0, p.heights), "height above the floor per that of the loaded disk"),
     )
     held = table(computed(tries, "tries", work=lambda place: place[0]), "layers", "rolling_friction", "ramp")

@@ -22,7 +22,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import FloatArray, State
-from granular_response.store.result import variable
+from granular_response.store.variables import variable
 from granular_response.sweeps.rest import rest_state
 from granular_response_paper.groups.sensitivity.parameters import Parameters
 from granular_response_paper.records import axes, column, labels, record, table

@@ -19,7 +19,8 @@ import xarray as xr
 from granular_response.observe import network
 from granular_response.scene import Scene
 from granular_response.state import SLIDING, FloatArray, State
-from granular_response.store.result import LENGTH, certificates_dataset
+from granular_response.store.result import certificates_dataset
+from granular_response.store.variables import RADII
 from granular_response.theory import lattice
 from granular_response.theory.lattice import Springs
 from granular_response.theory.slab import Floor, response_of_layers
@@ -40,7 +41,7 @@ _COMPARED = f"largest difference within {COMPARED:g} slab heights of the load, p
 class Slab:
     floor_response: FloatArray = column("floor response per force", "floor_disk")
     elastic: FloatArray = column("share of the elastic slab with the same moduli, floor and walls", "floor_disk")
-    x: FloatArray = column(f"position from the loaded disk {LENGTH}", "floor_disk")
+    x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
     distance: float = column(f"packing and elastic slab: {_COMPARED}")
     distance_other_floor: float = column(f"packing and elastic slab with the other floor: {_COMPARED}")
     nonlinearity: float = column("largest change from half the force, per largest response")

@@ -20,7 +20,7 @@ from granular_response.scene.protocol import Integrator
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import stability_limit
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, variable
+from granular_response.store.variables import WEIGHTS, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.stability.parameters import (
     Collisions,
@@ -45,7 +45,7 @@ AXES: dict[str, tuple[str, str]] = {
     "wall_friction": ("wall.friction", "coefficient of friction of the walls"),
     "wall_stiffness": ("wall.normal_stiffness", "normal stiffness of walls in mean disk weights per mean radius"),
     "polydispersity": ("packing.polydispersity", "polydispersity"),
-    "load": ("loads", f"applied force {FORCE}"),
+    "load": ("loads", f"applied force {WEIGHTS}"),
 }
 
 

@@ -25,7 +25,7 @@ from granular_response.observe.events import bisect_event
 from granular_response.observe.peaks import central_dip
 from granular_response.scene import Scene
 from granular_response.state import FloatArray
-from granular_response.store.result import FORCE, LENGTH
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.theory import half_plane, lattice
 from granular_response.theory.crossover import Body
 from granular_response.theory.lattice import Springs
@@ -100,7 +100,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     response = slab.measured_along("stiffness_ratio", measured).assign_coords(axes(stiffness_ratio=(ratios, RATIO)))
     methods = [method for _, method in results.values()]
     further = variables(
-        force=("", force, f"applied force {FORCE}"),
+        force=("", force, f"applied force {WEIGHTS}"),
         methods=("stiffness_ratio", methods, "method that found the loaded state"),
     )
     response = response.assign(further)
@@ -146,7 +146,7 @@ def elastic_bodies(ratios: FloatArray, x: FloatArray, layers: int, width: float)
     )
     coordinates = variables(
         stiffness_ratio=("stiffness_ratio", ratios, RATIO),
-        x=("floor_disk", x, f"position of the floor disk from the load {LENGTH}"),
+        x=("floor_disk", x, f"position of the floor disk from the load {RADII}"),
         body=("body", BODIES, "elastic body that carries the force"),
         rotations=("rotations", ROTATIONS, "whether the disks turn"),
     )

@@ -25,7 +25,8 @@ from granular_response.scene import Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, common_candidates
+from granular_response.store.result import common_candidates
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.superposition.parameters import Parameters
@@ -66,12 +67,12 @@ class Errors:
         "force",
         "gap",
     )  #: from above
-    certificate_force_residual: float = column(f"largest unbalanced force on a disk {FORCE}, any force and part")
+    certificate_force_residual: float = column(f"largest unbalanced force on a disk {WEIGHTS}, any force and part")
     certificate_torque_residual: float = column(
         "largest unbalanced torque on a disk in mean weight times mean radius, any force and part"
     )
     certificate_coulomb_excess: float = column(
-        f"largest excess of a tangential force over the Coulomb limit {FORCE}, any force and part"
+        f"largest excess of a tangential force over the Coulomb limit {WEIGHTS}, any force and part"
     )
     certificate_negative_modes: float = column("unstable directions of the tangent stiffness, any force and part")
 
@@ -97,8 +98,10 @@ class Single:
         "at the smallest force",
         "force",
     )
-    linear_until: float = column(f"last force {FORCE} up to which the response at x = 0 is that to the smallest force")
-    nonlinear_from: float = column(f"first force {FORCE} at which it is not; nan for none")
+    linear_until: float = column(
+        f"last force {WEIGHTS} up to which the response at x = 0 is that to the smallest force"
+    )
+    nonlinear_from: float = column(f"first force {WEIGHTS} at which it is not; nan for none")
     load_x: float  #: rest position of the loaded disk
     x: FloatArray  #: rest positions of the floor disks from there
 
@@ -192,11 +195,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     apart = "places between the two loaded disks, their distance in mean disk diameters"
     coordinates = axes(
         distance=(2.0 * np.array(offsets), apart),
-        force=(asked.forces, f"each of the two applied forces {FORCE}"),
+        force=(asked.forces, f"each of the two applied forces {WEIGHTS}"),
     )
     floor_x = [singles[r].x for r in with_pairs]
     load_x = [[pairs[r, k].load_x - singles[r].load_x for k in range(len(offsets))] for r in with_pairs]
-    from_middle = f"from the middle disk on top {LENGTH}"
+    from_middle = f"from the middle disk on top {RADII}"
     places = variables(
         x=("realization floor_disk", floor_x, f"rest position of a floor disk {from_middle}"),
         load_x=("realization distance side", load_x, f"rest position of the loaded disks {from_middle}"),
@@ -208,12 +211,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         side=(PARTS[:2], "which of the loaded disks"),
     )
     errors = table({place: pair.errors for place, pair in pairs.items()}, "realization", "distance")
-    depth = axes(gap=(gaps, f"depth below the top row, on the lattice {LENGTH}"))
+    depth = axes(gap=(gaps, f"depth below the top row, on the lattice {RADII}"))
     linear = table(list(singles.values()), "realization")
     linear.attrs.update(width=asked.width, tolerance=asked.tolerance)
     datasets = {
         "responses": responses.assign(places).assign_coords(coordinates | further),
         "errors": errors.assign_coords(coordinates | depth),
-        "linear_range": linear.assign_coords(axes(force=(asked.single_forces, f"force on the middle disk {FORCE}"))),
+        "linear_range": linear.assign_coords(axes(force=(asked.single_forces, f"force on the middle disk {WEIGHTS}"))),
     }
     return labelled(datasets, asked.base)

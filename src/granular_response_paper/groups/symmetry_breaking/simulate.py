@@ -26,7 +26,7 @@ from granular_response.solvers.dynamics import Dynamics, Stop, relax
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.timestep import resolve_time_step
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, variable
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper import slab_response as slab
 from granular_response_paper.datasets import labelled
@@ -38,7 +38,7 @@ from granular_response_paper.tasks import computed
 #: When a displaced equilibrium counts as settled, and how many steps it gets: growth from a small displacement
 #: shows long before.
 HELD_STOP = Stop(kinetic_energy=1e-15, rule="envelope", maximum_steps=200_000)
-APPLIED = f"applied force {FORCE}"
+APPLIED = f"applied force {WEIGHTS}"
 
 
 @record
@@ -114,8 +114,8 @@ def held(scene: Scene, rest: State, forces: tuple[float, ...], displacement: flo
     further = variables(
         branch_asymmetry=("force", asymmetry, "asymmetry of the floor response before the displacement"),
         branch_response=("force floor_disk", response, "floor response before the displacement"),
-        moved=("force", moved, f"largest distance from the place before {LENGTH}"),
-        displacement=("", displacement, f"largest random displacement {LENGTH}"),
+        moved=("force", moved, f"largest distance from the place before {RADII}"),
+        displacement=("", displacement, f"largest random displacement {RADII}"),
     )
     found = slab.measured_along("force", [slab.measured(measures, settled)]).assign(further)
     return found.assign_coords(axes(force=(forces, APPLIED)))

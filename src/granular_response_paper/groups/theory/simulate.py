@@ -12,7 +12,7 @@ from typing import get_args
 import numpy as np
 import xarray as xr
 
-from granular_response.store.result import variable
+from granular_response.store.variables import variable
 from granular_response.theory import crossover, half_plane, lattice, rays
 from granular_response.theory.lattice import Springs
 from granular_response.theory.moduli import Moduli

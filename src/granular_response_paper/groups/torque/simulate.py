@@ -24,7 +24,8 @@ from granular_response.scene import Packing, Scene
 from granular_response.solvers.problem import Problem
 from granular_response.solvers.solution import loaded_states
 from granular_response.state import FloatArray, State
-from granular_response.store.result import FORCE, LENGTH, added_forces_dataset, common_candidates, variable
+from granular_response.store.result import added_forces_dataset, common_candidates
+from granular_response.store.variables import RADII, WEIGHTS, variable
 from granular_response.sweeps.rest import rest_of
 from granular_response_paper.datasets import labelled, stress_components
 from granular_response_paper.groups.torque.parameters import Parameters
@@ -70,7 +71,7 @@ def _states_dataset(packing: Packing, rest: State, loaded: Sequence[State], disk
     return added_forces_dataset([rest] * len(loaded), loaded, packing, "torque").assign(
         rotation=variable("torque", turned, "rotation of the loaded disk by the load, counter-clockwise, in radians"),
         loaded_disk=variable((), disk, "index of the loaded disk"),
-        applied_force=variable("axis", force, f"applied force x, z {FORCE}"),
+        applied_force=variable("axis", force, f"applied force x, z {WEIGHTS}"),
     )
 
 
@@ -81,8 +82,8 @@ def _stress_dataset(packing: Packing, rest: State, loaded: Sequence[State], w: f
     fields = np.stack([coarse.coarse_grained_stress(coarse.load_forces(rest, s), points, w) for s in loaded])
     unit = "in weights per mean radius, compression positive"
     data = stress_components(("torque", "z", "x"), fields, unit, " of the added forces")
-    data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {LENGTH}")
-    coordinates = axes(x=(x, f"distance from the left wall {LENGTH}"), z=(z, f"height above the floor {LENGTH}"))
+    data["stress_width"] = variable((), w, f"width w of the coarse-graining Gaussian {RADII}")
+    coordinates = axes(x=(x, f"distance from the left wall {RADII}"), z=(z, f"height above the floor {RADII}"))
     return xr.Dataset(data, coordinates)
 
 
@@ -128,10 +129,10 @@ def _reach_dataset(
     )
     middle = 0.5 * (edges[:-1] + edges[1:])
     return table({(): reach}).assign_coords(
-        axes(ring=(middle, f"mean distance of the ring from the load {LENGTH}"))
+        axes(ring=(middle, f"mean distance of the ring from the load {RADII}"))
         | {
-            "ring_inner": variable("ring", edges[:-1], f"inner radius of the ring {LENGTH}"),
-            "ring_outer": variable("ring", edges[1:], f"outer radius of the ring {LENGTH}"),
+            "ring_inner": variable("ring", edges[:-1], f"inner radius of the ring {RADII}"),
+            "ring_outer": variable("ring", edges[1:], f"outer radius of the ring {RADII}"),
         }
     )
 
