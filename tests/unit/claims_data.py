@@ -41,7 +41,7 @@ ELASTIC = 0.07 * np.exp(-((X / 20.0) ** 2))
 
 def friction_study():
     floor = [3.5, 19.0, 10.9]
-    depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in floor]
+    depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in (3.5, 19.0, 19.0)]
     opened = np.round(10.0 * FORCES)
     response = dataset(
         {"friction": [0.0, 0.2, 1.0], "force": FORCES, "x": ("floor_disk", X)},
@@ -449,10 +449,9 @@ def phases_study():
             {**cases, **levels, "realizations": ("case", [few] * n)},
             dip=(("width", "case"), np.stack([dip] * 2)),
             dip_interval=(("width", "case", "level"), np.stack([spread[:, 0]] * 2)),
-            two_peaked_means=(("width", "case"), np.stack([np.where(dip > 0.01, 0.99, 0.1)] * 2)),
-            two_peaked_means_interval=(
-                ("width", "case", "level"),
-                np.stack([np.where(dip[:, None] > 0.01, [0.9, 0.99, 1.0], [0.0, 0.1, 0.3])] * 2),
+            dip_of_means=(("width", "case", "level"), np.stack([spread[:, 0]] * 2)),
+            dip_of_means_interval=(
+                ("width", "case", "level", "end"), np.stack([spread[:, 0, :, None] + [-0.01, 0.01]] * 2)
             ),
         ),
         "packings": dataset(

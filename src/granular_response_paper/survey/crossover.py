@@ -174,29 +174,20 @@ def two_peaked_means(
     return result
 
 
-def part_of_samples(
-    responses: FloatArray,
-    x: FloatArray,
-    width: float,
-    number: int,
-    *,
-    seed: int,
-    tolerance: float = 0.0,
-    draws: int = 200,
-    samples: int = 100,
+def shapes_of_samples(
+    responses: FloatArray, x: FloatArray, width: float, number: int, *, seed: int, draws: int = 200, samples: int = 400
 ) -> FloatArray:
-    """(draws,) parts of means of ``number`` realizations with two peaks, each from a draw of the realizations.
+    """(draws, samples) shapes of means of ``number`` realizations, each row from a draw of the realizations.
 
-    What an ensemble of symmetric responses (r, x) knows of the part: each draw holds r of them, with replacement, and
+    What an ensemble of symmetric responses (r, x) knows of such means: each draw holds r of them, with replacement, and
     of each ``samples`` means are taken.
     """
     rng = np.random.default_rng(seed)
-    parts = np.empty(draws)
-    for draw in range(draws):
+    shapes = np.empty((draws, samples))
+    for row in shapes:
         drawn = responses[rng.integers(0, len(responses), len(responses))]
-        means = drawn[rng.integers(0, len(drawn), (samples, number))].mean(axis=1)
-        parts[draw] = np.mean(shape(x, means, width) > tolerance)
-    return parts
+        row[:] = shape(x, drawn[rng.integers(0, len(drawn), (samples, number))].mean(axis=1), width)
+    return shapes
 
 
 def censored_medians(values: FloatArray, censored: NDArray[np.bool_], weights: FloatArray) -> FloatArray:
