@@ -403,6 +403,8 @@ def phases_study():
         "draws": (("width", "case", "draw"), np.stack([draws] * 2)),
         "limits": (("width", "case", "end"), np.tile([0.01, 400.0], (2, n, 1))),
     }
+    seen = {"seen": (("width", "case"), np.full((2, n), 0.9))}
+    seen["seen_interval"] = (("width", "case", "level"), np.tile([0.8, 0.9, 0.95], (2, n, 1)))
     tolerances = [0.005, 0.02]
     definitions = {
         name: ((*dims[:2], "tolerance", *dims[2:]), np.repeat(values[:, :, None], 2, axis=2))
@@ -417,7 +419,7 @@ def phases_study():
     away = np.maximum(0.0, small / (apart * np.repeat(ends, 2)[:, None, None]) - 1.0)
     return {
         "crossovers": dataset(
-            {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers
+            {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers, **seen
         ).assign_attrs(tolerance=0.01),
         "medians": dataset({**cases, **levels}, **crossovers, collapsed=("case", np.where(delta == 0.25, 3, 0))),
         "definitions": dataset(

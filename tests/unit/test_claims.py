@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 import yaml
 from claims_data import FORCES, STARTS, dataset, everything, pile_study
+from scipy.stats import binom
 
 from granular_response.state import SLIDING, STICKING
 from granular_response.store import files as store
@@ -30,7 +31,14 @@ from granular_response_paper.claims.claim import (
 from granular_response_paper.claims.verdict import MEANINGS, ROBUSTNESS_MEANINGS, judge, robustness_of, verdict_of
 from granular_response_paper.groups import NAMES
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
-from granular_response_paper.groups.phase_diagram.claims import FOUND, Crossover, evident_samples, order_of, trend
+from granular_response_paper.groups.phase_diagram.claims import (
+    FOUND,
+    RARE,
+    Crossover,
+    evident_samples,
+    order_of,
+    trend,
+)
 
 ROOT = Path(__file__).parents[2]
 CLAIM = {claim.id: claim for claim in table.CLAIMS}
@@ -345,8 +353,9 @@ PLANTED = [
     ("D3a", put(PHASES, "crossovers", "draws", INFINITE), "undecided"),
     ("D3b", put(PHASES, "crossovers", "kind", [1, 0, 0] * 4 + [0, 0]), "reproduced"),
     ("D4", put(PHASES, "shapes", "largest_step_interval", [0.6, 0.7, 0.8]), DEPENDS),
-    ("D5", put(PHASES, "shapes", "two_peaked_means", 0.5), "contradicted"),
-    ("D5", start(PHASES, "shapes", "two_peaked_means", STARTS[1], 0.5), DEPENDS),
+    ("D5", put(PHASES, "crossovers", "seen_interval", 0.4), "contradicted"),
+    ("D5", put(PHASES, "crossovers", "seen_interval", [0.4, 0.6, 0.7]), "undecided"),
+    ("D5", start(PHASES, "crossovers", "seen_interval", STARTS[1], 0.4), DEPENDS),
     ("D6", scaled(PHASES, "crossovers", "draws", by_case([1] * 3 + [100] * 11)), "contradicted"),
     ("D7a", scaled(PHASES, "packings", "coordination_number_bulk", 1.2), DEPENDS),
     ("D7a", start(PHASES, "packings", "coordination_number", STARTS[1], 4.6), DEPENDS),
@@ -658,6 +667,25 @@ def test_the_power_of_the_order_of_realizations(step, power):
     assert clear == pytest.approx(power, abs=0.1)
 
 
+#: The same of a part of so many packings that is to be above a half (D2), or not rare (U2), if it is in truth so large.
+PART_POWER = [
+    (10, 0.5, [(0.5, 0.01), (0.7, 0.15), (0.8, 0.38), (0.9, 0.74)]),
+    (20, 0.5, [(0.5, 0.02), (0.7, 0.42), (0.8, 0.80), (0.9, 0.99)]),
+    (150, 0.025, [(0.025, 0.01), (0.05, 0.34), (0.1, 0.97), (0.15, 1.0)]),
+]
+
+
+@pytest.mark.parametrize(("packings", "least", "powers"), PART_POWER)
+def test_the_power_of_a_part(packings, least, powers):
+    clear = [part_of(np.arange(packings) < hits).low > least for hits in range(packings + 1)]
+    for part, power in powers:
+        assert binom.pmf(np.arange(packings + 1), packings, part)[clear].sum() == pytest.approx(power, abs=0.005)
+
+
+def test_what_no_packing_has_is_rare_from_146_packings_on():
+    assert part_of(np.zeros(145)).high > RARE > part_of(np.zeros(146)).high
+
+
 def test_the_notes_quote_the_power():
     notes = (ROOT / "docs" / "reproduction-notes.md").read_text(encoding="utf-8")
     rows = [
@@ -665,6 +693,7 @@ def test_the_notes_quote_the_power():
         for cases, scatter, row in TREND_POWER
     ]
     rows += [f"| 3 x 20 packings | {' | '.join(f'{power:.0%}' for _, power in ORDER_POWER)} |"]
+    rows += [f"| {n} packings | {' | '.join(f'{power:.0%}' for _, power in row)} |" for n, _, row in PART_POWER]
     assert [row for row in rows if row.replace("%", " %") not in notes] == []
 
 

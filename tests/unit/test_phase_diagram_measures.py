@@ -28,6 +28,7 @@ from granular_response_paper.survey.crossover import (
     grown,
     lean,
     passed,
+    seen_in_samples,
     shape,
     shape_of_single,
     shapes_of_samples,
@@ -149,6 +150,22 @@ def test_a_large_ensemble_knows_better_how_far_its_means_dip() -> None:
     assert 0.1 < np.mean(shapes[1] > 0.0) < 0.9
     few, many = (np.ptp(np.quantile(np.mean(one > 0.0, axis=1), [0.025, 0.975])) for one in shapes)
     assert many < 0.7 * few
+
+
+def test_a_crossover_is_seen_in_samples_of_an_ensemble_that_has_one() -> None:
+    """In all samples of packings that go from one peak to two, in none of packings that do not."""
+    force = np.array([1.0, 2.0, 4.0])
+    path = np.stack([bumps(0.0), bumps(4.0), bumps(12.0)])
+    for responses, expected in ((path, 1.0), (path[[0, 0, 0]], 0.0), (path[[2, 2, 2]], 0.0)):
+        alike = Ensemble(force, np.tile(responses, (20, 1, 1)), 10)
+        np.testing.assert_array_equal(seen_in_samples(alike, X, 6.0, 5, seed=0, draws=3, samples=4), expected)
+    # half of the packings never split, and three of five must be at rest at the last force
+    mixed = np.stack([path, path[[0, 0, 0]]] * 10)
+    few = seen_in_samples(Ensemble(force, mixed, 10), X, 6.0, 5, seed=0, draws=20)
+    assert 0.0 < few.mean() <= 1.0
+    mixed[:12, 2] = np.nan
+    fewer = seen_in_samples(Ensemble(force, mixed, 10), X, 6.0, 5, seed=0, draws=20)
+    assert fewer.mean() < few.mean()
 
 
 def test_one_peak_beside_the_middle_is_one() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 
 import numpy as np
 import xarray as xr
@@ -300,30 +300,20 @@ def _away(data: Data, words: Bounds) -> tuple[NDArray[np.bool_], NDArray[np.bool
 
 @CLAIMS.measures("D5")
 def five_enough(data: Data, words: Bounds) -> Finding:
-    shapes = at(data.get(GROUP, "shapes"), width=6.0, number=FEW)
-    two_peaked, shape = (shapes[name].transpose("case", "step").values for name in ("two_peaked_means", "shape"))
-    agree = np.where(shape > shapes.attrs.get("tolerance", words["visible"]), two_peaked, 1.0 - two_peaked)
-    agree[~np.logical_or(*_away(data, words))] = np.nan
-    typical = {}
-    for start in STARTS:
-        for delta in _disorders(shapes):
-            here = agree[_is(shapes, delta, start)]
-            here = here[np.isfinite(here)]
-            if here.size:
-                found = over_realizations(here, np.mean) if here.size > 2 else Quantity.range(here, float(here.mean()))
-                name = f"polydispersity {delta:g}, {title(start, delta)}"
-                typical[name] = replace(found, test="bootstrap of the mean over forces")
-    crossover = data.get(GROUP, "crossovers")
-    fewest = int(crossover["realizations"].values[crossover["polydispersity"].values > 0.0].min())
-    return asked.each(
-        "means of five have as many peaks as the mean of all in the part of the draws: ",
-        typical,
-        lambda part: Condition(
-            "draws of five that agree", part, 1.0 - words["holds"], words=("holds", "similar"), unit="%"
-        ),
-        "%",
-        f"Five are drawn from {fewest} or more",
-    )
+    """A statement on samples of five: it must hold in most of them, wherever the mean of all has a crossover."""
+    study, rows = at(data.get(GROUP, "crossovers"), width=6.0), []
+    for start, delta in product(STARTS, _disorders(study)):
+        here = _is(study, delta, start) & (study["kind"].values == FOUND)
+        cases = [study.isel(case=k) for k in np.flatnonzero(here)]
+        seen = [replace(_with_interval(case, "seen"), test=f"samples of {FEW}, bootstrap") for case in cases]
+        conditions = [
+            Condition(f"samples of five with a crossover, friction {float(case['friction']):g}", one, 0.5, unit="%")
+            for case, one in zip(cases, seen, strict=True)
+        ]
+        if conditions:
+            name = f"polydispersity {delta:g}, {title(start, delta)}"
+            rows.append((", ".join(one.text("%") for one in seen), Reading(name, *conditions)))
+    return asked.told("part of the samples of five whose mean goes from one peak to two, by friction: ", rows)
 
 
 @CLAIMS.measures("D6")

@@ -242,7 +242,7 @@ def _datasets(
         of_each[name] = of_each[name].astype(np.float32)
     of_each["kind"] = of_each["kind"].copy(data=np.nan_to_num(of_each["kind"].values, nan=-1).astype(np.int8))
 
-    crossovers = of_mean[["force", "kind", "interval", "draw_part", "draws", "limits"]]
+    crossovers = of_mean[["force", "kind", "interval", "draw_part", "draws", "limits", "seen", "seen_interval"]]
     force = {"applied_force": variable(("case", "step"), source["force"].values, f"applied force {FORCE}")}
     spread = of_each[["spread", "spread_interval", "largest_step", "largest_step_interval"]].variables
     shapes = xr.Dataset(force | dict(of_mean[["shape", "shape_interval", "two_peaked_means"]].variables) | dict(spread))
