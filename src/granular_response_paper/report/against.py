@@ -167,8 +167,6 @@ ROWS: tuple[Row, ...] = (
     Row(22, "all", "δ (Fig. 21)", (0.01, 0.1, 0.25), "phase_diagram/crossovers:polydispersity"),
     Row(22, "all", "w, R (Fig. 21)", (6.0,), "phase_diagram/crossovers:width"),
     Row(23, "all", "δ", (0.01,), f"{_TWO}/responses@packing.polydispersity"),
-    Row(23, "all", "initial lattice constant, R (Sec. III.C)", (2.0,), f"{_TWO}/responses@packing.lattice_constant",
-        "one with the contacts and peaks of Secs. VI and VII; so in Figs. 20, 21 and 24"),
     Row(23, "all", "µ", (0.05,), f"{_TWO}/responses@contact.friction"),
     Row(23, "all", "µ_wall", (0.0,), f"{_TWO}/responses@wall.friction"),
     Row(23, "all", "k_T/k_N", (0.8,), f"{_TWO}/responses@contact.stiffness_ratio"),

@@ -199,7 +199,7 @@ def seen_in_samples(
     seed: int,
     tolerance: float = 0.0,
     draws: int = 100,
-    samples: int = 100,
+    samples: int = 400,
 ) -> FloatArray:
     """(draws,) parts of samples of ``number`` realizations whose mean has a crossover, each from a draw of them.
 

@@ -304,7 +304,7 @@ def five_enough(data: Data, words: Bounds) -> Finding:
     study, rows = at(data.get(GROUP, "crossovers"), width=6.0), []
     for start, delta in product(STARTS, _disorders(study)):
         here = _is(study, delta, start) & (study["kind"].values == FOUND)
-        cases = [study.isel(case=k) for k in np.flatnonzero(here)]
+        cases = sorted((study.isel(case=k) for k in np.flatnonzero(here)), key=lambda case: float(case["friction"]))
         seen = [replace(_with_interval(case, "seen"), test=f"samples of {FEW}, bootstrap") for case in cases]
         conditions = [
             Condition(f"samples of five with a crossover, friction {float(case['friction']):g}", one, 0.5, unit="%")
@@ -313,7 +313,7 @@ def five_enough(data: Data, words: Bounds) -> Finding:
         if conditions:
             name = f"polydispersity {delta:g}, {title(start, delta)}"
             rows.append((", ".join(one.text("%") for one in seen), Reading(name, *conditions)))
-    return asked.told("part of the samples of five whose mean goes from one peak to two, by friction: ", rows)
+    return asked.told("part of the samples of five whose mean goes from one peak to two, by growing friction: ", rows)
 
 
 @CLAIMS.measures("D6")
