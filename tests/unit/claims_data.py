@@ -41,7 +41,7 @@ ELASTIC = 0.07 * np.exp(-((X / 20.0) ** 2))
 
 def friction_study():
     floor = [3.5, 19.0, 10.9]
-    depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in floor]
+    depth = [np.minimum(24.0, 24.0 * FORCES / f) for f in (3.5, 19.0, 19.0)]
     opened = np.round(10.0 * FORCES)
     response = dataset(
         {"friction": [0.0, 0.2, 1.0], "force": FORCES, "x": ("floor_disk", X)},
@@ -403,6 +403,8 @@ def phases_study():
         "draws": (("width", "case", "draw"), np.stack([draws] * 2)),
         "limits": (("width", "case", "end"), np.tile([0.01, 400.0], (2, n, 1))),
     }
+    seen = {"seen": (("width", "case"), np.full((2, n), 0.9))}
+    seen["seen_interval"] = (("width", "case", "level"), np.tile([0.8, 0.9, 0.95], (2, n, 1)))
     tolerances = [0.005, 0.02]
     definitions = {
         name: ((*dims[:2], "tolerance", *dims[2:]), np.repeat(values[:, :, None], 2, axis=2))
@@ -417,7 +419,7 @@ def phases_study():
     away = np.maximum(0.0, small / (apart * np.repeat(ends, 2)[:, None, None]) - 1.0)
     return {
         "crossovers": dataset(
-            {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers
+            {**cases, **levels, "realizations": ("case", [few] * n)}, **crossovers, **seen
         ).assign_attrs(tolerance=0.01),
         "medians": dataset({**cases, **levels}, **crossovers, collapsed=("case", np.where(delta == 0.25, 3, 0))),
         "definitions": dataset(
@@ -449,10 +451,9 @@ def phases_study():
             {**cases, **levels, "realizations": ("case", [few] * n)},
             dip=(("width", "case"), np.stack([dip] * 2)),
             dip_interval=(("width", "case", "level"), np.stack([spread[:, 0]] * 2)),
-            two_peaked_means=(("width", "case"), np.stack([np.where(dip > 0.01, 0.99, 0.1)] * 2)),
-            two_peaked_means_interval=(
-                ("width", "case", "level"),
-                np.stack([np.where(dip[:, None] > 0.01, [0.9, 0.99, 1.0], [0.0, 0.1, 0.3])] * 2),
+            dip_of_means=(("width", "case", "level"), np.stack([spread[:, 0]] * 2)),
+            dip_of_means_interval=(
+                ("width", "case", "level", "end"), np.stack([spread[:, 0, :, None] + [-0.01, 0.01]] * 2)
             ),
         ),
         "packings": dataset(

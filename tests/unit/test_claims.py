@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 import yaml
 from claims_data import FORCES, STARTS, dataset, everything, pile_study
+from scipy.stats import binom
 
 from granular_response.state import SLIDING, STICKING
 from granular_response.store import files as store
@@ -30,7 +31,14 @@ from granular_response_paper.claims.claim import (
 from granular_response_paper.claims.verdict import MEANINGS, ROBUSTNESS_MEANINGS, judge, robustness_of, verdict_of
 from granular_response_paper.groups import NAMES
 from granular_response_paper.groups.frictionless_crossover.claims import size_in_steps
-from granular_response_paper.groups.phase_diagram.claims import FOUND, Crossover, evident_samples, order_of, trend
+from granular_response_paper.groups.phase_diagram.claims import (
+    FOUND,
+    RARE,
+    Crossover,
+    evident_samples,
+    order_of,
+    trend,
+)
 
 ROOT = Path(__file__).parents[2]
 CLAIM = {claim.id: claim for claim in table.CLAIMS}
@@ -226,17 +234,22 @@ ANYWHERE = np.concatenate(
     ]
 )
 
-#: The literal start renamed to one wider than the largest disks need, with two peaks in all means of both slabs.
+#: The literal start renamed to one wider than the largest disks need, with deep dips in all means of both slabs.
 WIDER = (
     put(PHASES, "starts", "lattice_constant", [STARTS[0]] * 12 + ["2.5"] * 2),
-    start(PHASES, "starts", "two_peaked_means_interval", "2.5", 1.0),
+    start(PHASES, "starts", "dip_of_means_interval", "2.5", 1.0),
 )
 
 #: Two peaks, and visible dips at x = 0, that come the earlier the larger the friction.
 TURNED = put(FRICTION, "response", "double_peaked", np.arange(143) > [[20], [10], [5]])
 EARLY_DIPS = put(FRICTION, "response", "central_dip", 0.01 * (FORCES - [[11.0], [8.0], [5.0]]))
 
+#: The region of open contacts grows again at the largest friction, at 15 mg and at all forces.
 SIZES = ("opened_contacts", "teardrop_depth", "teardrop_width")
+LARGER_AGAIN = [
+    *(put(FRICTION, "friction_axis", name, [110, 80, 40, 70]) for name in SIZES),
+    *(scaled(FRICTION, "response", name, [[1.0], [1.0], [9.0]]) for name in SIZES),
+]
 
 #: Anisotropy that grows again with friction, by both measures.
 AGAIN = (
@@ -275,7 +288,8 @@ PLANTED = [
     ("F11", scaled(FRICTION, "response", "response_at_centre", 1.0 + 0.1 * np.arange(3)[:, None]), "derivation"),
     ("F11", scaled(FRICTION, "response", "response_at_centre", np.geomspace(1.0, 9.0, 143)), "contradicted"),
     ("F12", put(FRICTION, "friction_axis", "opened_contacts", [110, 80, 40, 70]), DEPENDS),
-    ("F12", both(*(put(FRICTION, "friction_axis", n, [110, 80, 40, 70]) for n in SIZES)), "contradicted"),
+    ("F12", both(*LARGER_AGAIN[:3]), DEPENDS),
+    ("F12", both(*LARGER_AGAIN), "contradicted"),
     ("R12", sliding(lambda contact, state: contact < np.array([0, 2, 8, 8])[state]), DEPENDS),
     ("R12", sliding(lambda contact, state: (contact > 3) & (state > 0)), "contradicted"),
     ("R1", moved(FRICTION, "linear_range", 1.0, 2.0, 2.1), DEPENDS),
@@ -325,9 +339,10 @@ PLANTED = [
     ("P3", put("pile_dip", "piles", "central_width", [16.0, 16.0, 30.0]), DEPENDS),
     ("T1a", scaled("torque", "reach", "force_change", 0.1), "contradicted"),
     ("T1b", put("torque", "reach", "stress_change", 0.3), DEPENDS),
-    ("D1", put(PHASES, "starts", "two_peaked_means_interval", [0.01, 0.1, 0.3]), "undecided"),
-    ("D1", start(PHASES, "starts", "two_peaked_means_interval", STARTS[1], 0.01), DEPENDS),
-    ("D1", put(PHASES, "starts", "two_peaked_means_interval", 0.99), "contradicted"),
+    ("D1", put(PHASES, "starts", "dip_of_means_interval", [0.0, 0.6]), "undecided"),
+    ("D1", start(PHASES, "starts", "dip_of_means_interval", STARTS[1], 0.0), DEPENDS),  # one peak in both slabs
+    ("D1", put(PHASES, "starts", "dip_of_means_interval", 0.9), "contradicted"),  # two in both
+    ("D1", put(PHASES, "starts", "dip_of_means_interval", 0.3), "contradicted"),  # peaks that are not very distinct
     ("D1", put(PHASES, "starts", "dip", -0.1), "reproduced"),  # of all packings: quoted, not judged
     ("D2", put(PHASES, "linear_range", "response_at_centre", SOME), "undecided"),
     ("D2", put(PHASES, "linear_range", "response_at_centre", LONGER), "contradicted"),
@@ -338,8 +353,9 @@ PLANTED = [
     ("D3a", put(PHASES, "crossovers", "draws", INFINITE), "undecided"),
     ("D3b", put(PHASES, "crossovers", "kind", [1, 0, 0] * 4 + [0, 0]), "reproduced"),
     ("D4", put(PHASES, "shapes", "largest_step_interval", [0.6, 0.7, 0.8]), DEPENDS),
-    ("D5", put(PHASES, "shapes", "two_peaked_means", 0.5), "contradicted"),
-    ("D5", start(PHASES, "shapes", "two_peaked_means", STARTS[1], 0.5), DEPENDS),
+    ("D5", put(PHASES, "crossovers", "seen_interval", 0.4), "contradicted"),
+    ("D5", put(PHASES, "crossovers", "seen_interval", [0.4, 0.6, 0.7]), "undecided"),
+    ("D5", start(PHASES, "crossovers", "seen_interval", STARTS[1], 0.4), DEPENDS),
     ("D6", scaled(PHASES, "crossovers", "draws", by_case([1] * 3 + [100] * 11)), "contradicted"),
     ("D7a", scaled(PHASES, "packings", "coordination_number_bulk", 1.2), DEPENDS),
     ("D7a", start(PHASES, "packings", "coordination_number", STARTS[1], 4.6), DEPENDS),
@@ -589,7 +605,7 @@ def test_a_number_says_its_test_and_how_many_packings_it_has(good):
     rows = {row["id"]: row for row in table.document(Data(good), table.evaluate(Data(good)))["table"]}
     assert all(row["tests"] and row["samples"][0] >= 1 for row in rows.values())
     assert rows["F2"]["tests"] == ["both ends of the bracket"] and rows["F2"]["samples"] == [1, 1]
-    assert rows["D1"]["tests"] == ["means of 15, bootstrap"] and rows["D1"]["samples"] == [8, 8]
+    assert rows["D1"]["tests"] == ["quantile of means of 15, bootstrap"] and rows["D1"]["samples"] == [8, 8]
     assert rows["D3a"]["tests"][0] == "Kendall's tau of the draws"
     assert rows["A5"]["tests"][1] == "Jonckheere's statistic, bootstrap"
     condition = rows["U2"]["readings"][0]["conditions"][0]
@@ -651,6 +667,25 @@ def test_the_power_of_the_order_of_realizations(step, power):
     assert clear == pytest.approx(power, abs=0.1)
 
 
+#: The same of a part of so many packings that is to be above a half (D2), or not rare (U2), if it is in truth so large.
+PART_POWER = [
+    (10, 0.5, [(0.5, 0.01), (0.7, 0.15), (0.8, 0.38), (0.9, 0.74)]),
+    (20, 0.5, [(0.5, 0.02), (0.7, 0.42), (0.8, 0.80), (0.9, 0.99)]),
+    (150, 0.025, [(0.025, 0.01), (0.05, 0.34), (0.1, 0.97), (0.15, 1.0)]),
+]
+
+
+@pytest.mark.parametrize(("packings", "least", "powers"), PART_POWER)
+def test_the_power_of_a_part(packings, least, powers):
+    clear = [part_of(np.arange(packings) < hits).low > least for hits in range(packings + 1)]
+    for part, power in powers:
+        assert binom.pmf(np.arange(packings + 1), packings, part)[clear].sum() == pytest.approx(power, abs=0.005)
+
+
+def test_what_no_packing_has_is_rare_from_146_packings_on():
+    assert part_of(np.zeros(145)).high > RARE > part_of(np.zeros(146)).high
+
+
 def test_the_notes_quote_the_power():
     notes = (ROOT / "docs" / "reproduction-notes.md").read_text(encoding="utf-8")
     rows = [
@@ -658,6 +693,7 @@ def test_the_notes_quote_the_power():
         for cases, scatter, row in TREND_POWER
     ]
     rows += [f"| 3 x 20 packings | {' | '.join(f'{power:.0%}' for _, power in ORDER_POWER)} |"]
+    rows += [f"| {n} packings | {' | '.join(f'{power:.0%}' for _, power in row)} |" for n, _, row in PART_POWER]
     assert [row for row in rows if row.replace("%", " %") not in notes] == []
 
 

@@ -27,10 +27,11 @@ from granular_response_paper.survey.crossover import (
     folded,
     grown,
     lean,
-    part_of_samples,
     passed,
+    seen_in_samples,
     shape,
     shape_of_single,
+    shapes_of_samples,
     singles,
     two_peaked_means,
     weights,
@@ -138,16 +139,33 @@ def test_means_of_a_few_are_alike_far_from_the_crossover() -> None:
     assert 0.0 < part[1:-1].max() < 1.0 or 0.0 < part[1:-1].min() < 1.0
 
 
-def test_a_large_ensemble_knows_better_which_part_of_its_means_has_two_peaks() -> None:
-    """The part of means of fifteen of wrong ensembles is none or all; of a mixed one it is known to a few per cent."""
-    assert part_of_samples(np.tile(bumps(0.0), (40, 1)), X, 6.0, 15, seed=0).max() == 0.0
-    assert part_of_samples(np.tile(bumps(12.0), (40, 1)), X, 6.0, 15, seed=0).min() == 1.0
+def test_a_large_ensemble_knows_better_how_far_its_means_dip() -> None:
+    """Means of fifteen alike dip as each does; of a mixed ensemble by something between, known the better the more."""
+    for place in (0.0, 12.0):
+        alike = shapes_of_samples(np.tile(bumps(place), (40, 1)), X, 6.0, 15, seed=0)
+        np.testing.assert_allclose(alike, shape(X, bumps(place), 6.0), atol=1e-12)
     # two thirds of the packings have one peak and the others two, so that means of fifteen have either
     whole = np.stack([bumps(4.0), bumps(4.0), bumps(11.0)])
-    parts = [part_of_samples(np.tile(whole, (n, 1)), X, 6.0, 15, seed=0) for n in (5, 60)]
-    assert 0.1 < parts[1].mean() < 0.9
-    few, many = (np.ptp(np.quantile(part, [0.025, 0.975])) for part in parts)
+    shapes = [shapes_of_samples(np.tile(whole, (n, 1)), X, 6.0, 15, seed=0) for n in (5, 60)]
+    assert 0.1 < np.mean(shapes[1] > 0.0) < 0.9
+    few, many = (np.ptp(np.quantile(np.mean(one > 0.0, axis=1), [0.025, 0.975])) for one in shapes)
     assert many < 0.7 * few
+
+
+def test_a_crossover_is_seen_in_samples_of_an_ensemble_that_has_one() -> None:
+    """In all samples of packings that go from one peak to two, in none of packings that do not."""
+    force = np.array([1.0, 2.0, 4.0])
+    path = np.stack([bumps(0.0), bumps(4.0), bumps(12.0)])
+    for responses, expected in ((path, 1.0), (path[[0, 0, 0]], 0.0), (path[[2, 2, 2]], 0.0)):
+        alike = Ensemble(force, np.tile(responses, (20, 1, 1)), 10)
+        np.testing.assert_array_equal(seen_in_samples(alike, X, 6.0, 5, seed=0, draws=3, samples=4), expected)
+    # half of the packings never split, and three of five must be at rest at the last force
+    mixed = np.stack([path, path[[0, 0, 0]]] * 10)
+    few = seen_in_samples(Ensemble(force, mixed, 10), X, 6.0, 5, seed=0, draws=20)
+    assert 0.0 < few.mean() <= 1.0
+    mixed[:12, 2] = np.nan
+    fewer = seen_in_samples(Ensemble(force, mixed, 10), X, 6.0, 5, seed=0, draws=20)
+    assert fewer.mean() < few.mean()
 
 
 def test_one_peak_beside_the_middle_is_one() -> None:
@@ -396,8 +414,9 @@ def test_from_stored_ensembles_to_a_diagram(stored, tmp_path) -> None:
     np.testing.assert_allclose(side["contacts"], 4.2, atol=0.02)
     np.testing.assert_allclose(side["missing_horizontal"], 0.75, atol=0.02)
     np.testing.assert_array_equal(side["dip"].values[:, 0], found["shapes"]["shape"].values[:, 1, 2])
-    low, high = (side["two_peaked_means_interval"].values[..., end] for end in (0, -1))
-    assert np.all((low <= side["two_peaked_means"]) & (side["two_peaked_means"] <= high))
+    low, high = (side["dip_of_means_interval"].values[..., end] for end in (0, -1))
+    assert np.all((low <= side["dip_of_means"]) & (side["dip_of_means"] <= high))
+    assert np.all(np.diff(side["dip_of_means"], axis=-1) >= 0.0)
     assert np.all(np.diff(side["contacts_interval"], axis=1) >= 0.0)
     store.write(tmp_path / "phase_diagram.nc", found)
     drawn = figures.draw(store.read(tmp_path / "phase_diagram.nc"))

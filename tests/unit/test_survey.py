@@ -90,7 +90,7 @@ def test_mistakes_are_one_line_each(file, tmp_path):
 
 
 def test_the_survey_extends_the_ensembles_of_the_pipeline():
-    """Scene, protocol and seeds are those of polydisperse_averages, so its realizations are among the survey's."""
+    """Scene, protocol and seeds are those of polydisperse_averages."""
     pipeline = yaml.safe_load((ROOT / "params.yaml").read_text())["polydisperse_averages"]
     own = yaml.safe_load((ROOT / "survey" / "params.yaml").read_text())
     for key in ("scene", "time_step_part", "longest_time_step", "collapse_depth"):

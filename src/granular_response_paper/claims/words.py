@@ -48,7 +48,7 @@ TABLE: tuple[Word, ...] = (
     Word("holds", 0.05, "Holds, reflects exactly, agrees: the symbols of a plot, a twentieth of its height, overlap."),
     Word("quite well", 0.2, "Quite well: seen to differ, and by at most a fifth."),
     Word("gradual", 0.5, "Gradual: no step between neighbouring forces by half of the largest response; sharp: one."),
-    Word("marked", 0.5, "Marked, significant, strong, considerable: changed by at least half."),
+    Word("marked", 0.5, "Marked, significant, strong, considerable, very distinct: by at least half."),
     Word("several", 3.0, "Several hundred is at least three hundred."),
 )
 

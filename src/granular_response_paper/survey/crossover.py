@@ -174,28 +174,48 @@ def two_peaked_means(
     return result
 
 
-def part_of_samples(
-    responses: FloatArray,
+def shapes_of_samples(
+    responses: FloatArray, x: FloatArray, width: float, number: int, *, seed: int, draws: int = 200, samples: int = 400
+) -> FloatArray:
+    """(draws, samples) shapes of means of ``number`` realizations, each row from a draw of the realizations.
+
+    What an ensemble of symmetric responses (r, x) knows of such means: each draw holds r of them, with replacement, and
+    of each ``samples`` means are taken.
+    """
+    rng = np.random.default_rng(seed)
+    shapes = np.empty((draws, samples))
+    for row in shapes:
+        drawn = responses[rng.integers(0, len(responses), len(responses))]
+        row[:] = shape(x, drawn[rng.integers(0, len(drawn), (samples, number))].mean(axis=1), width)
+    return shapes
+
+
+def seen_in_samples(
+    ensemble: Ensemble,
     x: FloatArray,
     width: float,
     number: int,
     *,
     seed: int,
     tolerance: float = 0.0,
-    draws: int = 200,
-    samples: int = 100,
+    draws: int = 100,
+    samples: int = 400,
 ) -> FloatArray:
-    """(draws,) parts of means of ``number`` realizations with two peaks, each from a draw of the realizations.
+    """(draws,) parts of samples of ``number`` realizations whose mean has a crossover, each from a draw of them.
 
-    What an ensemble of symmetric responses (r, x) knows of the part: each draw holds r of them, with replacement, and
-    of each ``samples`` means are taken.
+    As :func:`shapes_of_samples` draws them, but each with its whole load path. A mean needs as large a part of its
+    realizations at rest as that of the ensemble.
     """
     rng = np.random.default_rng(seed)
+    count = len(ensemble.response)
+    few = Ensemble(ensemble.force, ensemble.response, int(np.ceil(number * ensemble.least / count)))
     parts = np.empty(draws)
     for draw in range(draws):
-        drawn = responses[rng.integers(0, len(responses), len(responses))]
-        means = drawn[rng.integers(0, len(drawn), (samples, number))].mean(axis=1)
-        parts[draw] = np.mean(shape(x, means, width) > tolerance)
+        drawn = rng.integers(0, count, count)
+        picked = drawn[rng.integers(0, count, (samples, number))]
+        weights = np.stack([np.bincount(row, minlength=count) for row in picked]).astype(float)
+        shapes = shape(x, few.means(weights), width)
+        parts[draw] = np.mean(passed(ensemble.force, grown(shapes), tolerance)[1] == FOUND)
     return parts
 
 
@@ -240,6 +260,8 @@ class Crossing(Crossover):
     two_peaked_means: FloatArray = column(
         "part of the means of so many realizations, drawn at random, that have two peaks", "step", "number"
     )
+    seen: float = column("part of the samples of the least such number, drawn at random, whose mean has a crossover")
+    seen_interval: FloatArray = column("quantiles of that part over draws of the realizations", "level")
     others: tuple[Crossover, ...]  #: by other tolerances
 
 
@@ -276,6 +298,7 @@ def cross(
     known = np.isfinite(drawn).all(axis=0)
     spread[known] = np.quantile(drawn[:, known], LEVELS, axis=0).T
     parts = [two_peaked_means(ensemble, x, width, n, draws=draws, seed=seed, tolerance=tolerance) for n in numbers]
+    seen = seen_in_samples(ensemble, x, width, min(numbers), seed=seed, tolerance=tolerance)
     return Crossing(
         **vars(usual),
         draw_part=np.array([np.isfinite(found).mean(), (found == -np.inf).mean(), (found == np.inf).mean()]),
@@ -283,6 +306,8 @@ def cross(
         shape=shapes,
         shape_interval=spread,
         two_peaked_means=np.stack(parts, axis=-1),
+        seen=float(seen.mean()),
+        seen_interval=np.quantile(seen, LEVELS),
         others=tuple(at(limit) for limit in others),
     )
 

@@ -34,7 +34,6 @@ def _joined(parts: list[xr.Dataset]) -> xr.Dataset:
         for name in {str(name) for part in parts for name in part.sizes} - {"case"}
     }
     variables = {}
-    # what files of earlier versions lack is left out
     for name in [name for name in parts[0].variables if all(name in part.variables for part in parts)]:
         first = parts[0].variables[name]
         filled = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -338,15 +339,20 @@ def elastic_without_friction(data: Data, words: Bounds) -> Finding:
 
 @CLAIMS.measures("F12")
 def region_and_friction(data: Data, words: Bounds) -> Finding:
+    """Where the region has not reached the floor, and at the force of Fig. 12."""
     sizes = {"contacts": "opened_contacts", "depth": "teardrop_depth", "width": "teardrop_width"}
-    axis = data.get(GROUP, "friction_axis").sortby("friction")
+    axis, response = (data.get(GROUP, name).sortby("friction") for name in ("friction_axis", "response"))
+    inside = (response["opened_contacts"].values[0] > 0.0) & (response["reaches_floor"].values[0] == 0.0)
+    CLAIMS.needs(inside.any(), "response holds no open region without friction that has not reached the floor")
+    last = float(response["force"].values[inside].max())
+    studies = {f"up to {last:g} mg": response.isel(force=inside), "15 mg": axis.expand_dims("force", axis=-1)}
     readings = []
-    for what, name in sizes.items():
-        size = axis[name].values
-        CLAIMS.needs(size[0] > 0.0, "friction_axis holds no open region without friction")
-        growth = float(np.diff(size).max() / size[0])
+    for (force, study), (what, name) in product(studies.items(), sizes.items()):
+        size = study[name].transpose("friction", "force").values
+        CLAIMS.needs((size[0] > 0.0).all(), "friction_axis holds no open region without friction")
+        growth = float((np.diff(size, axis=0) / size[0]).max())
         condition = asked.at_most("largest growth with friction, per size without", growth, words, "visible", "%")
-        readings.append(Reading(what, condition))
+        readings.append(Reading(f"{what}, {force}", condition))
     return Finding(
         "opened contacts at 15 mg: " + asked.listed(asked.by_friction(axis, "opened_contacts"), ".0f"), readings
     )

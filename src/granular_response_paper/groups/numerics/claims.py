@@ -136,11 +136,11 @@ def disorder(data: Data, words: Bounds) -> Finding:
 
     def difference(picked: FloatArray, axis: int) -> FloatArray:
         """Largest difference of the means of the realizations ``picked``, per largest value of the finished one."""
-        early, exact = stopped[picked].mean(axis=axis), finished[picked].mean(axis=axis)
+        early, exact = (one[picked.astype(int)].mean(axis=axis) for one in (stopped, finished))
         return np.asarray(np.abs(early - exact).max(axis=-1) / exact.max(axis=-1))
 
     single = float(np.median(np.abs(stopped - finished).max(axis=1) / finished.max(axis=1)))
-    found = over_realizations(np.arange(number), lambda picked, axis: difference(picked.astype(int), axis))
+    found = over_realizations(np.arange(number), difference)
     return asked.one_reading(
         f"mean of {number}: {found.text('%')} of its largest value; single realizations: median {single:.2%}",
         "1 %, as for floor forces",

@@ -36,7 +36,7 @@ from granular_response_paper.survey.crossover import (
     Singles,
     cross,
     folded,
-    part_of_samples,
+    shapes_of_samples,
     singles,
     weights,
 )
@@ -177,8 +177,8 @@ def _starts(source: xr.Dataset, parameters: Parameters, shapes: xr.Dataset, pack
 def _means_of_few(
     starts: xr.Dataset, source: xr.Dataset, parameters: Parameters, x: FloatArray
 ) -> dict[str, xr.Variable]:
-    """Which part of the means of the largest of ``numbers`` realizations have two peaks, for every start."""
-    number, parts = max(parameters.numbers), []
+    """How far means of the largest of ``numbers`` realizations dip at x = 0, for every start."""
+    number, quantiles = max(parameters.numbers), []
     for width in parameters.widths:
         for start in range(starts.sizes["case"]):
             same = [source[name].values == starts[name].values[start] for name in CASE]
@@ -187,14 +187,17 @@ def _means_of_few(
             step = int(np.argmin(np.abs(ensemble.force - float(starts["applied_force"][start]))))
             rows = folded(ensemble.response[:, step])
             rows = rows[np.isfinite(rows[:, 0])]
-            parts.append(part_of_samples(rows, x, width, number, seed=parameters.seed, tolerance=parameters.tolerance))
-    every = np.reshape(parts, (len(parameters.widths), starts.sizes["case"], -1))
-    text = f"part of the means of {number} realizations, drawn at random, that have two peaks"
-    quantile = "quantiles of that part over draws of the realizations"
+            shapes = shapes_of_samples(rows, x, width, number, seed=parameters.seed)
+            each = np.quantile(shapes, LEVELS, axis=1)
+            ends = np.quantile(each, (LEVELS[0], LEVELS[-1]), axis=1).T
+            quantiles.append(np.column_stack([np.quantile(shapes, LEVELS), ends]))
+    every = np.reshape(quantiles, (len(parameters.widths), starts.sizes["case"], len(LEVELS), 3))
+    text = f"quantiles of the shape of the means of {number} realizations, drawn at random"
+    dims = ("width", "case", "level")
     return {
-        "two_peaked_means": variable(("width", "case"), every.mean(axis=-1), text),
-        "two_peaked_means_interval": variable(
-            ("width", "case", "level"), np.moveaxis(np.quantile(every, LEVELS, axis=-1), 0, -1), quantile
+        "dip_of_means": variable(dims, every[..., 0], text),
+        "dip_of_means_interval": variable(
+            (*dims, "end"), every[..., 1:], "ends of 95 % of these quantiles over draws of the realizations"
         ),
     }
 
@@ -239,7 +242,7 @@ def _datasets(
         of_each[name] = of_each[name].astype(np.float32)
     of_each["kind"] = of_each["kind"].copy(data=np.nan_to_num(of_each["kind"].values, nan=-1).astype(np.int8))
 
-    crossovers = of_mean[["force", "kind", "interval", "draw_part", "draws", "limits"]]
+    crossovers = of_mean[["force", "kind", "interval", "draw_part", "draws", "limits", "seen", "seen_interval"]]
     force = {"applied_force": variable(("case", "step"), source["force"].values, f"applied force {WEIGHTS}")}
     spread = of_each[["spread", "spread_interval", "largest_step", "largest_step_interval"]].variables
     shapes = xr.Dataset(force | dict(of_mean[["shape", "shape_interval", "two_peaked_means"]].variables) | dict(spread))

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from granular_response.plot import network, style
 from granular_response.state import WALL_NORMAL, Box, FloatArray, contact_force
@@ -43,10 +44,13 @@ OVER: dict[str, Any] = {
     "columnspacing": 0.7, "borderpad": 0.0, "borderaxespad": 0.2,
 }  # fmt: skip
 
+#: The initial lattice of the paper's text.
+LITERAL = "2.0"
+
 START_NAMES = {
     "2.0075": "lattice constant $2.0075\\bar R$",
     "touching-largest": "largest disks touch",
-    "2.0": "lattice constant $2\\bar R$",
+    LITERAL: "lattice constant $2\\bar R$",
 }
 
 #: Contacts of a disk without friction at ``delta`` = 0.01 in the paper (Sec. VII).
@@ -107,9 +111,15 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
 
 
 def _counts(parameters: Parameters, polydispersities: Sequence[float]) -> list[int]:
-    """Numbers of realizations of the disordered cases from the usual initial lattice."""
-    usual = [case for case in parameters.columns if case.lattice_constant == parameters.lattice_constant]
-    return sorted({one.realizations for one in usual if one.polydispersity and one.polydispersity in polydispersities})
+    """Numbers of realizations of the disordered cases from the initial lattice that is shown."""
+    shown = [case for case in parameters.columns if case.lattice_constant == parameters.start(case.polydispersity)]
+    return sorted({one.realizations for one in shown if one.polydispersity and one.polydispersity in polydispersities})
+
+
+def _shown(data: xr.Dataset) -> NDArray[np.intp]:
+    """The first case of each polydispersity and friction, in this order."""
+    pairs = np.stack([data["polydispersity"].values, data["friction"].values])
+    return np.unique(pairs, axis=1, return_index=True)[1]
 
 
 def _forces(data: xr.Dataset) -> Figure:
@@ -205,7 +215,7 @@ def _elastic(axes: Axes, averages: xr.Dataset, width: float) -> None:
 
 
 def _case(data: xr.Dataset, polydispersity: float, friction: float, start: str | None = None) -> int | None:
-    """The case with these values, if there is one; ``start`` None is any."""
+    """The case with these values, if there is one; ``start`` None is that of the first."""
     here = (data["polydispersity"].values == polydispersity) & (data["friction"].values == friction)
     if start is not None:
         here &= data["lattice_constant"].values == start
@@ -258,7 +268,7 @@ def _central_means(
         return
     smoothed = averages.isel(width=int(same[0]))
     for friction, look in looks.items():
-        case = _case(averages, delta, friction, str(averages["lattice_constant"].values[0]))
+        case = _case(averages, delta, friction)
         if case is None:
             continue
         one = smoothed.isel(case=case)
@@ -285,8 +295,7 @@ def _averages(data: xr.Dataset) -> Figure:
 
     A number in brackets is that of the realizations at rest, where not all of them are.
     """
-    usual = data["lattice_constant"].values[0]
-    keep = (data["lattice_constant"].values == usual) & (data["polydispersity"].values > 0.0)
+    keep = data["polydispersity"].values > 0.0
     deltas = sorted(set(data["polydispersity"].values[keep].tolist()))
     frictions = sorted(set(data["friction"].values[keep].tolist()))
     figure, panels = style.figure(
@@ -297,7 +306,7 @@ def _averages(data: xr.Dataset) -> Figure:
     for row, friction in enumerate(frictions):
         for column, delta in enumerate(deltas):
             axes = panels[row, column]
-            case = _case(data, delta, friction, usual)
+            case = _case(data, delta, friction)
             if case is None:
                 axes.set_axis_off()
                 continue
@@ -338,8 +347,7 @@ def _realizations(one: xr.Dataset) -> np.ndarray:
 
 def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     """Directions of contacts, coordination numbers, and how many packings bear a force."""
-    starts = data["lattice_constant"].values
-    usual = starts[0]
+    shown = _shown(data)
     deltas = sorted(set(data["polydispersity"].values.tolist()))
     colours = dict(zip(deltas, style.ordered_colours(len(deltas), of="polydispersity"), strict=True))
     disordered = [delta for delta in deltas if delta]
@@ -349,15 +357,12 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
         axes.remove()
     roses = [figure.add_subplot(grid[0, k], projection="polar") for k in range(len(disordered))]
     for axes, delta in zip(roses, disordered, strict=True):
-        _rose(axes, data, delta, usual, {"color": colours[delta], "linestyle": "-"})
-    for start in START_NAMES:
-        if start != usual and start in starts:
-            _rose(roses[0], data, disordered[0], start, {"color": style.BLACK, "linestyle": "--", "linewidth": 0.8})
+        _rose(axes, data, delta, None, {"color": colours[delta], "linestyle": "-"})
+    _rose(roses[0], data, disordered[0], LITERAL, {"color": style.BLACK, "linestyle": "--", "linewidth": 0.8})
     coordination, bearing = figure.add_subplot(grid[1, :-1]), figure.add_subplot(grid[1, -1])
     ends = []
     for delta, look in family(deltas, of="polydispersity"):
-        here = np.flatnonzero((data["polydispersity"].values == delta) & (starts == usual))
-        here = here[np.argsort(data["friction"].values[here])]
+        here = shown[data["polydispersity"].values[shown] == delta]
         here = here[np.isfinite(data["coordination_number_bulk"].values[here]).any(axis=1)]
         numbers, friction = data["coordination_number_bulk"].values[here], data["friction"].values[here]
         mean, spread = np.nanmean(numbers, axis=1), np.nanstd(numbers, axis=1)
@@ -368,7 +373,7 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     paper = rf"paper: {PAPER_CONTACTS:g} at $\delta = 0.01$, $\mu = 0$"
     style.paper_value(coordination, PAPER_CONTACTS, paper, along="y")
     label_ends(coordination, ends)
-    _bearing(bearing, averages.isel(case=np.flatnonzero(averages["lattice_constant"].values == usual)), colours)
+    _bearing(bearing, averages.isel(case=_shown(averages)), colours)
     bearing.set(xlabel=style.FORCE, ylabel="fraction of stable packings", xscale="log", ylim=(0.0, 1.05))
     if bearing.containers:  # some packings collapse
         bearing.legend(loc="lower left", fontsize=7.5)
@@ -376,7 +381,7 @@ def _packings(data: xr.Dataset, averages: xr.Dataset) -> Figure:
     return figure
 
 
-def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str, look: Mapping[str, Any]) -> None:
+def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str | None, look: Mapping[str, Any]) -> None:
     """The distribution of the directions of contacts without friction over the full turn."""
     case = _case(data, delta, 0.0, start)
     if case is not None:
@@ -392,8 +397,8 @@ def _rose(axes: Axes, data: xr.Dataset, delta: float, start: str, look: Mapping[
 def _bearing(axes: Axes, averages: xr.Dataset, colours: Mapping[float, str]) -> None:
     """The part of the packings at rest against the force with its standard error, where some of them collapse."""
     number = 0
-    for case in np.lexsort((averages["friction"].values, averages["polydispersity"].values)):
-        one = averages.isel(case=int(case))
+    for case in range(averages.sizes["case"]):
+        one = averages.isel(case=case)
         used = np.isfinite(one["force"].values)
         at_rest = one["count_at_rest"].values[used]
         total = _realizations(one)[used]

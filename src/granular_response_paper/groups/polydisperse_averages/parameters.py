@@ -66,24 +66,25 @@ class Parameters(EnsembleGroup):
     forces_picture: ForcesPicture
 
     @property
-    def lattice_constant(self) -> float | str:
-        """Of the start, where a case has none of its own."""
-        return self.scene.packing.model_dump()["lattice_constant"]
-
-    @property
     def columns(self) -> list[Case]:
         """The cases, one polydispersity each."""
+        usual = self.scene.packing.model_dump()["lattice_constant"]
         return [
             Case(
                 delta,
                 entry.friction,
-                self.lattice_constant if entry.lattice_constant is None else entry.lattice_constant,
+                usual if entry.lattice_constant is None else entry.lattice_constant,
                 entry.forces,
                 1 if delta == 0.0 else entry.realizations or self.realizations,
             )
             for entry in self.cases
             for delta in entry.polydispersities
         ]
+
+    def start(self, polydispersity: float) -> float | str:
+        """The initial lattice of its first case, which the figures show; that of the scene without a case."""
+        same = (case.lattice_constant for case in self.columns if case.polydispersity == polydispersity)
+        return next(same, self.scene.packing.model_dump()["lattice_constant"])
 
     @property
     def pictured(self) -> list[int]:

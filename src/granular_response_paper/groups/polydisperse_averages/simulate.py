@@ -64,7 +64,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     tasks[shown] = partial(tasks[shown], keep=(picture.force,))
     grid = [(delta, mu) for delta in linear.polydispersities for mu in linear.frictions]
     for k, (delta, mu) in enumerate(grid):
-        case = Case(delta, mu, asked.lattice_constant, linear.forces, 1, wall_friction=0.0)
+        case = Case(delta, mu, asked.start(delta), linear.forces, 1, wall_friction=0.0)
         tasks["linear range", k, 0] = ensemble_task(asked, case, 0)
 
     done = computed(tasks, "realizations")
