@@ -53,18 +53,21 @@ def test_a_uniform_solid_responds_as_the_elastic_slab():
     moved = solid.answer(np.broadcast_to(uniform.matrix(), (len(solid.area), 3, 3)), disk)
     measures = Measures(path)
     found = solid.floor_forces(moved)[measures.disks]
-    expected = response_of_layers(measures.x, layers=11, moduli=uniform, width=path.problem.packing.width)
+    height = path.rest.position[disk, 1]  # triangles end at the centres of the top row
+    expected = response_of_layers(
+        measures.x, layers=11, moduli=uniform, width=path.problem.packing.width, height=height
+    )
     assert found.sum() == pytest.approx(1.0, abs=1e-9)
-    assert np.abs(found - expected)[measures.interior].max() < 0.03 * expected.max()
+    assert np.abs(found - expected)[measures.interior].max() < 0.02 * expected.max()
 
 
 def test_triangles_that_are_not_averaged_are_the_network_without_friction():
     """Each contact is as long as its triangles say: only the turn of the contacts under their forces is left out."""
-    path, solid, expected = loaded(0.0, 1.5)
-    assert Measures(path).opened(path.at(1.5)) > 5
+    path, solid, expected = loaded(0.0, 4.0)
+    assert Measures(path).opened(path.at(4.0)) > 50
     disk = int(path.problem.load_disk[0])
     found = solid.floor_forces(solid.answer(measured(path, solid, 0.01), disk))
-    assert np.abs(found - expected).max() < 0.02 * expected.max()
+    assert np.abs(found - expected).max() < 0.03 * expected.max()
 
 
 def test_the_tangent_is_that_of_the_path_and_floors_bear_all(datasets):
