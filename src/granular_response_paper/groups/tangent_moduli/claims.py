@@ -1,4 +1,4 @@
-"""Claims B20 to B22, beyond the paper: moduli that predict two peaks, incremental elasticity (Secs. IV, V.C, VIII)."""
+"""Claims B27 to B29, beyond the paper: moduli that predict two peaks, incremental elasticity (Secs. IV, V.C, VIII)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _crossover(slab: xr.Dataset) -> Quantity:
     return Quantity.bracket(*slab["crossover"].values)
 
 
-@CLAIMS.measures("B20")
+@CLAIMS.measures("B27")
 def reach(data: Data, words: Bounds) -> Finding:
     found = {}
     for name, slab in _slabs(data).items():
@@ -43,7 +43,7 @@ def reach(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.measures("B21")
+@CLAIMS.measures("B28")
 def incrementally_elastic(data: Data, words: Bounds) -> Finding:
     found = {}
     for name, slab in _slabs(data).items():
@@ -62,7 +62,7 @@ def incrementally_elastic(data: Data, words: Bounds) -> Finding:
     )
 
 
-@CLAIMS.measures("B22")
+@CLAIMS.measures("B29")
 def peaks(data: Data, words: Bounds) -> Finding:
     found = {}
     for name, slab in _slabs(data).items():
