@@ -123,6 +123,11 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"most_friction": 0.1, "tolerance": 1.0, "scene": SMALL},
         {"moved": 1e-9, "slabs": [{"friction": 0.2, "forces": [0.01]}], "shown_forces": [0.01, 0.02], "heights": 1},
     ),
+    "tangent_moduli": (
+        {"scene": SMALL, "slabs": [{"friction": 0.0, "forces": [0.1], "shown": 5.0}], "waves": [1, 1]},
+        {"scene": {"packing.layers": 1}, "widths": [0.01]},
+        {"widths": [50.0], "smoothing": 0.01, "slabs": [{"friction": 0.2, "forces": [50.0], "shown": 1.0}]},
+    ),
     "crossover_scaling": (
         {"series": [{"name": "width", "friction": 0.0, "layers": [5], "disks_per_layer": [3.0, 4.0]}]},
         {"most_forces": 5, "first_force": 0.01, "series": [{"name": "low", "friction": 0.0, "layers": [5, 7]}]},

@@ -643,6 +643,27 @@ def rolling_study():
     }
 
 
+def tangent_study():
+    """A region of r < 0 that reaches the floor at the crossover, in an incrementally elastic slab."""
+    peaks = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
+    fits = ("slab", "step", "width", "loads")
+
+    def each(values):
+        return fits, np.broadcast_to(np.array(values, float)[..., None, None], (2, 3, 2, 2)).copy()
+
+    return {
+        "slabs": dataset(
+            {"friction": ("slab", [0.2, 1.0]), "width": [1.0, 2.0], "loads": ["body", "surface"]},
+            force=(("slab", "step"), np.array([[10.0, 19.0, 21.0]] * 2)),
+            crossover=(("slab", "end"), np.array([[20.0, 20.0], [21.0, np.nan]])),
+            reach=each([[0.5, 0.8, 1.0], [0.0, 0.1, 0.2]]),
+            difference=each(np.full((2, 3), 0.05)),
+            two_peaks=(("slab", "step"), peaks),
+            predicted_two_peaks=each(peaks),
+        )
+    }
+
+
 def everything():
     """Datasets in which every claim holds, in every interpretation and every variant."""
     return {
@@ -668,4 +689,5 @@ def everything():
         "contact_law": law_study(),
         "network": network_study(),
         "rolling_resistance": rolling_study(),
+        "tangent_moduli": tangent_study(),
     }

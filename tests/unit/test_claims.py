@@ -207,6 +207,7 @@ FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
 
 ENDS = ("low", "high")
 ROLLING = "rolling_resistance"
+TANGENT = "tangent_moduli"
 #: The reversible range of the second case alone ends early.
 IRREVERSIBLE = [[[1.0, 1.0]], [[1.0, 0.2]]]
 
@@ -403,6 +404,12 @@ PLANTED = [
     ("B16", put(ROLLING, "slabs", "floor_response", 0.1), "contradicted"),
     ("B17", put(ROLLING, "slabs", "length", 0.3), "contradicted"),
     ("B17", scaled(ROLLING, "slabs", "unexplained", [1.0, 10.0]), DEPENDS),
+    ("B27", put(TANGENT, "slabs", "crossover", [10.0, 10.0]), "contradicted"),
+    ("B27", put(TANGENT, "slabs", "reach", [[[0.5]], [[1.0]], [[1.0]]]), "undecided"),
+    ("B28", put(TANGENT, "slabs", "difference", 0.2), "contradicted"),
+    ("B28", scaled(TANGENT, "slabs", "difference", [[1.0], [4.0]]), "undecided"),
+    ("B29", put(TANGENT, "slabs", "predicted_two_peaks", 1.0), "contradicted"),
+    ("B29", put(TANGENT, "slabs", "predicted_two_peaks", 0.0), DEPENDS),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), DEPENDS),
     ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "undecided"),

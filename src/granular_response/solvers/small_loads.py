@@ -91,22 +91,27 @@ def contact_answers(
     """
     system, trial = sticking(problem, state, sliding)
     answer = system.answers(trial)
-    n, freedoms, radius = problem.n, problem.freedoms, problem.packing.radius
+    n, freedoms = problem.n, problem.freedoms
     on_pairs = np.empty((len(disks), len(system.first), 2))
     on_walls = np.empty((len(disks), len(system.wall_disk), 2))
     for row, disk in enumerate(disks):
         force = np.zeros((freedoms, n))
         force[1, disk] = -1.0
-        moved = answer(force.ravel()).reshape(freedoms, n)
-        rim = radius * moved[2] if freedoms > 2 else np.zeros(n)
-        i, j, k = system.first, system.second, system.wall_disk
-        pairs = np.stack([moved[0, i] - moved[0, j], moved[1, i] - moved[1, j], rim[i] + rim[j]])
-        walls = np.stack([moved[0, k], moved[1, k], rim[k]])
-        on_pairs[row] = np.einsum("cab,bc->ca", system.split(trial.tangent)[0][:, :2], pairs)
-        on_walls[row] = np.einsum("cab,bc->ca", system.split(trial.tangent)[1][:, :2], walls)
+        on_pairs[row], on_walls[row] = added_forces(system, trial, answer(force.ravel()))
     borne = state.contact_count()[disks] >= 2
     on_pairs[~borne] = on_walls[~borne] = np.nan
     return on_pairs, on_walls
+
+
+def added_forces(system: StaticSystem, trial: Trial, moved: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What small displacements (dof,) add to the forces on ``pairs.first`` (m, 2) and on ``walls.first`` (w, 2)."""
+    u = moved.reshape(-1, system.problem.n)
+    i, j, k = system.first, system.second, system.wall_disk
+    rim = system.problem.packing.radius * u[2] if len(u) > 2 else np.zeros(system.problem.n)
+    pairs = np.stack([u[0, i] - u[0, j], u[1, i] - u[1, j], rim[i] + rim[j]])
+    walls = np.stack([u[0, k], u[1, k], rim[k]])
+    on_pairs, on_walls = (one[:, :2] for one in system.split(trial.tangent))
+    return np.einsum("cab,bc->ca", on_pairs, pairs), np.einsum("cab,bc->ca", on_walls, walls)
 
 
 def sticking(problem: Problem, state: State, sliding: str) -> tuple[StaticSystem, Trial]:

@@ -49,6 +49,7 @@ QUESTIONS: Mapping[str, tuple[str, ...]] = {
         "friction_fields",
         "preparation",
         "symmetry_breaking",
+        "tangent_moduli",
     ),
     "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network"),
     "What do piles, torques and several forces do?": (
