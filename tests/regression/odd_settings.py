@@ -123,6 +123,11 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"most_friction": 0.1, "tolerance": 1.0, "scene": SMALL},
         {"moved": 1e-9, "slabs": [{"friction": 0.2, "forces": [0.01]}], "shown_forces": [0.01, 0.02], "heights": 1},
     ),
+    "experiments": (
+        {"cases": [{"packing": "nearly equal", "force": 1.0, "realizations": 1}], "pictures": [], "depths": 1},
+        {"cases": [{"packing": "bidisperse", "force": 500.0, "realizations": 3}], "pictures": [0]},
+        {"collapse_depth": 1e-9, "fitted": [100.0, 0.5], "ring": [50.0, 60.0], "reach": 1, "draws": 1, "pictures": []},
+    ),
     "crossover_scaling": (
         {"series": [{"name": "width", "friction": 0.0, "layers": [5], "disks_per_layer": [3.0, 4.0]}]},
         {"most_forces": 5, "first_force": 0.01, "series": [{"name": "low", "friction": 0.0, "layers": [5, 7]}]},

@@ -50,7 +50,7 @@ QUESTIONS: Mapping[str, tuple[str, ...]] = {
         "preparation",
         "symmetry_breaking",
     ),
-    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network"),
+    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network", "experiments"),
     "What do piles, torques and several forces do?": (
         "pile_dip",
         "torque",
