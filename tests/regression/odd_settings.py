@@ -126,7 +126,7 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
     "experiments": (
         {"cases": [{"packing": "nearly equal", "force": 1.0, "realizations": 1}], "pictures": [], "depths": 1},
         {"cases": [{"packing": "bidisperse", "force": 500.0, "realizations": 3}], "pictures": [0]},
-        {"collapse_depth": 1e-9, "fitted": [100.0, 0.5], "ring": [50.0, 60.0], "reach": 1, "draws": 1, "pictures": []},
+        {"largest_move": 1e-9, "fitted": [100.0, 0.5], "ring": [50.0, 60.0], "reach": 1, "draws": 1, "pictures": []},
     ),
     "crossover_scaling": (
         {"series": [{"name": "width", "friction": 0.0, "layers": [5], "disks_per_layer": [3.0, 4.0]}]},

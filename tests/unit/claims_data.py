@@ -657,8 +657,8 @@ def experiments_study():
         return ("case", "estimate"), np.multiply.outer(np.broadcast_to(values, len(loads)), [1.0, 0.99, 1.01])
 
     power = np.where(deep, 1.0, 0.5)[:, None, None, None] * np.ones((2, 1, 3))
-    packings = dataset(coordinates, sink=(("case", "realization"), np.full((len(loads), 20), 0.1)))
-    packings.attrs["collapse_depth"] = 2.0
+    packings = dataset(coordinates, moved=(("case", "realization"), np.full((len(loads), 20), 0.1)))
+    packings.attrs["largest_move"] = 2.0
     return {
         "packings": packings,
         "means": dataset(

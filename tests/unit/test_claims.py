@@ -388,7 +388,7 @@ PLANTED = [
     ("B16", put(ROLLING, "slabs", "floor_response", 0.1), "contradicted"),
     ("B17", put(ROLLING, "slabs", "length", 0.3), "contradicted"),
     ("B17", scaled(ROLLING, "slabs", "unexplained", [1.0, 10.0]), DEPENDS),
-    ("B19", put(EXPERIMENTS, "packings", "sink", 5.0), "contradicted"),
+    ("B19", put(EXPERIMENTS, "packings", "moved", 5.0), "contradicted"),
     ("B20", put(EXPERIMENTS, "means", "chain", 75.0), "contradicted"),
     ("B20", put(EXPERIMENTS, "means", "contrast", [1.4, 1.3, 1.6]), "undecided"),
     ("B21", put(EXPERIMENTS, "means", "vertical", 0.9), "contradicted"),

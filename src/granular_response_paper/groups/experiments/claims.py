@@ -39,7 +39,7 @@ def holds(data: Data, words: Bounds) -> Finding:
     found = {}
     for packing in (NEARLY_EQUAL, TWO_SIZES):
         one = _case(data, packing, LARGE, name="packings")
-        found[packing] = part_of(one["sink"].dropna("realization") <= one.attrs["collapse_depth"])
+        found[packing] = part_of(one["moved"].dropna("realization") <= one.attrs["largest_move"])
     return asked.each(
         "packings that hold 150 mg: ",
         found,
@@ -134,6 +134,9 @@ def oblique(data: Data, words: Bounds) -> Finding:
     rows = []
     for angle in (45.0, 30.0):
         strongest = _quantity(_case(data, NEARLY_EQUAL, LARGE, angle)["strongest"])
+        if np.isnan(strongest.value):  # no packings hold it
+            continue
         nearer = Condition("direction in degrees", strongest, 0.5 * angle, 0.5 * (angle + LATTICE), strict=True)
         rows.append((strongest.text(), Reading(f"force at {angle:g} degrees", nearer)))
+    CLAIMS.needs(rows, "holds no packing that bears an oblique force")
     return asked.told("the largest force is at ", rows)

@@ -1,4 +1,4 @@
-"""What the experiments of Sec. II.B observe: forces by depth and direction, widths, images of one packing and of all."""
+"""What the experiments of Sec. II.B observe: forces by depth and direction, widths, images of one packing and all."""
 
 from __future__ import annotations
 
@@ -19,8 +19,11 @@ from .parameters import Parameters
 
 #: Depths of the profiles; reach of profiles and images, in mean radii, and pixels of these from side to side.
 DEPTHS, REACH, NEAR, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 18.0, 560
+#: The small force of experiments in which the response was linear, in mean weights.
+SMALL = 3.0
 #: Principal stress difference of one fringe, per applied force, in 1/mean radius.
 FRINGE = 0.32
+TITLES = "vertical force", "oblique force", "widths", "moved disks"
 #: Directions of the lattice, in degrees.
 LATTICE = 60.0, 120.0
 GUIDE = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
@@ -31,21 +34,22 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     """``experiments`` from ``means`` and ``packings``, ``experiments_images`` from ``picture_K`` and ``means``."""
     means, packings = datasets["means"], datasets["packings"]
     figure, panels = style.figure(2, 3, width="double", height=5.2)
-    straight, nearly = means["angle_applied"] == 90.0, means["packing"] == means["packing"][0]
-    vertical, oblique = np.flatnonzero(straight).tolist(), np.flatnonzero(~straight).tolist()
-    ordered, rest = (np.flatnonzero(straight & kind).tolist() for kind in (nearly, ~nearly))
-    disordered = next((case for case in rest if np.isfinite(means["contrast"][case, 0])), ordered[0])
-    for axes, case in zip(panels[0], (ordered[0], disordered), strict=False):
+    force, straight = means["force_applied"].values, means["angle_applied"].values == 90.0
+    known = straight & np.isfinite(means["contrast"].values[:, 0])
+    _, starts = np.unique(means["packing"].values[known], return_index=True)
+    largest = np.sort(np.flatnonzero(known)[starts]).tolist()  # of each packing the first load that it holds
+    shown = [case for case in np.flatnonzero(known) if case in largest or force[case] == SMALL]
+    oblique = np.flatnonzero(~straight).tolist()
+    for axes, case in zip(panels[0], largest, strict=False):
         _profiles(axes, means.isel(case=case))
-    shown = [case for case in vertical if np.isfinite(means["contrast"][case, 0])]
     _directions(panels[0, 2], means, shown)
     _directions(panels[1, 0], means, oblique)
-    for angle in sorted({float(means["angle_applied"][case]) for case in oblique}):
+    for angle in np.unique(means["angle_applied"].values[oblique]):
         panels[1, 0].axvline(angle, color=style.FAINT, linewidth=3.0, zorder=0.4)
-    _widths(panels[1, 1], means, [case for case in shown if case != ordered[0]])
-    _sinks(panels[1, 2], packings, vertical)
-    names = [f"profiles, {_name(means, case)}" for case in (ordered[0], disordered)]
-    titles(panels.flat, [*names, "vertical force", "oblique force", "widths", "sinking disks"])
+    _widths(panels[1, 1], means, shown)
+    _moves(panels[1, 2], packings, np.flatnonzero(force > SMALL).tolist())
+    profiles = [f"profiles, {_name(means, case)}" for case in largest[:2]]
+    titles(panels.flat, [*profiles, *["profiles"] * (2 - len(profiles)), *TITLES])
     return {"experiments": figure, "experiments_images": _images(datasets)}
 
 
@@ -108,13 +112,13 @@ def _widths(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
     axes.legend(fontsize=6, loc="upper left", handlelength=1.6)
 
 
-def _sinks(axes: Axes, packings: xr.Dataset, cases: list[int]) -> None:
+def _moves(axes: Axes, packings: xr.Dataset, cases: list[int]) -> None:
     for k, case in enumerate(cases):
-        sinks = np.sort(packings["sink"].isel(case=case).dropna("realization"))
-        part = np.arange(1, len(sinks) + 1) / len(sinks)
-        axes.step(np.maximum(sinks, 1e-3), part, where="post", label=_name(packings, case), **style.line(k))
-    axes.axvline(packings.attrs["collapse_depth"], **GUIDE)
-    axes.set(xlabel=rf"sinking of the loaded disk$\,/\,{style.RADIUS}$", ylabel="part of packings", xscale="log")
+        moves = np.sort(packings["moved"].isel(case=case).dropna("realization"))
+        part = np.arange(1, len(moves) + 1) / len(moves)
+        axes.step(np.maximum(moves, 1e-3), part, where="post", label=_name(packings, case), **style.line(k))
+    axes.axvline(packings.attrs["largest_move"], **GUIDE)
+    axes.set(xlabel=rf"way of the loaded disk$\,/\,{style.RADIUS}$", ylabel="part of packings", xscale="log")
     axes.set(ylim=(0.0, 1.75), yticks=[0.0, 0.5, 1.0])
     axes.legend(fontsize=6, loc="upper left", handlelength=1.6)
 
@@ -123,7 +127,7 @@ def _images(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Above one packing between crossed polarisers, below the mean force of all."""
     pictures = {int(name.removeprefix("picture_")): one for name, one in datasets.items() if name.startswith("picture")}
     means, number = datasets["means"], max(1, len(pictures))
-    figure, panels = style.figure(2, number, width="double", height=4.6)
+    figure, panels = style.figure(2, number, width="double", height=3.9)
     for (case, one), (above, below) in zip(pictures.items(), panels.T, strict=False):
         half = min(NEAR, 0.5 * float(one.attrs["width"]))
         photoelastic(one, ax=above, half_width=half, pixels=PIXELS, fringe=FRINGE * float(one["total_force"].max()))

@@ -36,7 +36,7 @@ class Parameters(SceneGroup):
     scene: Annotated[Scene, over(UNIT_LOAD, "packing", "loads")] = Field(description="Material and preparation.")
     packings: dict[str, Packing]
     cases: Annotated[tuple[Case, ...], AfterValidator(some)]
-    collapse_depth: Positive = Field(description="Of the loaded disk, beyond which a packing does not hold the force.")
+    largest_move: Positive = Field(description="Of the loaded disk, beyond which a packing does not hold the force.")
     depths: Count = Field(description="Lines below the load, a mean radius apart.")
     reach: Count = Field(description="Of profiles, to both sides of the load, in radii.")
     width: Positive = Field(description="w of the Gaussian along the lines, in radii.")

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from itertools import count
 
 import numpy as np
 import xarray as xr
@@ -22,7 +21,7 @@ from granular_response.scene import Scene
 from granular_response.state import FLOOR, FloatArray
 from granular_response.store.result import LENGTH, common_candidates, variable
 from granular_response_paper.datasets import labelled
-from granular_response_paper.groups.experiments.parameters import Case, Parameters
+from granular_response_paper.groups.experiments.parameters import Parameters
 from granular_response_paper.groups.overview.simulate import states
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import LoadPath
@@ -45,7 +44,7 @@ WIDTHS = ("half_maximum", "half_force")
 class Outcome:
     """One packing under its load."""
 
-    sink: float = column(f"how far the load pushes its disk down {LENGTH}")
+    moved: float = column(f"how far the load moves its disk {LENGTH}")
     height: float = column(f"height of the loaded disk {LENGTH}")
     imbalance: float = column("largest difference of the force across a line and the load, per load")
     force: FloatArray  #: (depth, x) magnitude of forces per length and load; nan below the floor
@@ -87,8 +86,8 @@ def measure(scene: Scene, force: float, depths: int, x: FloatArray, width: float
     load = -force * scene.loads[0].force[1]
     lacks = [_lack(added, height, load, vertical[sides], loaded.position[loaded.walls.first[sides], 1])
              for height in heights]  # fmt: skip
-    sink = float(start.position[disk, 1] - top)
-    return Outcome(sink, float(start.position[disk, 1]), max(lacks, default=0.0), *found)
+    moved = float(np.linalg.norm(loaded.position[disk] - start.position[disk]))
+    return Outcome(moved, float(start.position[disk, 1]), max(lacks, default=0.0), *found)
 
 
 def _lack(added: ContactForces, height: float, load: float, vertical: FloatArray, z: FloatArray) -> float:
@@ -101,6 +100,7 @@ def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArra
     depth = np.arange(1.0, asked.depths + 1.0)
     ring = depth[(depth >= asked.ring[0]) & (depth <= asked.ring[1]) & (depth < height)]
     used = (depth >= asked.fitted[0]) & (depth <= asked.fitted[1] * height)
+    used &= np.isfinite(stress).all(axis=1)  # some packings are lower than their mean
     sine, cotangent = np.sin(np.radians(ANGLES)), 1.0 / np.tan(np.radians(ANGLES))
     of_ring = [np.interp(d * cotangent, x, force[int(d) - 1], 0.0, 0.0) * d / sine**2 for d in ring]
     direction = np.mean(of_ring, axis=0) if len(ring) else np.full(len(ANGLES), np.nan)
@@ -123,7 +123,7 @@ def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArra
 
 def mean_of(asked: Parameters, x: FloatArray, outcomes: list[Outcome]) -> Statistics:
     """Of the packings that hold the force; nan with fewer than three."""
-    held = [one for one in outcomes if one.sink <= asked.collapse_depth]
+    held = [one for one in outcomes if one.moved <= asked.largest_move]
     number, missing = len(held), np.full((1, asked.depths, len(x)), np.nan)
     profiles = [np.stack([getattr(one, name) for one in held]) if held else missing for name in ("force", "stress")]
     height = float(np.mean([one.height for one in held])) if held else 0.0
@@ -165,17 +165,12 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         t=(SCALED, "distance from the load per depth"), definition=(WIDTHS, "definition of the width"),
         fit=(FITS, "fitted depths"), estimate=(ESTIMATE, "mean, and 95 % of its bootstrap draws"),
     )  # fmt: skip
-    used = {"collapse_depth": asked.collapse_depth, "fitted": list(asked.fitted), "width": asked.width}
+    used = {"largest_move": asked.largest_move, "fitted": list(asked.fitted), "width": asked.width}
     datasets = {
         "packings": table(found, "case", "realization").assign_coords(coordinates).assign_attrs(used),
         "means": table(means, "case").assign_coords(coordinates | points).assign_attrs(used),
     }
     for c in asked.pictures:
-        r = next((r for r, one in zip(count(), each[c], strict=False) if one.sink <= asked.collapse_depth), 0)
-        datasets[f"picture_{c}"] = _picture(asked, cases[c], r)
+        r = next((r for r, one in enumerate(each[c]) if one.moved <= asked.largest_move), 0)
+        datasets[f"picture_{c}"] = states(asked.scene_of(cases[c], r), (cases[c].force,))
     return labelled(datasets, asked.base)
-
-
-def _picture(asked: Parameters, case: Case, realization: int) -> xr.Dataset:
-    """The states of one packing, as the overview keeps them."""
-    return states(asked.scene_of(case, realization), (case.force,))
