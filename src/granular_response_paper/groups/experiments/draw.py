@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -26,7 +27,7 @@ FRINGE = 0.32
 TITLES = "vertical force", "oblique force", "widths", "moved disks"
 #: Directions of the lattice, in degrees.
 LATTICE = 60.0, 120.0
-GUIDE = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
+GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
 
 
 @style.context()
