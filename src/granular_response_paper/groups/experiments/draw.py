@@ -39,7 +39,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     known = straight & np.isfinite(means["contrast"].values[:, 0])
     _, starts = np.unique(means["packing"].values[known], return_index=True)
     largest = np.sort(np.flatnonzero(known)[starts]).tolist()  # of each packing the first load that it holds
-    shown = [case for case in np.flatnonzero(known) if case in largest or force[case] == SMALL]
+    shown = [case for case in np.flatnonzero(known).tolist() if case in largest or force[case] == SMALL]
     oblique = np.flatnonzero(~straight).tolist()
     for axes, case in zip(panels[0], largest, strict=False):
         _profiles(axes, means.isel(case=case))
