@@ -128,6 +128,11 @@ SETTINGS: dict[str, tuple[dict[str, Any], ...]] = {
         {"scene": {"packing.layers": 1}, "widths": [0.01]},
         {"widths": [50.0], "smoothing": 0.01, "slabs": [{"friction": 0.2, "forces": [50.0], "shown": 1.0}]},
     ),
+    "experiments": (
+        {"cases": [{"packing": "nearly equal", "force": 1.0, "realizations": 1}], "pictures": [], "depths": 1},
+        {"cases": [{"packing": "bidisperse", "force": 500.0, "realizations": 3}], "pictures": [0]},
+        {"largest_move": 1e-9, "fitted": [100.0, 0.5], "ring": [50.0, 60.0], "reach": 1, "draws": 1, "pictures": []},
+    ),
     "crossover_scaling": (
         {"series": [{"name": "width", "friction": 0.0, "layers": [5], "disks_per_layer": [3.0, 4.0]}]},
         {"most_forces": 5, "first_force": 0.01, "series": [{"name": "low", "friction": 0.0, "layers": [5, 7]}]},

@@ -45,6 +45,10 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
     "hysteresis": [({"cases": [LOOP, LOOP]}, "must have each material once"), ({"cases": []}, "cases")],
     "network": [({"polydispersities": [0.0]}, r"polydispersities = \[0.0\]: must be above 0")],
     "rolling_resistance": [({"most_friction": 0.05}, r"most_friction = 0.05: must be above least_friction = 0.05")],
+    "experiments": [
+        ({"packings": {}}, r"cases = 'nearly equal': must have packings among"),
+        ({"pictures": [9]}, r"pictures = \[9\]: must be below 3"),
+    ],
     "influence": [({"fitted": [6.0, 1.0]}, r"fitted = \[6.0, 1.0\]: must be two growing numbers")],
     "moduli": [
         (

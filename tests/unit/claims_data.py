@@ -664,6 +664,37 @@ def tangent_study():
     }
 
 
+def experiments_study():
+    """Chains of nearly equal disks that fade with disorder; widths as the root of the depth in shallow slabs alone."""
+    loads = [("nearly equal", force, 90.0) for force in (150.0, 15.0, 3.0)]
+    loads += [("nearly equal", 150.0, angle) for angle in (45.0, 30.0)]
+    loads += [("bidisperse", force, 90.0) for force in (150.0, 15.0, 3.0)]
+    loads += [("deep", force, 90.0) for force in (3.0, 1.5)]
+    names, forces, angles = zip(*loads, strict=True)
+    coordinates = {name: ("case", np.array(values)) for name, values in
+                   (("packing", names), ("force_applied", forces), ("angle_applied", angles))}  # fmt: skip
+    near, deep = np.array([name == "nearly equal" for name in names]), np.array([name == "deep" for name in names])
+
+    def estimates(values):
+        return ("case", "estimate"), np.multiply.outer(np.broadcast_to(values, len(loads)), [1.0, 0.99, 1.01])
+
+    power = np.where(deep, 1.0, 0.5)[:, None, None, None] * np.ones((2, 1, 3))
+    packings = dataset(coordinates, moved=(("case", "realization"), np.full((len(loads), 20), 0.1)))
+    packings.attrs["largest_move"] = 2.0
+    return {
+        "packings": packings,
+        "means": dataset(
+            coordinates | {"definition": ["half_maximum", "half_force"], "estimate": ["mean", "low", "high"],
+                           "depth": [5.0, 10.0]},
+            chain=estimates(60.0), contrast=estimates(np.where(near, 2.0, 1.1)), vertical=estimates(1.5),
+            strongest=estimates(angles), dip=estimates(0.01),
+            power=(("case", "definition", "fit", "estimate"), power),
+            slope=(("case", "definition", "estimate"), power[:, :, 0]),
+            stress=(("case", "depth", "x", "estimate"), np.ones((len(loads), 2, 3, 3))),
+        ),
+    }  # fmt: skip
+
+
 def everything():
     """Datasets in which every claim holds, in every interpretation and every variant."""
     return {
@@ -690,4 +721,5 @@ def everything():
         "network": network_study(),
         "rolling_resistance": rolling_study(),
         "tangent_moduli": tangent_study(),
+        "experiments": experiments_study(),
     }

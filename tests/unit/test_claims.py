@@ -208,6 +208,7 @@ FIRST_CASE = np.array([1.2, 1.0])[:, None, None, None]
 ENDS = ("low", "high")
 ROLLING = "rolling_resistance"
 TANGENT = "tangent_moduli"
+EXPERIMENTS = "experiments"
 #: The reversible range of the second case alone ends early.
 IRREVERSIBLE = [[[1.0, 1.0]], [[1.0, 0.2]]]
 
@@ -410,6 +411,15 @@ PLANTED = [
     ("B28", scaled(TANGENT, "slabs", "difference", [[1.0], [4.0]]), "undecided"),
     ("B29", put(TANGENT, "slabs", "predicted_two_peaks", 1.0), "contradicted"),
     ("B29", put(TANGENT, "slabs", "predicted_two_peaks", 0.0), DEPENDS),
+    ("B19", put(EXPERIMENTS, "packings", "moved", 5.0), "contradicted"),
+    ("B20", put(EXPERIMENTS, "means", "chain", 75.0), "contradicted"),
+    ("B20", put(EXPERIMENTS, "means", "contrast", [1.4, 1.3, 1.6]), "undecided"),
+    ("B21", put(EXPERIMENTS, "means", "vertical", 0.9), "contradicted"),
+    ("B22", put(EXPERIMENTS, "means", "contrast", 2.0), "contradicted"),
+    ("B23", put(EXPERIMENTS, "means", "power", 0.5), "contradicted"),
+    ("B24", put(EXPERIMENTS, "means", "power", 1.0), "contradicted"),
+    ("B25", scaled(EXPERIMENTS, "means", "stress", np.r_[np.ones(9), 2.0][:, None, None, None]), "contradicted"),
+    ("B26", put(EXPERIMENTS, "means", "strongest", 60.0), "contradicted"),
     ("U1", scaled("superposition", "errors", "floor_error_largest", 10.0), DEPENDS),
     ("U1", put("superposition", "errors", "contact_error_largest", 0.9), DEPENDS),
     ("U2", put("superposition", "linear_range", "nonlinear_from", 3.0), "undecided"),

@@ -51,7 +51,7 @@ QUESTIONS: Mapping[str, tuple[str, ...]] = {
         "symmetry_breaking",
         "tangent_moduli",
     ),
-    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network"),
+    "What does disorder change?": ("polydisperse_averages", "phase_diagram", "explorer", "network", "experiments"),
     "What do piles, torques and several forces do?": (
         "pile_dip",
         "torque",

@@ -1,0 +1,142 @@
+"""What the experiments of Sec. II.B observe: forces by depth and direction, widths, images of one packing and all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from granular_response.plot import style
+from granular_response.plot.field import draw_field, root_norm
+from granular_response.plot.photoelastic import photoelastic
+from granular_response_paper.captions import Caption, of_group, of_scene
+from granular_response_paper.panels import family, titles
+
+from .parameters import Parameters
+
+#: Depths of the profiles; reach of profiles and images, in mean radii, and pixels of these from side to side.
+DEPTHS, REACH, NEAR, PIXELS = (4.0, 8.0, 12.0, 16.0), 22.0, 18.0, 560
+#: The small force of experiments in which the response was linear, in mean weights.
+SMALL = 3.0
+#: Principal stress difference of one fringe, per applied force, in 1/mean radius.
+FRINGE = 0.32
+TITLES = "vertical force", "oblique force", "widths", "moved disks"
+#: Directions of the lattice, in degrees.
+LATTICE = 60.0, 120.0
+GUIDE: dict[str, Any] = {"color": style.BLACK, "linewidth": 0.9, "zorder": 0.5, "linestyle": (0, (1, 1.5))}
+
+
+@style.context()
+def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
+    """``experiments`` from ``means`` and ``packings``, ``experiments_images`` from ``picture_K`` and ``means``."""
+    means, packings = datasets["means"], datasets["packings"]
+    figure, panels = style.figure(2, 3, width="double", height=5.2)
+    force, straight = means["force_applied"].values, means["angle_applied"].values == 90.0
+    known = straight & np.isfinite(means["contrast"].values[:, 0])
+    _, starts = np.unique(means["packing"].values[known], return_index=True)
+    largest = np.sort(np.flatnonzero(known)[starts]).tolist()  # of each packing the first load that it holds
+    shown = [case for case in np.flatnonzero(known).tolist() if case in largest or force[case] == SMALL]
+    oblique = np.flatnonzero(~straight).tolist()
+    for axes, case in zip(panels[0], largest, strict=False):
+        _profiles(axes, means.isel(case=case))
+    _directions(panels[0, 2], means, shown)
+    _directions(panels[1, 0], means, oblique)
+    for angle in np.unique(means["angle_applied"].values[oblique]):
+        panels[1, 0].axvline(angle, color=style.FAINT, linewidth=3.0, zorder=0.4)
+    _widths(panels[1, 1], means, shown)
+    _moves(panels[1, 2], packings, np.flatnonzero(force > SMALL).tolist())
+    profiles = [f"profiles, {_name(means, case)}" for case in largest[:2]]
+    titles(panels.flat, [*profiles, *["profiles"] * (2 - len(profiles)), *TITLES])
+    return {"experiments": figure, "experiments_images": _images(datasets)}
+
+
+def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict[str, Caption]:
+    """By file stem."""
+    p, disks = parameters, {name: packing.build().n for name, packing in parameters.packings.items()}
+    said = of_scene(p.base, polydispersity=None, packing=None, width=p.width)
+    sizes = ", ".join(f"{name}: {number} disks" for name, number in disks.items())
+    counts = " or ".join(map(str, sorted({case.realizations for case in p.cases})))
+    return of_group("experiments", {"experiments": said, "experiments_images": said}, p=p, sizes=sizes, counts=counts)
+
+
+def _name(data: xr.Dataset, case: int) -> str:
+    one = data.isel(case=case)
+    angle = f", {float(one['angle_applied']):g}°" if one["angle_applied"] != 90.0 else ""
+    return f"{one['packing'].item()}, {float(one['force_applied']):g}${style.WEIGHT}${angle}"
+
+
+def _profiles(axes: Axes, one: xr.Dataset) -> None:
+    near = one.sel(x=slice(-REACH, REACH))
+    depths = [depth for depth in DEPTHS if depth in near["depth"] and near["force"].sel(depth=depth).notnull().any()]
+    for depth, look in family(depths, of="length", marked=False):
+        middle, low, high = near["force"].sel(depth=depth).transpose("estimate", "x").values
+        axes.fill_between(near["x"], low, high, color=look["color"], alpha=0.25, linewidth=0.0)
+        axes.plot(near["x"], middle, label=f"{depth:g}", **look)
+    axes.set(xlabel=style.POSITION, ylabel=rf"added force per length$\,\times\,{style.RADIUS}/{style.F_EXT}$")
+    axes.legend(title=style.DEPTH, fontsize=7, title_fontsize=7, handlelength=1.2)
+
+
+def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
+    for k, case in enumerate(cases):
+        middle, low, high = means["direction"].isel(case=case).transpose("estimate", "angle").values
+        look = style.line(k)
+        axes.fill_between(means["angle"], low, high, color=look["color"], alpha=0.2, linewidth=0.0)
+        axes.plot(means["angle"], middle, label=_name(means, case), **look)
+    for angle in LATTICE:
+        axes.axvline(angle, **GUIDE)
+    axes.set(xlabel="direction below horizontal (°)", ylabel=rf"added force per radian$\,/\,{style.F_EXT}$")
+    axes.set(xticks=[30, 60, 90, 120, 150], ylim=(0.0, None))
+    if cases:
+        axes.set_ylim(0.0, 1.5 * axes.get_ylim()[1])
+        axes.legend(fontsize=6, handlelength=1.6)
+
+
+def _widths(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
+    for k, case in enumerate(cases):
+        one = means["length"].isel(case=case).sel(definition="half_force").dropna("depth")
+        one = one.sel(depth=slice(2.0, None))
+        middle, low, high = one.transpose("estimate", "depth").values
+        look = style.line(k)
+        axes.fill_between(one["depth"], low, high, color=look["color"], alpha=0.2, linewidth=0.0)
+        axes.plot(one["depth"], middle, label=_name(means, case), **look)
+    depth = np.array([4.0, 30.0])
+    for power in (1.0, 0.5):
+        axes.plot(depth, 2.4 * (depth / depth[0]) ** power, **GUIDE)
+    ticks = [2, 5, 10, 20, 40]
+    axes.set(xlabel=style.DEPTH, ylabel=rf"half width$\,/\,{style.RADIUS}$", xscale="log", yscale="log")
+    axes.set(xticks=ticks, xticklabels=ticks, yticks=ticks, yticklabels=ticks, ylim=(0.8, 40.0))
+    axes.minorticks_off()
+    axes.legend(fontsize=6, loc="upper left", handlelength=1.6)
+
+
+def _moves(axes: Axes, packings: xr.Dataset, cases: list[int]) -> None:
+    for k, case in enumerate(cases):
+        moves = np.sort(packings["moved"].isel(case=case).dropna("realization"))
+        part = np.arange(1, len(moves) + 1) / len(moves)
+        axes.step(np.maximum(moves, 1e-3), part, where="post", label=_name(packings, case), **style.line(k))
+    axes.axvline(packings.attrs["largest_move"], **GUIDE)
+    axes.set(xlabel=rf"way of the loaded disk$\,/\,{style.RADIUS}$", ylabel="part of packings", xscale="log")
+    axes.set(ylim=(0.0, 1.75), yticks=[0.0, 0.5, 1.0])
+    axes.legend(fontsize=6, loc="upper left", handlelength=1.6)
+
+
+def _images(datasets: Mapping[str, xr.Dataset]) -> Figure:
+    """Above one packing between crossed polarisers, below the mean force of all."""
+    pictures = {int(name.removeprefix("picture_")): one for name, one in datasets.items() if name.startswith("picture")}
+    means, number = datasets["means"], max(1, len(pictures))
+    figure, panels = style.figure(2, number, width="double", height=3.9)
+    for (case, one), (above, below) in zip(pictures.items(), panels.T, strict=False):
+        half = min(NEAR, 0.5 * float(one.attrs["width"]))
+        photoelastic(one, ax=above, half_width=half, pixels=PIXELS, fringe=FRINGE * float(one["total_force"].max()))
+        field = means["force"].isel(case=case).sel(estimate="mean", x=slice(-half, half)).dropna("depth", how="all")
+        if field.size:
+            largest = float(field.sel(depth=slice(2.0, None)).max()) or 1.0
+            draw_field(below, field["x"], -field["depth"], np.clip(field, 0.0, largest), norm=root_norm(largest))
+        below.set(xlabel=style.POSITION, ylabel=rf"$-$depth$\,/\,{style.RADIUS}$")
+    names = [_name(means, case) for case in pictures]
+    titles(panels.flat, [*names, *(["mean of packings"] * len(names))])
+    return figure

@@ -1,0 +1,176 @@
+"""Packings as in the experiments of Sec. II.B, and what these observe: forces by depth, directions, widths.
+
+The paper says of them: lattices of nearly equal disks and packings of two sizes under 150 weights, friction 0.94, means
+over 50 packings; slabs of about ten diameters; deeper, disordered ones under a few weights. Profiles are those of the
+contacts that cross a horizontal line at a depth below the loaded disk, smoothed along x: the magnitude of the force
+that the load adds at each, as photoelastic images show it, and its vertical component, the stress.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from granular_response.observe.difference import wall_force_difference
+from granular_response.observe.stress import ContactForces, line_forces, line_stress, load_forces
+from granular_response.observe.widths import FITS, lengths, powers
+from granular_response.scene import Scene
+from granular_response.state import FLOOR, FloatArray
+from granular_response.store.result import LENGTH, common_candidates, variable
+from granular_response_paper.datasets import labelled
+from granular_response_paper.groups.experiments.parameters import Parameters
+from granular_response_paper.groups.overview.simulate import states
+from granular_response_paper.records import axes, column, labels, record, table
+from granular_response_paper.slab_response import LoadPath
+from granular_response_paper.survey.crossover import folded, weights
+from granular_response_paper.tasks import computed
+
+#: Distance of points of profiles (radii); distance from the load per depth, of profiles that are put on each other.
+SPACING, SCALED = 0.5, np.linspace(0.0, 1.5, 31)
+#: Directions below the horizontal, from the side that an oblique force points to, in degrees.
+ANGLES = np.arange(20.0, 161.0)
+#: Direction of the lattice, and half-way between it and the vertical.
+LATTICE, BETWEEN, VERTICAL = 60.0, 75.0, 90.0
+#: Quantiles of the bootstrap.
+LEVELS = (0.025, 0.975)
+ESTIMATE = ("mean", "low", "high")
+WIDTHS = ("half_maximum", "half_force")
+
+
+@record
+class Outcome:
+    """One packing under its load."""
+
+    moved: float = column(f"how far the load moves its disk {LENGTH}")
+    height: float = column(f"height of the loaded disk {LENGTH}")
+    imbalance: float = column("largest difference of the force across a line and the load, per load")
+    force: FloatArray  #: (depth, x) magnitude of forces per length and load; nan below the floor
+    stress: FloatArray  #: (depth, x) vertical stress per load
+
+
+@record
+class Statistics:
+    """Of the mean over the packings that hold the force: the value, and 95 % of the bootstrap draws."""
+
+    force: FloatArray = column("magnitude of added forces per length and load", "depth", "x", "estimate")
+    stress: FloatArray = column("vertical stress of the load, per load", "depth", "x", "estimate")
+    scaled: FloatArray = column("the same times depth, mean over the fitted depths", "t", "estimate")
+    direction: FloatArray = column("magnitude of added forces per radian and load", "angle", "estimate")
+    strongest: FloatArray = column("direction of the largest of these, in degrees", "estimate")
+    chain: FloatArray = column("the same with both sides folded, from 40 to 80 degrees, in degrees", "estimate")
+    contrast: FloatArray = column("force at 60 degrees over that at 75, both sides folded", "estimate")
+    vertical: FloatArray = column("force at 90 degrees over that at 75, both sides folded", "estimate")
+    dip: FloatArray = column("lack of the scaled stress at x = 0, per largest", "estimate")
+    length: FloatArray = column(f"half the width by each definition {LENGTH}", "definition", "depth", "estimate")
+    power: FloatArray = column("power of depth with which it grows", "definition", "fit", "estimate")
+    slope: FloatArray = column("its growth per depth, straight line", "definition", "estimate")
+    offset: FloatArray = column(f"the straight line at depth 0 {LENGTH}", "definition", "estimate")
+
+
+def measure(scene: Scene, force: float, depths: int, x: FloatArray, width: float) -> Outcome:
+    """``scene`` has one load, of unit force; raises what the solvers raise."""
+    path = LoadPath.of(scene)
+    disk, start = int(path.problem.load_disk[0]), path.rest
+    rest, loaded = common_candidates([start, path.at(force)], path.problem.packing.radius)
+    (middle, top), added = loaded.position[disk], load_forces(rest, loaded)
+    upright = np.linalg.norm(added.force, axis=1) * np.sign(added.branch[:, 1])
+    sizes = replace(added, force=np.stack([np.zeros_like(upright), upright], axis=1))
+    heights = [top - depth for depth in range(1, depths + 1) if depth < top]
+    found = np.full((2, depths, len(x)), np.nan)
+    for k, height in enumerate(heights):
+        found[:, k] = [line_stress(one, height, middle + x, width) / force for one in (sizes, added)]
+    sides, vertical = loaded.walls.second != FLOOR, wall_force_difference(rest, loaded)[:, 1]
+    load = -force * scene.loads[0].force[1]
+    lacks = [_lack(added, height, load, vertical[sides], loaded.position[loaded.walls.first[sides], 1])
+             for height in heights]  # fmt: skip
+    moved = float(np.linalg.norm(loaded.position[disk] - start.position[disk]))
+    return Outcome(moved, float(start.position[disk, 1]), max(lacks, default=0.0), *found)
+
+
+def _lack(added: ContactForces, height: float, load: float, vertical: FloatArray, z: FloatArray) -> float:
+    """What forces across a line and those of side walls above it, ``vertical`` at ``z``, lack of the load, per load."""
+    return float(abs(line_forces(added, height)[1].sum() + vertical[z > height].sum() - load) / load)
+
+
+def statistics(asked: Parameters, x: FloatArray, height: float, force: FloatArray, stress: FloatArray) -> dict:
+    """The fields of :class:`Statistics` of mean profiles (depth, x); ``height`` is that of the load."""
+    depth = np.arange(1.0, asked.depths + 1.0)
+    ring = depth[(depth >= asked.ring[0]) & (depth <= asked.ring[1]) & (depth < height)]
+    used = (depth >= asked.fitted[0]) & (depth <= asked.fitted[1] * height)
+    used &= np.isfinite(stress).all(axis=1)  # some packings are lower than their mean
+    sine, cotangent = np.sin(np.radians(ANGLES)), 1.0 / np.tan(np.radians(ANGLES))
+    of_ring = [np.interp(d * cotangent, x, force[int(d) - 1], 0.0, 0.0) * d / sine**2 for d in ring]
+    direction = np.mean(of_ring, axis=0) if len(ring) else np.full(len(ANGLES), np.nan)
+    both = dict(zip(ANGLES, 0.5 * (direction + direction[::-1]), strict=True))
+    sideways = np.array([angle for angle in ANGLES if 40.0 <= angle <= 80.0])
+    half, side = folded(stress), x[len(x) // 2 :]
+    pairs = zip(depth[used], half[used], strict=True)
+    scaled = np.mean([d * np.interp(d * SCALED, side, row) for d, row in pairs] or [SCALED * np.nan], axis=0)
+    length = lengths(side, half)[:, :2].T
+    fit = np.polyfit(depth[used], length[:, used].T, 1) if used.sum() > 1 else np.full((2, 2), np.nan)
+    return {
+        "force": force, "stress": stress, "scaled": scaled, "direction": direction,
+        "strongest": ANGLES[np.argmax(direction)],
+        "chain": sideways[np.argmax([both[angle] for angle in sideways])],
+        "contrast": both[LATTICE] / both[BETWEEN], "vertical": both[VERTICAL] / both[BETWEEN],
+        "dip": 1.0 - scaled[0] / scaled.max(),
+        "length": length, "power": powers(depth[used], length[:, used]), "slope": fit[0], "offset": fit[1],
+    }  # fmt: skip
+
+
+def mean_of(asked: Parameters, x: FloatArray, outcomes: list[Outcome]) -> Statistics:
+    """Of the packings that hold the force; nan with fewer than three."""
+    held = [one for one in outcomes if one.moved <= asked.largest_move]
+    number, missing = len(held), np.full((1, asked.depths, len(x)), np.nan)
+    profiles = [np.stack([getattr(one, name) for one in held]) if held else missing for name in ("force", "stress")]
+    height = float(np.mean([one.height for one in held])) if held else 0.0
+    if number < 3:
+        value = statistics(asked, x, height, missing[0], missing[0])
+        return Statistics(**{name: np.stack([np.full_like(one, np.nan)] * 3, axis=-1) for name, one in value.items()})
+    parts = weights(number, asked.draws, asked.seed) / number
+    value = statistics(asked, x, height, *(one.mean(axis=0) for one in profiles))
+    means = [np.einsum("wr,rdx->wdx", parts, one) for one in profiles]
+    drawn = [statistics(asked, x, height, *one) for one in zip(*means, strict=True)]
+    return Statistics(
+        **{
+            name: np.stack([one, *np.quantile([draw[name] for draw in drawn], LEVELS, axis=0)], axis=-1)
+            for name, one in value.items()
+        }
+    )
+
+
+def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
+    """Datasets ``packings``, ``means``, and ``picture_K`` of each case that has one."""
+    asked, cases = parameters, parameters.cases
+    x = np.arange(-asked.reach, asked.reach + SPACING, SPACING)
+    tasks = {
+        (c, r): partial(measure, asked.scene_of(case, r), case.force, asked.depths, x, asked.width)
+        for c, case in enumerate(cases)
+        for r in range(case.realizations)
+    }
+    found = computed(tasks, "packings")
+    each = [[found[c, r] for r in range(case.realizations)] for c, case in enumerate(cases)]
+    means = computed({(c,): partial(mean_of, asked, x, one) for c, one in enumerate(each)}, "means")
+    texts = {"force_applied": "applied force, in mean weights", "angle_applied": "of it below the horizontal, degrees"}
+    coordinates = labels("case", cases, packing="packing", realizations="number of packings") | {
+        name: variable("case", [getattr(case, name.partition("_")[0]) for case in cases], text)
+        for name, text in texts.items()
+    }
+    points = axes(
+        depth=(np.arange(1.0, asked.depths + 1.0), f"depth below the loaded disk {LENGTH}"),
+        x=(x, f"position from the loaded disk {LENGTH}"), angle=(ANGLES, "angle below the horizontal, in degrees"),
+        t=(SCALED, "distance from the load per depth"), definition=(WIDTHS, "definition of the width"),
+        fit=(FITS, "fitted depths"), estimate=(ESTIMATE, "mean, and 95 % of its bootstrap draws"),
+    )  # fmt: skip
+    used = {"largest_move": asked.largest_move, "fitted": list(asked.fitted), "width": asked.width}
+    datasets = {
+        "packings": table(found, "case", "realization").assign_coords(coordinates).assign_attrs(used),
+        "means": table(means, "case").assign_coords(coordinates | points).assign_attrs(used),
+    }
+    for c in asked.pictures:
+        r = next((r for r, one in enumerate(each[c]) if one.moved <= asked.largest_move), 0)
+        datasets[f"picture_{c}"] = states(asked.scene_of(cases[c], r), (cases[c].force,))
+    return labelled(datasets, asked.base)
