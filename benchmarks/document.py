@@ -187,7 +187,10 @@ def tables(benchmark: str, metrics: Metrics) -> list[dict[str, Any]]:
             "exact": "error at most 1e-8", "error": "largest error", "plain": "equal increments",
             "plain_twice": "twice as long",
         }  # fmt: skip
-        return [table(metrics["groups"], columns)]
+        done = {kind: len(pick(metrics["runs"], kind=kind)) for kind in metrics["planned"]}
+        words = ", ".join(f"{done[kind]} of {planned} {kind}" for kind, planned in metrics["planned"].items())
+        words += "; times beside other computations" if metrics["busy"] else ""
+        return [table(metrics["groups"], columns, f"Measured: {words}.")]
     if benchmark == "trajectory":
         orders: dict[str, dict[str, Any]] = {}
         for row in metrics["orders"]:
@@ -279,8 +282,8 @@ def goals(found: dict[str, Metrics]) -> list[dict[str, Any]]:
     ratio = max((row["seconds"] / row["dynamics_seconds"] for row in points if "dynamics_seconds" in row), default=None)
     what = "The same over the least time of dynamics, at whatever error; slowest of nine points"
     add("exactness", what, ratio, None, 1.0, times)
-    runs = found.get("exactness", {}).get("groups", [])
-    error = max((row["error"] for row in runs if row["equilibria"] == "none lost"), default=None)
+    those = found.get("exactness", {}).get("groups", [])
+    error = max((row["error"] for row in those if row["equilibria"] == "none lost"), default=None)
     add("exactness", "Error of paths that lose no equilibrium", error, None, 1e-8, lambda v: f"{v:.1g}")
     runs = found.get("scale", {}).get("runs", [])
     for method, disks, limit, what in (

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
 import sys
 import time
 from collections import Counter
@@ -27,6 +28,7 @@ from timing import floor, write
 from timing import scene as paper
 
 from granular_response.errors import SolveError
+from granular_response.machine.threads import cores
 from granular_response.scene import Scene
 from granular_response.solvers.equilibrium import external_force
 from granular_response.solvers.increment import Work, solve_increment
@@ -218,7 +220,8 @@ def difference(one: State, other: State) -> float:
 def outcome(run: dict[str, Any]) -> str:
     """What happened: to the path, else to the increments."""
     if "failed" in run:
-        return "increments: no equilibrium" if "lost" in run else run["failed"].partition(":")[0]
+        reason = "no equilibrium" if run["failed"].startswith("no equilibrium") else run["failed"]
+        return f"increments: {reason}" if "lost" in run else reason
     for who, key in (("", "lost"), ("increments: ", "lost_by_increments")):
         if run[key]:
             return who + max(run[key], key=LOSSES.index)
@@ -242,6 +245,12 @@ def groups(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return rows
 
 
+def whole(runs: list[dict[str, Any]]) -> dict[str, Any]:
+    """What is stored; ``busy`` : whether the times were taken beside other computations."""
+    busy = os.getloadavg()[0] > 1.5 * cores()
+    return {"planned": COUNTS, "busy": busy, "groups": groups(runs), "runs": runs}
+
+
 def main(path: str) -> None:
     runs = json.loads(Path(path).read_text(encoding="utf-8"))["runs"] if Path(path).exists() else []
     known = {(run["kind"], run["scene"]) for run in runs}
@@ -251,7 +260,7 @@ def main(path: str) -> None:
         if (kind, k) not in known:
             runs.append(measure(kind, k, given))
             print(runs[-1], flush=True)
-            write(path, {"groups": groups(runs), "runs": runs})
+            write(path, whole(runs))
 
 
 if __name__ == "__main__":
