@@ -274,3 +274,17 @@ def test_a_swing_has_the_stored_error(script, document, integrator):
     trajectory = script("trajectory")
     stored = document.pick(document.read()["trajectory"]["runs"], problem="swing", integrator=integrator)[0]
     assert trajectory.swing(integrator, stored["time_step"]) == pytest.approx(stored["error"], rel=1e-4)
+
+
+@pytest.mark.parametrize(("kind", "scene"), [("nine points", 0), ("small", 3), ("small", 2), ("slabs", 0)])
+def test_a_path_is_as_accurate_as_stored(script, document, monkeypatch, kind, scene):
+    """In few increments, since those end at events anyway; one path loses an equilibrium."""
+    exactness = script("exactness")
+    monkeypatch.setattr(exactness, "MOST", 20)
+    monkeypatch.setattr(exactness, "MOST_OF_SLAB", 20)
+    (stored,) = document.pick(document.read()["exactness"]["runs"], kind=kind, scene=scene)
+    found = exactness.measure(kind, scene, list(exactness.SCENES[kind]())[scene])
+    assert (found["events"], found["lost"]) == (stored["events"], stored["lost"])
+    assert exactness.outcome(found) == exactness.outcome(stored)
+    if exactness.outcome(found) == "none lost":
+        assert max(found["error"], stored["error"]) <= exactness.EXACT

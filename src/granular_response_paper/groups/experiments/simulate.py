@@ -19,7 +19,8 @@ from granular_response.observe.stress import ContactForces, line_forces, line_st
 from granular_response.observe.widths import FITS, lengths, powers
 from granular_response.scene import Scene
 from granular_response.state import FLOOR, FloatArray
-from granular_response.store.result import LENGTH, common_candidates, variable
+from granular_response.store.result import common_candidates
+from granular_response.store.variables import RADII, variable
 from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.experiments.parameters import Parameters
 from granular_response_paper.groups.overview.simulate import states
@@ -44,8 +45,8 @@ WIDTHS = ("half_maximum", "half_force")
 class Outcome:
     """One packing under its load."""
 
-    moved: float = column(f"how far the load moves its disk {LENGTH}")
-    height: float = column(f"height of the loaded disk {LENGTH}")
+    moved: float = column(f"how far the load moves its disk {RADII}")
+    height: float = column(f"height of the loaded disk {RADII}")
     imbalance: float = column("largest difference of the force across a line and the load, per load")
     force: FloatArray  #: (depth, x) magnitude of forces per length and load; nan below the floor
     stress: FloatArray  #: (depth, x) vertical stress per load
@@ -64,10 +65,10 @@ class Statistics:
     contrast: FloatArray = column("force at 60 degrees over that at 75, both sides folded", "estimate")
     vertical: FloatArray = column("force at 90 degrees over that at 75, both sides folded", "estimate")
     dip: FloatArray = column("lack of the scaled stress at x = 0, per largest", "estimate")
-    length: FloatArray = column(f"half the width by each definition {LENGTH}", "definition", "depth", "estimate")
+    length: FloatArray = column(f"half the width by each definition {RADII}", "definition", "depth", "estimate")
     power: FloatArray = column("power of depth with which it grows", "definition", "fit", "estimate")
     slope: FloatArray = column("its growth per depth, straight line", "definition", "estimate")
-    offset: FloatArray = column(f"the straight line at depth 0 {LENGTH}", "definition", "estimate")
+    offset: FloatArray = column(f"the straight line at depth 0 {RADII}", "definition", "estimate")
 
 
 def measure(scene: Scene, force: float, depths: int, x: FloatArray, width: float) -> Outcome:
@@ -160,8 +161,8 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
         for name, text in texts.items()
     }
     points = axes(
-        depth=(np.arange(1.0, asked.depths + 1.0), f"depth below the loaded disk {LENGTH}"),
-        x=(x, f"position from the loaded disk {LENGTH}"), angle=(ANGLES, "angle below the horizontal, in degrees"),
+        depth=(np.arange(1.0, asked.depths + 1.0), f"depth below the loaded disk {RADII}"),
+        x=(x, f"position from the loaded disk {RADII}"), angle=(ANGLES, "angle below the horizontal, in degrees"),
         t=(SCALED, "distance from the load per depth"), definition=(WIDTHS, "definition of the width"),
         fit=(FITS, "fitted depths"), estimate=(ESTIMATE, "mean, and 95 % of its bootstrap draws"),
     )  # fmt: skip

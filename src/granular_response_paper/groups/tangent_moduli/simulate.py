@@ -38,7 +38,7 @@ from granular_response.solvers.problem import Problem
 from granular_response.solvers.small_loads import added_forces
 from granular_response.solvers.system import StaticSystem, Trial
 from granular_response.state import FLOOR, SLIDING, FloatArray, State
-from granular_response.store.result import FORCE, LENGTH
+from granular_response.store.variables import RADII, WEIGHTS
 from granular_response_paper.datasets import labelled
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import TWO_PEAKS, Happening, LoadPath, Measures
@@ -200,11 +200,11 @@ class Fit:
 class Step:
     """A loaded state, with its fits by width and loads."""
 
-    force: float = column(f"force {FORCE}")
+    force: float = column(f"force {WEIGHTS}")
     measured: FloatArray = column("floor force that a small further force adds, per force", "floor_disk")
     two_peaks: float = column("1 where that has two peaks")
     criterion: FloatArray = column("r by body forces, least width", "triangle")
-    sliding: FloatArray = column(f"centres of sliding contacts of disks {LENGTH}", "contact", "axis")
+    sliding: FloatArray = column(f"centres of sliding contacts of disks {RADII}", "contact", "axis")
     tangent_error: float = column("largest lack of K against the next equilibrium, per largest force")
     fits: tuple[Fit, ...] = ()
 
@@ -213,9 +213,9 @@ class Step:
 class Outcome:
     """A slab along its forces."""
 
-    x: FloatArray = column(f"position from the loaded disk {LENGTH}", "floor_disk")
-    crossover: FloatArray = column(f"force from which on there are two peaks, before and after {FORCE}", "end")
-    corners: FloatArray = column(f"corners of the triangles on the lattice {LENGTH}", "triangle", "corner", "axis")
+    x: FloatArray = column(f"position from the loaded disk {RADII}", "floor_disk")
+    crossover: FloatArray = column(f"force from which on there are two peaks, before and after {WEIGHTS}", "end")
+    corners: FloatArray = column(f"corners of the triangles on the lattice {RADII}", "triangle", "corner", "axis")
     steps: tuple[Step, ...] = ()
 
 
@@ -306,11 +306,11 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     slab["corners"] = slab["corners"].isel(slab=0)
     tables = (slab, table(steps, "slab", "step"), table(fits, "slab", "step", "width", "loads"))
     coordinates = axes(
-        width=(p.widths, f"w of the Gaussian over which fields are averaged {LENGTH}"),
+        width=(p.widths, f"w of the Gaussian over which fields are averaged {RADII}"),
         loads=(LOADS, "small loads to which moduli are fitted"),
         axis=("xz", "component"),
     )
     friction = labels(
-        "slab", slabs, friction="coefficient of friction between disks", shown=f"force of the map {FORCE}"
+        "slab", slabs, friction="coefficient of friction between disks", shown=f"force of the map {WEIGHTS}"
     )
     return labelled({"slabs": xr.merge(tables).assign_coords(coordinates | friction)}, p.base)
