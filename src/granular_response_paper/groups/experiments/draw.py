@@ -41,7 +41,7 @@ def draw(datasets: Mapping[str, xr.Dataset]) -> dict[str, Figure]:
     largest = np.sort(np.flatnonzero(known)[starts]).tolist()  # of each packing the first load that it holds
     shown = [case for case in np.flatnonzero(known).tolist() if case in largest or force[case] == SMALL]
     oblique = np.flatnonzero(~straight).tolist()
-    for axes, case in zip(panels[0], largest, strict=False):
+    for axes, case in zip(panels[0], largest[:2], strict=False):
         _profiles(axes, means.isel(case=case))
     _directions(panels[0, 2], means, shown)
     _directions(panels[1, 0], means, oblique)
