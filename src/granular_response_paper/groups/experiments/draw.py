@@ -87,7 +87,7 @@ def _directions(axes: Axes, means: xr.Dataset, cases: list[int]) -> None:
         axes.fill_between(means["angle"], low, high, color=look["color"], alpha=0.2, linewidth=0.0)
         axes.plot(means["angle"], middle, label=_name(means, case), **look)
     for angle in LATTICE:
-        axes.axvline(angle, **GUIDE)
+        axes.axvline(angle, ymax=0.62, **GUIDE)  # the legend is above
     axes.set(xlabel="direction below horizontal (°)", ylabel=rf"added force per radian$\,/\,{style.F_EXT}$")
     axes.set(xticks=[30, 60, 90, 120, 150], ylim=(0.0, None))
     if cases:
@@ -118,7 +118,7 @@ def _moves(axes: Axes, packings: xr.Dataset, cases: list[int]) -> None:
         moves = np.sort(packings["moved"].isel(case=case).dropna("realization"))
         part = np.arange(1, len(moves) + 1) / len(moves)
         axes.step(np.maximum(moves, 1e-3), part, where="post", label=_name(packings, case), **style.line(k))
-    axes.axvline(packings.attrs["largest_move"], **GUIDE)
+    axes.axvline(packings.attrs["largest_move"], ymax=0.62, **GUIDE)
     axes.set(xlabel=rf"way of the loaded disk$\,/\,{style.RADIUS}$", ylabel="part of packings", xscale="log")
     axes.set(ylim=(0.0, 1.75), yticks=[0.0, 0.5, 1.0])
     axes.legend(fontsize=6, loc="upper left", handlelength=1.6)
