@@ -36,8 +36,8 @@ TEXTS = {
         "Accuracy of the path",
         "Against increments with the return map that end where the path has an event, and every 0.001 mg, or 1/250 of "
         "the load if that is longer (1/1000 for the nine points with friction 0.2 and 1). Error: largest difference of "
-        "a force of the floor or a wall, per load. Increments that end at no events have an error of their own, which "
-        "falls with their length: last two columns.",
+        "a force of the floor or a wall, per load. Equal increments, which pass over changes, have an error of their "
+        "own that depends on where they end: last two columns.",
     ),
     "convergence": (
         "Convergence of dynamics to the path",

@@ -5,10 +5,10 @@ force, 200 packings of at most 60 disks under loads of all sizes, 40 slabs of 8 
 has are kept. An error is the largest difference of a component of a force of the floor or a wall, per load.
 
 The reference solves each increment with the return map (:func:`.solve_increment`), which knows no events. What changes
-inside an increment leaves an error there, which falls with the length: plain increments are less exact than the path,
-as ``plain`` and ``plain_twice`` (increments of twice the length) show. So the increments of ``error`` end also where
-the path has an event; a change that the path has missed lies within an increment all the same, and is seen. Where an
-increment finds no equilibrium the path from event to event leads over it (``by_events`` counts them).
+inside an increment leaves an error there, by how far the increment goes beyond it: plain increments are less exact than
+the path, as ``plain`` and ``plain_twice`` (increments of twice the length) show. So the increments of ``error`` end
+also where the path has an event; a change that the path has missed lies within an increment all the same, and is seen.
+Where an increment finds no equilibrium the path from event to event leads over it (``by_events`` counts them).
 """
 
 from __future__ import annotations
