@@ -377,3 +377,22 @@ def test_no_statuses_go_on_where_none_are_found(monkeypatch):
     follow(problem, rest, [0.4], record=record)
     assert sum(event.lost for event in record.events) == 3
     assert len(tried) >= 32 and min(tried) > 0
+
+
+def test_the_load_never_goes_back():
+    """An event that Newton's method finds at a smaller load lies on another branch: paths went to it and back for ever."""
+    packing: dict[str, object] = {"kind": "slab", "layers": 8, "disks_per_row": 33, "sides": "periodic"}
+    loads = [{"disk": "top-centre", "force": [0.0, -2.0]}]
+    problem = Problem.from_scene(
+        gr.Scene.from_dict({"packing": packing, "contact": {"friction": 0.2, "law": "hertz"}, "loads": loads})
+    )
+    rest = rest_state(problem)
+    factors: list[float] = []
+
+    def progress(factor):
+        factors.append(factor)
+        assert len(factors) < 500
+
+    (state,) = follow(problem.with_loads(rest.position), rest, [0.3], progress=progress)
+    assert state.certificate.stable
+    assert np.diff(factors).min() > -1e-9
