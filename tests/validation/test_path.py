@@ -380,7 +380,7 @@ def test_no_statuses_go_on_where_none_are_found(monkeypatch):
 
 
 def test_the_load_never_goes_back():
-    """An event that Newton's method finds at a smaller load is on another branch; paths went to it and back for ever."""
+    """An event that Newton's method finds at a smaller load is on another branch: no path goes back to it."""
     packing = {"kind": "slab", "layers": 8, "disks_per_row": 33, "sides": "periodic"}
     loads = [{"disk": "top-centre", "force": [0.0, -2.0]}]
     problem = Problem.from_scene(
