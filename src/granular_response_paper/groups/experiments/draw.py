@@ -59,7 +59,8 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     p, disks = parameters, {name: packing.build().n for name, packing in parameters.packings.items()}
     said = of_scene(p.base, polydispersity=None, packing=None, width=p.width)
     sizes = ", ".join(f"{name}: {number} disks" for name, number in disks.items())
-    counts = " or ".join(map(str, sorted({case.realizations for case in p.cases})))
+    numbers = [case.realizations for case in p.cases]
+    counts = f"{min(numbers)} to {max(numbers)}"
     return of_group("experiments", {"experiments": said, "experiments_images": said}, p=p, sizes=sizes, counts=counts)
 
 

@@ -18,12 +18,12 @@ from granular_response.observe.difference import wall_force_difference
 from granular_response.observe.stress import ContactForces, line_forces, line_stress, load_forces
 from granular_response.observe.widths import FITS, lengths, powers
 from granular_response.scene import Scene
+from granular_response.solvers.solution import solve_scene
 from granular_response.state import FLOOR, FloatArray
 from granular_response.store.result import common_candidates
 from granular_response.store.variables import RADII, variable
-from granular_response_paper.datasets import labelled
+from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.groups.experiments.parameters import Parameters
-from granular_response_paper.groups.overview.simulate import states
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import LoadPath
 from granular_response_paper.survey.crossover import folded, weights
@@ -173,5 +173,5 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     }
     for c in asked.pictures:
         r = next((r for r, one in enumerate(each[c]) if one.moved <= asked.largest_move), 0)
-        datasets[f"picture_{c}"] = states(asked.scene_of(cases[c], r), (cases[c].force,))
+        datasets[f"picture_{c}"] = pictured(solve_scene(asked.scene_of(cases[c], r), load_factors=(cases[c].force,)))
     return labelled(datasets, asked.base)

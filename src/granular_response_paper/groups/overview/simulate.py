@@ -13,18 +13,10 @@ import xarray as xr
 from granular_response.scene import Scene
 from granular_response.solvers.small_loads import influence
 from granular_response.solvers.solution import solve_scene
-from granular_response.store.result import to_dataset
 from granular_response.store.variables import variable
-from granular_response_paper.datasets import labelled
+from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.groups.overview.parameters import Parameters
 from granular_response_paper.tasks import computed
-
-#: What pictures of a result take of its dataset, and the part of its certificates that says whether it is balanced.
-KEPT = (
-    "state_load_factor", "position", "angle", "radius", "contact_disk", "contact_partner", "contact_status",
-    "contact_force", "wall_disk", "wall_index", "wall_force", "loaded_disk", "applied_load", "total_force",
-    "floor_response", "certificate_force_residual",
-)  # fmt: skip
 
 
 def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
@@ -53,15 +45,11 @@ def states(scene: Scene, forces: tuple[float, ...], *, elastic: bool = False) ->
     ``scene`` has one load, of unit force. Raises what ``solve_scene`` and ``influence`` raise.
     """
     solution = solve_scene(scene, load_factors=forces)
-    data = to_dataset(solution)
-    kept = data[[name for name in KEPT if name in data]].assign(
-        friction=variable((), scene.contact.friction, "coefficient of friction between disks"),
-        polydispersity=variable((), scene.packing.model_dump()["polydispersity"], "delta: spread of the radii"),
-    )
+    kept = pictured(solution)
     if not elastic:
         return kept
     disk = int(solution.problem.load_disk[0])
-    found = influence(solution.problem, solution.rest, data["floor_disk"].values, sliding="stick")[:, disk, 1]
+    found = influence(solution.problem, solution.rest, kept["floor_disk"].values, sliding="stick")[:, disk, 1]
     return kept.assign(
         elastic_response=variable(
             "floor_disk", -found, "floor response to a small load, all contacts sticking, per applied force"
