@@ -20,7 +20,7 @@ def loaded(friction: float, force: float) -> tuple[LoadPath, Solid, np.ndarray]:
     state = path.at(force)
     system = StaticSystem(path.problem, state)
     solid = Solid.of(system, state, triangles(path.problem.packing.position))
-    load = simulate.on_disk(path.problem, int(path.problem.load_disk[0]), 1, -1.0)
+    load = path.problem.load_vector()
     return path, solid, solid.floor_forces(system.answers(solid.trial)(load))
 
 

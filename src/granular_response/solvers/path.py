@@ -366,10 +366,11 @@ class _Path:
                     return None
                 continue
             factor, trial = found
-            if event is not None and self.direction * (factor - point.factor) * self.unit < -self.event:
+            ahead = self.direction * (factor - point.factor)
+            if event is not None and ahead * self.unit < -self.event:
                 left, length = 0.5 * min(length, left), np.inf  # another branch: the load would go back
                 continue
-            if event is not None and self.direction * (factor - point.factor) > left:
+            if event is not None and ahead > left:
                 # the contact changes later than its rate said; or this is another branch, if it changes before
                 left, length = (0.5 * left if left == passed_at else left), np.inf
                 continue

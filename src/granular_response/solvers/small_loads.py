@@ -91,16 +91,20 @@ def contact_answers(
     """
     system, trial = sticking(problem, state, sliding)
     answer = system.answers(trial)
-    n, freedoms = problem.n, problem.freedoms
     on_pairs = np.empty((len(disks), len(system.first), 2))
     on_walls = np.empty((len(disks), len(system.wall_disk), 2))
     for row, disk in enumerate(disks):
-        force = np.zeros((freedoms, n))
-        force[1, disk] = -1.0
-        on_pairs[row], on_walls[row] = added_forces(system, trial, answer(force.ravel()))
+        on_pairs[row], on_walls[row] = added_forces(system, trial, answer(force_on(problem, disk, 1, -1.0)))
     borne = state.contact_count()[disks] >= 2
     on_pairs[~borne] = on_walls[~borne] = np.nan
     return on_pairs, on_walls
+
+
+def force_on(problem: Problem, disk: int, axis: int, size: float = 1.0) -> FloatArray:
+    """(dof,) a force along x (``axis`` 0) or z (1) on a disk."""
+    force = np.zeros((problem.freedoms, problem.n))
+    force[axis, disk] = size
+    return force.ravel()
 
 
 def added_forces(system: StaticSystem, trial: Trial, moved: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -12,9 +12,17 @@ the last term; the values of eqs. (7)-(10) and the isotropic limit ``d = a - c``
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+T = TypeVar("T", float, NDArray[np.float64])
+
+
+def peak_criterion(a: T, b: T, c: T, d: T) -> T:
+    """``r = [a b - c (c + d)] / (b d)`` of numbers or arrays; see :attr:`Moduli.peak_criterion`."""
+    return (a * b - c * (c + d)) / (b * d)
 
 
 @dataclass(frozen=True)
@@ -77,7 +85,7 @@ class Moduli:
 
         In a half plane they lie at ``x / z = -sqrt(-r)`` and ``sqrt(-r)``. Isotropic: r = 1.
         """
-        return (self.a * self.b - self.c * (self.c + self.d)) / (self.b * self.d)
+        return peak_criterion(self.a, self.b, self.c, self.d)
 
     def matrix(self) -> NDArray[np.float64]:
         """(3, 3) stress ``(xx, zz, xz)`` per strain ``(eps_xx, eps_zz, eps_xz)``."""

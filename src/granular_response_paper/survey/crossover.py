@@ -44,8 +44,9 @@ from granular_response_paper.records import column, record
 FOUND, BELOW, ABOVE = 0, 1, 2
 KINDS = ("found", "below_smallest_force", "above_largest_force")
 
-#: Levels of the stored interval: one and two standard deviations of a normal distribution.
-LEVELS = (0.025, 0.16, 0.5, 0.84, 0.975)
+#: Ends of an interval of 95 %, and levels of the stored one: one and two standard deviations of a normal distribution.
+CONFIDENCE = (0.025, 0.975)
+LEVELS = (CONFIDENCE[0], 0.16, 0.5, 0.84, CONFIDENCE[1])
 
 
 @dataclass(frozen=True)
@@ -153,7 +154,11 @@ def ranked(force: FloatArray, kind: NDArray[np.int8]) -> FloatArray:
 
 def weights(realizations: int, draws: int, seed: int) -> FloatArray:
     """(draws, realizations) how often each is drawn, with replacement; alike for cases of as many realizations."""
-    picked = np.random.default_rng(seed).integers(0, realizations, (draws, realizations))
+    return counted(np.random.default_rng(seed).integers(0, realizations, (draws, realizations)), realizations)
+
+
+def counted(picked: NDArray[np.int64], realizations: int) -> FloatArray:
+    """(draws, realizations) how often each stands in a row of those ``picked`` (draws, k)."""
     return np.stack([np.bincount(row, minlength=realizations) for row in picked]).astype(float)
 
 
@@ -213,8 +218,7 @@ def seen_in_samples(
     for draw in range(draws):
         drawn = rng.integers(0, count, count)
         picked = drawn[rng.integers(0, count, (samples, number))]
-        weights = np.stack([np.bincount(row, minlength=count) for row in picked]).astype(float)
-        shapes = shape(x, few.means(weights), width)
+        shapes = shape(x, few.means(counted(picked, count)), width)
         parts[draw] = np.mean(passed(ensemble.force, grown(shapes), tolerance)[1] == FOUND)
     return parts
 

@@ -26,7 +26,7 @@ from granular_response_paper.datasets import labelled, pictured
 from granular_response_paper.groups.experiments.parameters import Parameters
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import LoadPath
-from granular_response_paper.survey.crossover import folded, weights
+from granular_response_paper.survey.crossover import CONFIDENCE, folded, weights
 from granular_response_paper.tasks import computed
 
 #: Distance of points of profiles (radii); distance from the load per depth, of profiles that are put on each other.
@@ -35,8 +35,6 @@ SPACING, SCALED = 0.5, np.linspace(0.0, 1.5, 31)
 ANGLES = np.arange(20.0, 161.0)
 #: Direction of the lattice, and half-way between it and the vertical.
 LATTICE, BETWEEN, VERTICAL = 60.0, 75.0, 90.0
-#: Quantiles of the bootstrap.
-LEVELS = (0.025, 0.975)
 ESTIMATE = ("mean", "low", "high")
 WIDTHS = ("half_maximum", "half_force")
 
@@ -137,7 +135,7 @@ def mean_of(asked: Parameters, x: FloatArray, outcomes: list[Outcome]) -> Statis
     drawn = [statistics(asked, x, height, *one) for one in zip(*means, strict=True)]
     return Statistics(
         **{
-            name: np.stack([one, *np.quantile([draw[name] for draw in drawn], LEVELS, axis=0)], axis=-1)
+            name: np.stack([one, *np.quantile([draw[name] for draw in drawn], CONFIDENCE, axis=0)], axis=-1)
             for name, one in value.items()
         }
     )

@@ -35,6 +35,7 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.moduli.parameters import Parameters
 from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, labels, record, stacked, table, variables
+from granular_response_paper.survey.crossover import CONFIDENCE
 from granular_response_paper.survey.packings import measured
 from granular_response_paper.tasks import computed
 
@@ -250,7 +251,7 @@ def needed(layers: FloatArray, difference: FloatArray, tolerances: FloatArray, d
     flat = slope > -1e-2
     place = np.where(flat, np.inf, (np.log(tolerances)[:, None] - offset) / np.where(flat, -1.0, slope))
     size = np.where(place > farthest, np.inf, np.exp(np.minimum(place, farthest)))
-    low, high = np.quantile(size[:, 1:], [0.025, 0.975], axis=1, method="nearest")
+    low, high = np.quantile(size[:, 1:], CONFIDENCE, axis=1, method="nearest")
     return np.stack([size[:, 0], low, high], axis=1)
 
 

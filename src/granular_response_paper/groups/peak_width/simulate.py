@@ -37,13 +37,11 @@ from granular_response_paper.datasets import labelled
 from granular_response_paper.groups.peak_width.parameters import LEAST_REALIZATIONS, Case, Parameters
 from granular_response_paper.parameters import material
 from granular_response_paper.records import axes, column, columns, labels, record, table
-from granular_response_paper.survey.crossover import folded, weights
+from granular_response_paper.survey.crossover import CONFIDENCE, folded, weights
 from granular_response_paper.survey.packings import measured
 
 #: Height of the line that stands for the floor (radii): below all centres, above what the floor contacts rest on.
 FLOOR_LINE = 1e-6
-#: Ends of intervals.
-LEVELS = (0.025, 0.975)
 SURVEYED = "1 where the packings are those of the survey"
 
 
@@ -248,7 +246,7 @@ def widths(
     else:
         all_ = lengths(t, draws, asked.tolerance) * depth[used][:, None]
         # nan where a draw has none
-        interval = np.quantile(powers(depth[used], np.swapaxes(all_, 1, 2))[..., 0], LEVELS, axis=0).T
+        interval = np.quantile(powers(depth[used], np.swapaxes(all_, 1, 2))[..., 0], CONFIDENCE, axis=0).T
     return {
         "depth": depth, "profile": profile, "elastic_profile": elastic_profile,
         "length": length, "elastic_length": elastic_length,
@@ -303,6 +301,6 @@ def _coordinates(parameters: Parameters, what: str) -> dict[str, xr.Variable]:
             t=(grid(parameters), "distance from the load per depth"),
             definition=(DEFINITIONS, "lengths"),
             fit=(FITS, f"depths {what} that are used"),
-            level=(LEVELS, "ends of the interval"),
+            level=(CONFIDENCE, "ends of the interval"),
         ),
     }

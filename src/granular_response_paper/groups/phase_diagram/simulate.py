@@ -27,6 +27,7 @@ from granular_response_paper.survey import datasets as survey
 from granular_response_paper.survey.crossover import (
     ABOVE,
     BELOW,
+    CONFIDENCE,
     FOUND,
     KINDS,
     LEVELS,
@@ -189,7 +190,7 @@ def _means_of_few(
             rows = rows[np.isfinite(rows[:, 0])]
             shapes = shapes_of_samples(rows, x, width, number, seed=parameters.seed)
             each = np.quantile(shapes, LEVELS, axis=1)
-            ends = np.quantile(each, (LEVELS[0], LEVELS[-1]), axis=1).T
+            ends = np.quantile(each, CONFIDENCE, axis=1).T
             quantiles.append(np.column_stack([np.quantile(shapes, LEVELS), ends]))
     every = np.reshape(quantiles, (len(parameters.widths), starts.sizes["case"], len(LEVELS), 3))
     text = f"quantiles of the shape of the means of {number} realizations, drawn at random"

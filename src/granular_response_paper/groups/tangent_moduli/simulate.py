@@ -35,10 +35,11 @@ from granular_response.errors import SolveError
 from granular_response.observe.floor import floor_force, smoothed_response
 from granular_response.observe.peaks import is_double_peaked
 from granular_response.solvers.problem import Problem
-from granular_response.solvers.small_loads import added_forces
+from granular_response.solvers.small_loads import added_forces, force_on
 from granular_response.solvers.system import StaticSystem, Trial
 from granular_response.state import FLOOR, SLIDING, FloatArray, State
 from granular_response.store.variables import RADII, WEIGHTS
+from granular_response.theory.moduli import peak_criterion
 from granular_response_paper.datasets import labelled
 from granular_response_paper.records import axes, column, labels, record, table
 from granular_response_paper.slab_response import TWO_PEAKS, Happening, LoadPath, Measures
@@ -178,12 +179,6 @@ def fitted(strain: FloatArray, stress: FloatArray) -> tuple[FloatArray, float]:
     return definite, float(np.median(left))
 
 
-def peak_criterion(moduli: FloatArray) -> FloatArray:
-    """(t,) ``r = [a b - c (c + d)] / (b d)`` of moduli (t, 3, 3): two peaks are expected for r < 0 (Sec. V.C)."""
-    a, b, c, d = moduli[:, 0, 0], moduli[:, 1, 1], moduli[:, 0, 1], moduli[:, 2, 2]
-    return np.asarray((a * b - c * (c + d)) / (b * d))
-
-
 @record
 class Fit:
     """Moduli by one family of loads and one width of the averages."""
@@ -219,13 +214,6 @@ class Outcome:
     steps: tuple[Step, ...] = ()
 
 
-def on_disk(problem: Problem, disk: int, axis: int, size: float = 1.0) -> FloatArray:
-    """(dof,) a force along an axis on a disk."""
-    force = np.zeros((problem.freedoms, problem.n))
-    force[axis, disk] = size
-    return force.ravel()
-
-
 def loads(problem: Problem, state: State, waves: tuple[int, int]) -> dict[str, list[FloatArray]]:
     """Small loads (dof,) of each family: body forces in half waves, unit forces on the top row."""
     row = problem.packing.row
@@ -236,7 +224,7 @@ def loads(problem: Problem, state: State, waves: tuple[int, int]) -> dict[str, l
         force[axis] = np.cos(k * x) * np.cos(m * z)
         body.append(force.ravel())
     top = np.setdiff1d(np.flatnonzero(row == row.max()), problem.load_disk)
-    return {"body": body, "surface": [on_disk(problem, disk, axis) for disk, axis in product(top, (0, 1))]}
+    return {"body": body, "surface": [force_on(problem, disk, axis) for disk, axis in product(top, (0, 1))]}
 
 
 def reached(criterion: FloatArray, solid: Solid, row: NDArray[Any], x: float, spacing: float) -> float:
@@ -267,7 +255,7 @@ def respond(parameters: Parameters, friction: float, forces: tuple[float, ...]) 
         system = StaticSystem(problem, state)
         solid = Solid.of(system, state, corners)
         answer = system.answers(solid.trial)
-        measured = solid.floor_forces(answer(on_disk(problem, loaded, 1, -1.0)))[disks]
+        measured = solid.floor_forces(answer(problem.load_vector()))[disks]
         largest = smooth(measured).max()
         fields = {
             name: [np.stack(one, axis=-1) for one in zip(*map(solid.fields, map(answer, family)), strict=True)]
@@ -279,7 +267,7 @@ def respond(parameters: Parameters, friction: float, forces: tuple[float, ...]) 
             averaged = ((mean @ one.reshape(len(corners), -1)).reshape(one.shape) for one in fields[name])
             strain, stress, turning = averaged
             moduli, left = fitted(strain, stress)
-            criteria.append(peak_criterion(moduli))
+            criteria.append(peak_criterion(moduli[:, 0, 0], moduli[:, 1, 1], moduli[:, 0, 1], moduli[:, 2, 2]))
             predicted = solid.floor_forces(solid.answer(moduli, loaded))[disks]
             part = np.linalg.norm(turning) / np.hypot(np.linalg.norm(turning), np.linalg.norm(stress))
             depth = reached(criteria[-1], solid, packing.row, middle[0], measures.lattice_constant)
