@@ -56,6 +56,8 @@ class RelaxationOptions:
     #: Time over which the envelope of the kinetic energy is taken, in sqrt(R/g): some swings of the slowest modes of
     #: the paper's slabs, at which a single reading is low long before they have died out.
     envelope_time: float = 20.0
+    #: Kinetic energy per disk that is rounding: what is left of it need not fall any more.
+    motionless: float = 1e-24
 
 
 OPTIONS = RelaxationOptions()
@@ -72,12 +74,14 @@ class Stop:
     ``kinetic_energy`` per disk (units of mean weight times mean radius); ``rule``: ``instantaneous`` stops at
     the first reading below it, ``envelope`` when the largest of the last ``RelaxationOptions.envelope_time`` is.
     ``least_time`` since the ramps began: what starts without motion and out of balance has no kinetic energy yet.
+    ``fallen`` : part of its largest value since then to which the kinetic energy must have fallen.
     """
 
     kinetic_energy: float = 1e-13
     rule: str = "instantaneous"
     maximum_steps: int = 5_000_000
     least_time: float = 0.0
+    fallen: float = 1.0
 
 
 class Dynamics:
@@ -386,6 +390,7 @@ class Relaxation:
         self.envelope: deque[float] = deque(maxlen=checks if stop.rule == "envelope" else 1)
         self.network: NDArray[np.bool_] | None = None
         self.fixed = 0
+        self.largest = 0.0
         self.settled = self.rolling = False
         self.scale = 1e6 * (1.0 + abs(load[1]) * float(np.abs(dynamics.problem.load).sum()))
 
@@ -406,6 +411,8 @@ class Relaxation:
         energy = dynamics.kinetic_energy()
         if not energy < self.scale:
             raise DynamicsError(dynamics._blow_up())
+        self.largest = max(self.largest, energy)
+        fallen = energy <= stop.fallen * self.largest or energy < OPTIONS.motionless
         if self.progress is not None:
             self.progress(dynamics.steps - self.started, energy)
         if dynamics.time < self.ramp_time:
@@ -432,7 +439,7 @@ class Relaxation:
             self.fixed = self.fixed + OPTIONS.check_every if same else 0
             self.network = touching
         quiet = max(self.envelope) < stop.kinetic_energy and len(self.envelope) == self.envelope.maxlen
-        self.settled = quiet and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
+        self.settled = quiet and fallen and dynamics.time >= stop.least_time and not dynamics.in_flight(touching)
 
     def run(self) -> State:
         """Advance until it has ended; returns :meth:`state`."""

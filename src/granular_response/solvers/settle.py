@@ -32,17 +32,17 @@ class HandOver:
     """How dynamics hands over to statics. Times in sqrt(R/g)."""
 
     tries: int  #: how often statics is tried
-    wait: float = 20.0  #: time of dynamics between tries, with cooling where the packing is cooler already
-    cooling: float = 1.0  #: below 1: in place of a wait, dynamics to this part of the kinetic energy before
+    wait: float = 20.0  #: time of dynamics between tries, unless the kinetic energy falls
+    fallen: float = 1.0  #: below 1: part of its largest value since the last try to which the kinetic energy falls
     nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
     nudged: bool = False  #: from the third unstable equilibrium on, dynamics starts from it, displaced a little
 
 
 #: Rest under gravity, and loads by dynamics: the fall is long, and a wait costs little of it.
 PROTOCOL = HandOver(tries=8, nudged=True)
-#: The end of a branch on a path: the first try is early, and each further one has a hundredth of the energy.
-CROSSING = HandOver(tries=4, cooling=1e-2)
-#: Kinetic energy per disk at the first try of a crossing.
+#: The end of a branch on a path. It begins at rest, so each try has a hundredth of the largest energy before it.
+CROSSING = HandOver(tries=6, fallen=1e-2)
+#: Largest kinetic energy per disk at a try of a crossing.
 CROSSING_STOP = 1e-9
 
 
@@ -94,13 +94,14 @@ def settle(
         return replace(stop, maximum_steps=max(stop.maximum_steps - spent - dynamics.steps, 0))
 
     spent = 0  #: steps of motions that have been started again
-    settled = relax(dynamics, stop, gravity=gravity, load=load, progress=look)
-    energy = stop.kinetic_energy
+    settled = relax(dynamics, replace(stop, fallen=how.fallen), gravity=gravity, load=load, progress=look)
     why = ""
     for attempt in range(1, how.tries + 1):
         kinetic = settled.reached.kinetic_energy or 0.0
         # steps that run out within a ramp leave another load than the one that is asked for
-        if not settled.reached.settled and (kinetic > how.nearly * energy or settled.load_factor != load[1]):
+        if not settled.reached.settled and (
+            kinetic > how.nearly * stop.kinetic_energy or settled.load_factor != load[1]
+        ):
             break
         try:
             found = _statics(problem, settled)
@@ -114,12 +115,8 @@ def settle(
             why = f": {error}"
         if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
             break
-        if how.cooling < 1.0:
-            energy *= how.cooling
-            if kinetic < energy:  # so little is out of balance that motion has hardly begun
-                dynamics.set_ramps(load=held)
-                dynamics.advance(min(round(how.wait / time_step), left().maximum_steps))
-            settled = relax(dynamics, replace(left(), kinetic_energy=energy), load=held)
+        if how.fallen < 1.0:
+            settled = relax(dynamics, replace(left(), fallen=how.fallen, least_time=how.wait), load=held)
         else:
             dynamics.set_ramps(load=held)
             dynamics.advance(min(round(how.wait / time_step), left().maximum_steps))
