@@ -87,7 +87,7 @@ class PathOptions:
     listed_again: float = 0.12
     #: Increment of a large packing that takes events together: this times the square root of the number of disks, since
     #: a deeper packing takes more load to change as many contacts; and at most ``longest``.
-    together: float = 0.0066
+    together: float = 0.0033
     longest: float = 3.2
 
 
@@ -191,21 +191,23 @@ class _Path:
         """The state at load factor ``target`` on the way from ``start``."""
         if target == start.load_factor and start.reached.certificate is not None and start.certificate.stable:
             return replace(start, reached=replace(start.reached, events=()))
-        self.begun = len(self.record.events)
+        self.begun, self.start = len(self.record.events), start
         self.target, self.direction = target, 1.0 if target >= start.load_factor else -1.0
         self.jump = self.options.jump / self.unit
         self.together = self.asked or None
         point = self._at(start)
         if self.asked is None and self.system.dissected:
             self.together = min(self.options.together * self.problem.n**0.5, self.options.longest)
+        self.guide = {}
+        state = self._followed(point, start)
         if self.together is None or point.factor == target:
-            return self._followed(point, start)
-        # what increments leave out, from those of twice the length
-        once, self.together = self.together, 2.0 * self.together
-        coarse = self._followed(point, start).wall_force()
-        self.together = once
-        state = self._followed(self._at(start), start)
-        off = np.abs(state.wall_force() - coarse).max(initial=0.0) if len(coarse) == len(state.wall_force()) else np.inf
+            return state
+        # what increments leave out, from those of twice the length, whose guesses are what these found
+        once, self.together, self.guide = self.together, 2.0 * self.together, self.passed
+        coarse = self._followed(self._at(start), start).wall_force()
+        self.record.events[self.begun :] = state.reached.events
+        force = state.wall_force()
+        off = np.abs(force - coarse).max(initial=0.0) if len(coarse) == len(force) else np.inf
         error = float(off) / (self.unit * abs(target - start.load_factor))
         return replace(state, reached=replace(state.reached, events_within=once, events_error=error))
 
@@ -216,6 +218,7 @@ class _Path:
         where the equilibrium at the target turns out to be unstable.
         """
         del self.record.events[self.begun :]
+        self.passed: dict[float, FloatArray] = {}
         self.singly_until = start.load_factor
         point = self._balanced(point)
         returned = 0  #: times that the equilibrium at the target was unstable
@@ -296,6 +299,8 @@ class _Path:
         self.rates = RateProblem(self.system, self.direction, force=force, negligible=self.options.negligible)
         self.event = force
         self.velocity: FloatArray | None = None
+        turned, moved = state.angle - self.start.angle, state.position - self.start.position
+        self.origin = np.concatenate([moved.T.ravel(), turned])[: self.system.dof]
         self.suspect = 0  #: negative pivots at the last stability check
         return Point(state.load_factor, trial, trial.sense, trial.sense)
 
@@ -318,9 +323,11 @@ class _Path:
         ``stuck`` : whether contacts have changed again and again at one load.
         """
         if self.together is not None and self.direction * (point.factor - self.singly_until) >= 0.0:
-            new = self._towards(point.factor, self.together / self.unit)
+            ahead = [factor for factor in self.guide if self.direction * (factor - point.factor) > 0.0]
+            new = ahead[:2][-1] if ahead else self._towards(point.factor, self.together / self.unit)
             found = self._increased(point, new)
             if found is not None:
+                self.passed[new] = self.origin + found.configuration.q
                 self.velocity = (found.configuration.q - point.known.q) / abs(new - point.factor)
                 self._record(replace(point, factor=new), found.sense)
                 return self._relisted(Point(new, found, found.sense, found.sense))
@@ -575,6 +582,8 @@ class _Path:
     def _increased(self, point: Point, new: float) -> Trial | None:
         """Equilibrium with the return map, one increment on, whatever changes within it."""
         guess = point.known.q if self.velocity is None else point.known.q + abs(new - point.factor) * self.velocity
+        if new in self.guide:
+            guess = self.guide[new] - self.origin
         guess = self.system.displaced(guess, new)
         return solve_increment(self.system, point.known, self._external(new), guess, self.record.work)
 
