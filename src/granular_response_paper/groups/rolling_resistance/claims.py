@@ -86,8 +86,8 @@ def small_load(data: Data, words: Bounds) -> Finding:
 @CLAIMS.measures("B17")
 def cosserat(data: Data, words: Bounds) -> Finding:
     slabs, turned = (_slabs(data, name).isel(rolling_friction=slice(1, None)) for name in ("slabs", "torques"))
-    loads = [(f"{load:g} mg", slabs.sel(load=load), ("",)) for load in slabs["load"].values]
-    loads += [(f"torque {load:g}", turned.sel(torque=load), ("", "decay_")) for load in turned["torque"].values]
+    loads = [(f"{load:g} mg", slabs.sel(load=load), [""]) for load in slabs["load"].values]
+    loads += [(f"torque {load:g}", turned.sel(torque=load), ["", "decay_"]) for load in turned["torque"].values]
     readings, lengths = [], []
     for mu in slabs["friction"].values.tolist():
         for load, one, fits in loads:

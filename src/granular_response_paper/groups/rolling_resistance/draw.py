@@ -50,9 +50,9 @@ def captions(datasets: Mapping[str, xr.Dataset], parameters: Parameters) -> dict
     layers = ", ".join(map(str, p.layers))
     small, large = p.shown_forces
     turned = of_scene(p.scene, friction=p.slabs[0].friction)
-    parameters = {"rolling_resistance": said, "rolling_resistance_torque": turned}
+    pictures = {"rolling_resistance": said, "rolling_resistance_torque": turned}
     fields = {"small": small, "large": large, "small_torque": p.torques[0], "large_torque": p.torques[1]}
-    return of_group("rolling_resistance", parameters, layers=layers, **fields)
+    return of_group("rolling_resistance", pictures, layers=layers, **fields)
 
 
 def _places(axes: Axes, values: np.ndarray) -> np.ndarray:
