@@ -196,33 +196,25 @@ class Turned(Fit):
     moment_error: float = column("largest lack of moments above a line, torque and couples included, per torque")
 
 
-def respond(
-    scene: Scene,
-    forces: tuple[float, ...],
-    shown: tuple[float, float],
-    torques: tuple[float, float],
-    width: float,
-    heights: int,
-) -> tuple[Slab, list[Loaded], list[Turned]]:
+def respond(parameters: Parameters, scene: Scene, forces: tuple[float, ...]) -> tuple[Slab, list[Loaded], list[Turned]]:
     """The slab, under each force that is shown and under each torque on the loaded disk alone.
 
     ``scene`` has one load, of unit force; stresses are those that the load adds. Raises what the solvers raise.
     """
-    path = LoadPath.of(scene)
+    path, width = LoadPath.of(scene), parameters.stress_width
     measures = Measures(path)
-    path.through(sorted({*forces, *shown}))
+    path.through(sorted({*forces, *parameters.shown_forces}))
     asked = first_opening(measures), Happening(measures.double_peaked, TWO_PEAKS)
     events = [np.array(path.first(forces, happening)) for happening in asked]
     rest, packing, top = path.rest, path.problem.packing, path.rest.position[measures.loaded_disk]
-    lines = coarse.grid_points(top[0] + measures.x, np.linspace(0.0, top[1], heights))
-    step = 0.5 * width
-    inner = coarse.grid_points(top[0] + measures.x[measures.interior], np.arange(width, top[1] - width, step))
+    lines = coarse.grid_points(top[0] + measures.x, np.linspace(0.0, top[1], parameters.heights))
+    inner = coarse.grid_points(top[0] + measures.x[measures.interior], np.arange(width, top[1] - width, 0.5 * width))
     rows = np.arange(packing.row.max() + 1)[::-1]
     above = packing.row > rows[1:, None]
     height = [rest.position[packing.row == row, 1].mean() for row in rows]
     depth = top[1] - 0.5 * np.add(height[:-1], height[1:])
     loaded, turned = [], []
-    for state in map(path.at, shown):
+    for state in map(path.at, parameters.shown_forces):
         response = measures.response(state)
         stress = coarse.coarse_grained_stress(coarse.load_forces(rest, state), lines, width)
         couple = np.linalg.norm(_couple_stress(path.problem, rest, state, lines, width), axis=-1).max(axis=1)
@@ -241,7 +233,7 @@ def respond(
             )
         )
     twist = LoadPath.of(scene.updated({"loads.0.force": [0.0, 0.0], "loads.0.torque": 1.0}), rest)
-    for torque, state in zip(torques, twist.through(torques), strict=True):
+    for torque, state in zip(parameters.torques, twist.through(parameters.torques), strict=True):
         across, needed = moments(twist.problem, state, above)
         before, _ = moments(twist.problem, rest, above)
         couple = (before - across) / torque
@@ -363,7 +355,7 @@ def simulate(parameters: Parameters) -> dict[str, xr.Dataset]:
     for n, slab in enumerate(p.slabs):
         for k, mu in enumerate(p.slab_rolling_frictions):
             scene = p.base.updated({"contact.friction": slab.friction, "contact.rolling_friction": mu})
-            slabs[n, k] = partial(respond, scene, slab.forces, p.shown_forces, p.torques, p.stress_width, p.heights)
+            slabs[n, k] = partial(respond, p, scene, slab.forces)
     sizes = axes(layers=(p.layers, "number of layers"))
     of_rolling = axes(rolling_friction=(rolling, "coefficient of rolling friction"))
     of_ramps = axes(ramp=(p.ramps, "time over which gravity grows, in sqrt(R/g); 0: at once"))
