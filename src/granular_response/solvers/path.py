@@ -209,7 +209,12 @@ class _Path:
         force = state.wall_force()
         off = np.abs(force - coarse).max(initial=0.0) if len(coarse) == len(force) else np.inf
         error = float(off) / (self.unit * abs(target - start.load_factor))
-        return replace(state, reached=replace(state.reached, events_within=once, events_error=error))
+        work = self.record.work
+        reached = replace(
+            state.reached, increments=work.increments, factorisations=work.factorisations, events_within=once,
+            events_error=error,
+        )  # fmt: skip
+        return replace(state, reached=reached)
 
     def _followed(self, point: Point, start: State, watched: bool = False) -> State:
         """The certified state at the target, from ``point``, where ``start`` is.

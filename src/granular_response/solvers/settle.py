@@ -32,8 +32,8 @@ class HandOver:
     """How dynamics hands over to statics. Times in sqrt(R/g)."""
 
     tries: int  #: how often statics is tried
-    wait: float = 20.0  #: time of dynamics between tries, unless the kinetic energy falls
-    fallen: float = 1.0  #: below 1: part of its largest value since the last try to which the kinetic energy falls
+    wait: float = 20.0  #: least time of dynamics between tries
+    fallen: float = 1.0  #: part of its largest value since the last try to which the kinetic energy falls
     nearly: float = 1e3  #: kinetic energy over its limit up to which a state whose steps ran out is tried all the same
     nudged: bool = False  #: from the third unstable equilibrium on, dynamics starts from it, displaced a little
 
@@ -115,12 +115,8 @@ def settle(
             why = f": {error}"
         if not settled.reached.settled or attempt == how.tries or left().maximum_steps == 0:
             break
-        if how.fallen < 1.0:
-            settled = relax(dynamics, replace(left(), fallen=how.fallen, least_time=how.wait), load=held)
-        else:
-            dynamics.set_ramps(load=held)
-            dynamics.advance(min(round(how.wait / time_step), left().maximum_steps))
-            settled = replace(dynamics.state(), reached=replace(settled.reached, more_relaxations=attempt))
+        settled = relax(dynamics, replace(left(), fallen=how.fallen, least_time=how.wait), load=held)
+        settled = replace(settled, reached=replace(settled.reached, more_relaxations=attempt))
     if settled.reached.settled and why and left().maximum_steps > 0:
         raise NotSettled(f"the packing is nearly at rest under {what}, but finds no stable equilibrium{why}")
     raise NotSettled(not_settled(problem, settled, what) + why)
