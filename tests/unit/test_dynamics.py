@@ -8,6 +8,7 @@ from small_scenes import free_disks, scene
 
 from granular_response.solvers.dynamics import Dynamics, DynamicsError, Stop, relax
 from granular_response.solvers.problem import Problem
+from granular_response.solvers.solution import rest_state
 
 INTEGRATORS = ["beeman", "verlet", "leapfrog", "gear"]
 
@@ -144,6 +145,24 @@ def test_envelope_is_stricter_than_the_instant():
         assert state.reached.settled
         steps[rule] = state.reached.relaxation_steps
     assert steps["envelope"] >= steps["instantaneous"] + 20.0 / 5e-4 * 0.9
+
+
+def test_motion_that_a_small_load_begins_has_fallen_to_a_part_of_its_largest_energy():
+    """So little is out of balance that the energy is never above the limit: without ``fallen`` no motion is seen."""
+    problem = Problem.from_scene(scene(contact__friction=0.2, loads=[{"disk": "top-centre", "force": [0.0, -1.0]}]))
+    rest = rest_state(problem)
+    problem = problem.with_loads(rest.position)
+    ended = {}
+    for part in (1.0, 1e-2, 1e-4):
+        energies = []
+        state = relax(
+            Dynamics(problem, rest), Stop(1e-6, fallen=part), load=(0.0, 0.01, 0.1),
+            progress=lambda steps, energy, energies=energies: energies.append(energy),
+        )  # fmt: skip
+        assert state.reached.settled and max(energies) < 1e-6
+        assert energies[-1] <= part * max(energies)
+        ended[part] = state.reached.relaxation_steps
+    assert ended[1.0] < ended[1e-2] < ended[1e-4]
 
 
 def test_loose_disk_does_not_keep_a_packing_from_rest():

@@ -17,6 +17,7 @@ from granular_response.solvers.settle import CROSSING, PROTOCOL, NotSettled, set
 from granular_response.solvers.solution import rest_state, solve_scene
 from granular_response.solvers.stability import OPTIONS, negative_modes, unstable_direction
 from granular_response.solvers.system import StaticSystem
+from granular_response.solvers.timestep import resolve_time_step
 
 DOWN = [{"disk": "top-centre", "force": [0.0, -1.0]}]
 
@@ -150,6 +151,18 @@ def test_every_further_try_of_statics_has_what_is_left_of_the_steps(monkeypatch,
     with pytest.raises(NotSettled):
         settle(problem, start, often, Stop(1e-9, maximum_steps=3000), what="gravity", accept=lambda state: False)
     assert len(taken) > 5 and 0 < sum(taken) <= 3000
+
+
+@pytest.mark.parametrize("how", [PROTOCOL, CROSSING])
+def test_tries_of_statics_are_as_far_apart_as_the_hand_over_says(monkeypatch, how):
+    """Six within one swing of the energy found nothing in a slab that comes to rest two swings later."""
+    problem = Problem.from_scene(scene(contact__friction=0.3, loads=[]))
+    start, taken, tries = rest_state(problem), counted_steps(monkeypatch), []
+    monkeypatch.setattr("granular_response.solvers.settle._statics", lambda *_: tries.append(sum(taken)) or start)
+    with pytest.raises(NotSettled):
+        settle(problem, start, replace(how, nudged=False), Stop(1e-9), what="gravity", accept=lambda state: False)
+    apart = np.diff(tries) * resolve_time_step(problem)
+    assert len(tries) == how.tries and apart.min() >= how.wait
 
 
 @pytest.mark.parametrize(
