@@ -29,12 +29,21 @@ class Way(Description):
         return self
 
 
+class Taps(Description):
+    """Taps of slabs at rest: the box moves by one period of a triangular wave of vertical acceleration, up first."""
+
+    after: tuple[str, ...] = Field(min_length=1, description="Names of preparations.")
+    amplitudes: tuple[Positive, ...] = Field(min_length=1, description="Largest accelerations, in g.")
+    duration: Positive = Field(description="Of the period, in sqrt(R/g).")
+
+
 class Part(Description):
     """Slabs of one friction between disks, ordered or with one polydispersity."""
 
     friction: Ratio
     walls: Literal["smooth", "rough"] = Field(default="smooth", description="rough: friction of the walls too.")
     ways: tuple[str, ...] = Field(default=(), description="Names of preparations; none: all of them.")
+    taps: tuple[Count, ...] = Field(default=(), description="Numbers of taps before the load; none: untapped only.")
     to: Positive = Field(description="Largest force, in mean disk weights.")
     polydispersity: Fraction = Field(default=0.0, description="delta; the largest disks touch in the initial lattice.")
     realizations: Count = Field(default=1, description="Of the disorder.")
@@ -47,6 +56,7 @@ class Parameters(SceneGroup):
         Scene, over(UNIT_LOAD, "packing.polydispersity", "contact.friction", "wall.friction", "preparation", "loads")
     ] = UNIT_LOAD
     ways: tuple[Way, ...] = Field(min_length=1, description="The first one is what the others are compared with.")
+    taps: Taps
     forces: Growing = Field(description="In mean disk weights.")
     parts: tuple[Part, ...] = Field(min_length=1, description="The first one is ordered.")
     asymmetry: Positive = Field(description="Asymmetry of the response from which symmetry is lost.")
@@ -63,11 +73,12 @@ class Parameters(SceneGroup):
                 raise Problem(str(error), key=("ways", str(k))) from None
         if self.parts[0].polydispersity:
             raise Problem("must be 0", key=("parts", "0", "polydispersity"), value=self.parts[0].polydispersity)
-        for k, part in enumerate(self.parts):
-            for name in part.ways:
+        asked = {("parts", str(k), "ways"): part.ways for k, part in enumerate(self.parts)}
+        for key, chosen in {("taps", "after"): self.taps.after, **asked}.items():
+            for name in chosen:
                 if name not in names:
-                    rule = f"must be one of the names in ways ({', '.join(names)})"
-                    raise Problem(rule, key=("parts", str(k), "ways"), value=name)
+                    raise Problem(f"must be one of the names in ways ({', '.join(names)})", key=key, value=name)
+        for k, part in enumerate(self.parts):
             if part.to < self.forces[0]:
                 raise Problem("must not be below the first of forces", key=("parts", str(k), "to"), value=part.to)
         return self
