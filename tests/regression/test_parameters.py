@@ -70,6 +70,7 @@ MISTAKES: dict[str, list[tuple[dict[str, Any], str]]] = {
         ({"ways": [WAY | {"changes": {"contact.friction": 1.0}}]}, "must be one of preparation.gravity"),
         ({"ways": [WAY, WAY]}, "must have different names"),
         ({"parts": [{"friction": 0.2, "ways": ["none"], "to": 4.0}]}, "must be one of the names in ways"),
+        ({"ways": [WAY]}, r"taps\.after = 'slow': must be one of the names in ways"),
         ({"parts": [{"friction": 0.2, "to": 0.01}]}, "must not be below the first of forces"),
         ({"ways": [WAY | {"changes": {"contact.damping_ratio": -1.0}}]}, "damping_ratio"),
     ],

@@ -73,8 +73,9 @@ class Parameters(SceneGroup):
                 raise Problem(str(error), key=("ways", str(k))) from None
         if self.parts[0].polydispersity:
             raise Problem("must be 0", key=("parts", "0", "polydispersity"), value=self.parts[0].polydispersity)
-        asked = {("parts", str(k), "ways"): part.ways for k, part in enumerate(self.parts)}
-        for key, chosen in {("taps", "after"): self.taps.after, **asked}.items():
+        asked: list[tuple[tuple[str, ...], tuple[str, ...]]] = [(("taps", "after"), self.taps.after)]
+        asked += [(("parts", str(k), "ways"), part.ways) for k, part in enumerate(self.parts)]
+        for key, chosen in asked:
             for name in chosen:
                 if name not in names:
                     raise Problem(f"must be one of the names in ways ({', '.join(names)})", key=key, value=name)
